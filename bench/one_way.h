@@ -18,10 +18,9 @@
 #include <vector>
 
 #include "bench/bench.h"
-#include "chimera/platform/channel.h"
-#include "chimera/platform/memory_region.h"
+#include "chimera/platform/local_socket.h"
 #include "chimera/platform/process.h"
-#include "chimera/platform/shared_pages.h"
+#include "chimera/platform/shared_memory.h"
 #include "chimera/table/group.h"
 
 namespace chimera::bench {

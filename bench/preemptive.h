@@ -13,10 +13,10 @@
 
 #include "bench/bench.h"
 #include "bench/tasks.h"
-#include "chimera/platform/doorbell.h"
-#include "chimera/platform/linux_clock.h"
-#include "chimera/platform/processor_level.h"
+#include "chimera/platform/clock.h"
 #include "chimera/platform/realtime.h"
+#include "chimera/platform/thread.h"
+#include "chimera/platform/wake.h"
 #include "chimera/runtime/preemptive/preemptive_executor.h"
 
 namespace chimera::bench {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bench/bench.h"
-#include "chimera/platform/memory_region.h"
+#include "chimera/platform/shared_memory.h"
 #include "chimera/table/group.h"
 
 namespace chimera {

@@ -3,9 +3,9 @@
 // the register: judgement at the start, transfer in, body, judgement at the end, publication, profile.
 #include "bench/bench.h"
 #include "bench/tasks.h"
-#include "chimera/platform/linux_clock.h"
-#include "chimera/runtime/releases.h"
+#include "chimera/platform/clock.h"
 #include "chimera/runtime/executive/executive.h"
+#include "chimera/runtime/releases.h"
 
 namespace chimera::bench {
 namespace {

@@ -85,6 +85,6 @@ int main(int argc, char** argv) {
   const int n = repetitions(argc, argv, 9);
   compare({10, milliseconds(1), true}, "staggered", n, 1.6, ratio_at_most(0.5), 1.05);
   compare({10, milliseconds(1), false}, "at one instant", n, 3.0, ratio_at_most(0.7), 2.1);
-  // Reported against the dispatcher: docs/decisions/0015-many-jobs-at-one-instant.md.
+  // Reported against the dispatcher: docs/design/preemptive.md.
   compare({200, milliseconds(20), false}, "all at one instant", std::max(3, n / 3), 3.0, {}, 2.1);
 }

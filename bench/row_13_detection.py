@@ -46,7 +46,7 @@ def pidfd_of_a_child():
 
 
 def end_memory_holder(pid):
-    """What the death of a unit would be without its second process (chimera/platform/memory_holder.h)."""
+    """What the death of a unit would be without its second process (chimera/platform/process.h)."""
     children = pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
     assert len(children) == 1, children
     os.kill(int(children[0]), signal.SIGKILL)  # nobody reaps it: the number stays its own

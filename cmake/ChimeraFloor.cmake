@@ -6,7 +6,7 @@
 #     x_process_test.cc   debug; uses real processes, label "process"
 #     x_threads_test.cc   debug, and again alone under the thread sanitizer, label "threads"
 #     x_realtime_test.cc  release only, label "realtime"
-#     x_fuzz.cc           fuzz (clang, libFuzzer), see chimera_fuzz
+#     x_fuzz.cc           debug (replays its corpus) and fuzz (clang, libFuzzer), see chimera_fuzz
 #     x_stress.cc         release; the program x_stress, a campaign for tests/stress.txt
 #   Without EXCEPTIONS the floor is built with -fno-exceptions -fno-rtti (floors 0 to 5).
 #   TEXT: a floor of JSON and other texts, slow to compile and without memory of its own making. Its files are compiled
@@ -76,6 +76,9 @@ endif()
 add_custom_target(tests_needed)
 # Everything that the tests labelled "unit" of this tree run: ./dev test --quick.
 add_custom_target(tests_quick)
+if(CHIMERA_FUZZ)
+  add_custom_target(fuzz_targets)
+endif()
 
 # gtest precompiled once, reused by every test binary.
 if(CHIMERA_TESTS)
@@ -173,7 +176,7 @@ function(chimera_tests name)
     set(options)
   endif()
   file(GLOB all CONFIGURE_DEPENDS *_test.cc hosted/*_test.cc
-    linux/*_test.cc virtual/*_test.cc executive/*_test.cc preemptive/*_test.cc rules/*_test.cc command/*_test.cc
+    virtual/*_test.cc executive/*_test.cc preemptive/*_test.cc rules/*_test.cc command/*_test.cc
     files/*_test.cc run/*_test.cc batch/*_test.cc live/*_test.cc)
   set(plain ${all})
   list(FILTER plain EXCLUDE REGEX "_(threads|process|realtime)_test\\.cc$")
@@ -219,26 +222,28 @@ function(chimera_script_test name)
   endif()
 endfunction()
 
-# chimera_fuzz(SOURCE CORPUS folder LIBS lib...): SOURCE.cc (a path ending in _fuzz) twice, with and without
-#   CHIMERA_PLANTED_DEFECT defined: 6 s from the committed corpus must find nothing, the planted defect must be found.
+# chimera_fuzz(x_fuzz LIBS lib...): x_fuzz.cc with its committed inputs, the folder x_corpus beside it.
+#   Debug tree: a test of label unit replays every input. Fuzz tree: libFuzzer programs for tools/dev/fuzz.py, one
+#   plain and one compiled with CHIMERA_PLANTED_DEFECT.
 function(chimera_fuzz source)
-  cmake_parse_arguments(arg "" "CORPUS" "LIBS" ${ARGN})
-  if(NOT CHIMERA_FUZZ)
-    return()
-  endif()
+  cmake_parse_arguments(arg "" "" "LIBS" ${ARGN})
   cmake_path(GET source STEM name)
-  foreach(target ${name} ${name}_planted)
-    add_executable(${target} ${source}.cc)
-    target_link_libraries(${target} PRIVATE ${arg_LIBS} chimera_flags)
-    target_link_options(${target} PRIVATE -fsanitize=fuzzer)
-    add_dependencies(tests_needed ${target})
-  endforeach()
-  target_compile_definitions(${name}_planted PRIVATE CHIMERA_PLANTED_DEFECT=1)
-  set(run ${CHIMERA_PYTHON} ${CMAKE_SOURCE_DIR}/tools/dev/fuzz.py --corpus ${CMAKE_CURRENT_SOURCE_DIR}/${arg_CORPUS})
-  add_test(NAME ${name} COMMAND ${run} --seconds 6 $<TARGET_FILE:${name}>)
-  add_test(NAME ${name}_planted COMMAND ${run} --seconds 30 --planted $<TARGET_FILE:${name}_planted>)
-  _chimera_test_properties(${name} fuzz)
-  _chimera_test_properties(${name}_planted fuzz)
+  if(CHIMERA_FUZZ)
+    foreach(target ${name} ${name}_planted)
+      add_executable(${target} ${source}.cc)
+      target_link_libraries(${target} PRIVATE ${arg_LIBS} chimera_flags)
+      target_link_options(${target} PRIVATE -fsanitize=fuzzer)
+      set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/targets)
+      add_dependencies(fuzz_targets ${target})
+    endforeach()
+    target_compile_definitions(${name}_planted PRIVATE CHIMERA_PLANTED_DEFECT=1)
+  elseif(CHIMERA_TREE STREQUAL "debug" AND CHIMERA_TESTS)
+    add_executable(${name} ${source}.cc)
+    target_compile_options(${name} PRIVATE ${CHIMERA_FEWER_CHECKS})
+    target_link_libraries(${name} PRIVATE ${arg_LIBS} chimera_replay_corpus)
+    string(REGEX REPLACE "_fuzz$" "_corpus" corpus ${CMAKE_CURRENT_SOURCE_DIR}/${source})
+    chimera_script_test(${name} LABEL unit DEPENDS ${name} COMMAND ${name} ${corpus})
+  endif()
 endfunction()
 
 function(_chimera_campaigns libs)
@@ -263,7 +268,7 @@ endfunction()
 function(chimera_floor name)
   cmake_parse_arguments(arg "EXCEPTIONS;TEXT;TOGETHER" "" "LINKS;LIBRARIES" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS
-    *.cc hosted/*.cc linux/*.cc virtual/*.cc executive/*.cc preemptive/*.cc rules/*.cc
+    *.cc hosted/*.cc virtual/*.cc executive/*.cc preemptive/*.cc rules/*.cc
     command/*.cc files/*.cc run/*.cc batch/*.cc live/*.cc)
   list(FILTER sources EXCLUDE REGEX "_(test|fuzz|stress)\\.cc$")
   set(target chimera_${name})

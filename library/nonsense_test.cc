@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every component takes nonsense: in constants (also such as the checker refuses, because another component may tell
-// them), in inputs, in resources, in what a predecessor left in its outputs. It refuses with a text or goes on, and the
-// sanitizers have nothing to say; and what was given nothing but numbers that can be squared publishes numbers. The
-// seed is in the message: CHIMERA_NONSENSE=COUNT tries more.
+// Gives every component invalid constants (also those that the checker refuses, because another component may provide
+// them), inputs, resources and old outputs. The component refuses with a text or continues, without a report of the
+// sanitizers. If all numbers have a finite square, its outputs are numbers. A failure prints the seed.
+// CHIMERA_NONSENSE=COUNT sets the number of trials.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -24,7 +24,7 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kHostile[] = {NAN,    kUnbounded, -kUnbounded, 0,   -0.0, -1,  1e308,
                                -1e308, 5e-324,     1e-300,      1e6, -1e6, 1e18};
 
-/// What each component with a resource works with.
+/// A valid resource for a port of a component.
 std::string sound_resource(const std::string& component, const std::string& port) {
   const std::string library = source_path("library/");
   const std::map<std::string, std::string> kKnown{
@@ -44,7 +44,7 @@ class Nonsense {
  public:
   Nonsense(const chimera_component& component, unsigned seed) : component_(component), random_(seed) {}
 
-  /// "" or what is wrong.
+  /// Returns the first error, or "".
   std::string run() {
     Rig rig(component_.name);
     shape(rig);
@@ -114,7 +114,7 @@ class Nonsense {
     if (port.kind != CHIMERA_IN_VAR && port.kind != CHIMERA_IN_CONST) return;
     const bool has_default = (port.flags & CHIMERA_PORT_HAS_INITIAL) != 0;
     if (!is_hostile && has_default) return;
-    if (std::string_view(port.name) == "ndof") is_hostile = false;  // an extent: the framework holds it in its range
+    if (std::string_view(port.name) == "ndof") is_hostile = false;  // an extent: the framework keeps it in its range
     for (std::uint32_t instance = 0; instance < instances_[port.name]; ++instance)
       for (std::uint32_t e = 0; e < rig.size(port.name); ++e)
         put(rig, port, e, instance, is_hostile && (e == 0 || draw(2) == 0));
@@ -161,7 +161,7 @@ class Nonsense {
     bytes[port.element_size - 1] = '\0';
     sized<1>(rig, port, e, instance, bytes.data());
   }
-  /// Structs of the library are all of float64. The identity in the middle of a pose is its orientation.
+  /// All structs of the library have only float64 members. The orientation of a pose starts with element 3.
   void structure(Rig& rig, const chimera_port_decl& port, std::uint32_t e, std::uint32_t instance, bool is_hostile) {
     std::array<double, 64> numbers;
     numbers.fill(0.1);
@@ -193,7 +193,7 @@ class Nonsense {
   std::map<std::string, std::uint32_t> instances_;
   std::string wrong_, told_;
   bool is_faulty_ = false;
-  bool is_extreme_ = false;  // NaN, an infinity or what no square holds was given
+  bool is_extreme_ = false;  // an input was NaN, infinite or too large to be squared
 };
 
 TEST(AnyComponent, RefusesNonsenseWithATextOrGoesOnAndPublishesNumbers) {
@@ -202,12 +202,12 @@ TEST(AnyComponent, RefusesNonsenseWithATextOrGoesOnAndPublishesNumbers) {
   const std::filesystem::path before = std::filesystem::current_path();
   const std::filesystem::path folder = testing::TempDir() + "nonsense_" + std::to_string(::getpid());
   std::filesystem::create_directory(folder);
-  std::filesystem::current_path(folder);  // a log goes to whatever file it is told
+  std::filesystem::current_path(folder);  // because a log writes to any file name
   std::uint32_t count = 0;
   const chimera_component* const* all = chimera_components(CHIMERA_ABI_VERSION, &count);
   ASSERT_GT(count, 50u);
   for (std::uint32_t c = 0; c < count; ++c) {
-    if (std::string_view(all[c]->name) == "faulty") continue;  // publishes NaN on purpose
+    if (std::string_view(all[c]->name) == "faulty") continue;  // because it publishes NaN on purpose
     for (unsigned trial = 0; trial < trials; ++trial) {
       const std::string wrong = Nonsense(*all[c], trial).run();
       EXPECT_EQ(wrong, "") << all[c]->name << ", seed " << trial;

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every tracked file: a name that says what it is. Every tracked text: the licence line, no path of one machine, no
-word about a workplace, nothing left to do. Every production source x.cc: a sentence that says what it does."""
+word about a workplace, nothing left to do. Every production source x.cc: a sentence that says what it does. Comments,
+messages, documents and names of tests: none of the words that a reader has to guess the meaning of."""
+import io
 import pathlib
 import re
 import sys
+import tokenize
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "check"))
 import sources  # noqa: E402
@@ -37,6 +40,45 @@ FORBIDDEN = (
     ("something left to do", re.compile(r"\b(TO" + r"DO|FIX" + r"ME|XX" + r"X)\b")),
 )
 
+# A sentence names its subject: a class, task, process, thread, file or number. These words stand in the place of one.
+GUESSED = ("whoever", "nobody", "somebody", "so many", "so long", "so often", "is told", "are told", "tells", "of late",
+           "by then", "meanwhile", "what became of", "what becomes of", "who has", "real-time unit", "guest", "fleet")
+GUESSED_WORD = re.compile(r"\b(" + "|".join(GUESSED) + r")s?\b", re.IGNORECASE)
+GUESSED_NAME = re.compile("Whoever|Nobody|Somebody|SoMany|SoLong|SoOften|IsTold|AreTold|OfLate|ByThen|Meanwhile")
+GUESSED_BEGIN = re.compile(r"/// ?(Of|The same|What|Who|Else|Whose|That)\b")
+C_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:[^"\\\n]|\\.)*"', re.DOTALL)
+TEST_NAME = re.compile(r"\b(?:TEST|TEST_F|TEST_P|TYPED_TEST)\(\w+,\s*(\w+)\)|\bdef (test_\w+)")
+# Folders whose words are not put right yet. This list only gets shorter.
+NOT_YET = (
+    "README.md", "apps/chimera", "apps/chimera-rtpu", "bench/bench.h", "bench/one_way.h", "bench/preemptive.h",
+    "bench/row_04_one_way_peer.cc", "bench/row_10_breakdown.cc", "bench/row_11_overrun.cc", "bench/row_12_switch.py",
+    "bench/row_13_detection.py", "bench/row_13_takeover.py", "bench/row_15_four_units.py",
+    "bench/row_18_observers.py", "bench/row_19_devices.cc", "bench/row_19_lines.cc", "bench/row_20_safe.py",
+    "bench/row_21_door.py", "bench/tasks.h", "chimera/analysis", "chimera/base", "chimera/catalogue", "chimera/cli",
+    "chimera/component_test", "chimera/control", "chimera/description", "chimera/draw", "chimera/guard",
+    "chimera/keeper", "chimera/load", "chimera/manager", "chimera/platform", "chimera/record", "chimera/rtpu",
+    "chimera/runtime", "chimera/schedule", "chimera/subsystem", "chimera/table", "chimera/task", "chimera/text",
+    "chimera/units", "chimera/verify", "docs/formats", "docs/glossary.md", "docs/howto", "docs/security.md",
+    "docs/walk.md", "examples/02_cruise_control", "examples/03_split_pm", "examples/07_faults_and_flag",
+    "examples/09_processes", "examples/10_teleoperation", "examples/11_another_robot", "examples/12_by_itself",
+    "examples/14_computed_torque", "examples/15_singular_pose", "examples/18_tool_changer", "examples/19_standby",
+    "examples/20_safe_machine", "examples/README.md", "library/README.md", "library/busy", "library/camera_targets",
+    "library/car", "library/comparator", "library/computed_torque", "library/control", "library/control_pm",
+    "library/counter", "library/csv_log", "library/ctraj", "library/deadband", "library/device", "library/display",
+    "library/edge", "library/electric_car", "library/encoder", "library/fwdkin_jacobian", "library/gfwdkin",
+    "library/ginvkin", "library/joint_trajectory", "library/kinematics", "library/limit", "library/logic",
+    "library/lookup_table", "library/lowpass", "library/modbus_io", "library/mujoco", "library/mujoco_robot",
+    "library/mujoco_robot_torque", "library/mujoco_robot_velocity", "library/nonsense_test.cc", "library/notch",
+    "library/offset", "library/on_event", "library/pid", "library/puma_torque", "library/rate_limit",
+    "library/ringer", "library/rmms", "library/script", "library/select", "library/serial_frame", "library/signals",
+    "library/singularity_monitor", "library/sum", "library/tball", "library/tool", "library/udp_frame",
+    "library/unit_convert", "library/urdf_model", "library/vision", "library/visual_servo_interface",
+    "library/watchdog", "share/chimera", "tests/applications", "tests/components", "tests/conformance",
+    "tests/devices", "tests/executors", "tests/hostile", "tests/install", "tests/kill", "tests/logging",
+    "tests/models", "tests/processes", "tests/responses", "tests/run", "tests/schedule", "tests/subsystem",
+    "tests/sweep", "tests/switching", "tests/verify", "tools/check_cycle_path.py", "tools/data_sheets.py",
+    "tools/dev")
+
 
 def needs_licence(name):
     return name.endswith(LICENSED) or name.split("/")[-1] in ("CMakeLists.txt", "dev") or name == ".ci/run"
@@ -59,6 +101,43 @@ def has_purpose(lines):
     return len(lines) > 1 and re.match(r"// ?(\S+\s+){2}\S", lines[1]) is not None
 
 
+def texts(name, content):
+    """(line number, text) of what people read in a file: comments, strings, the prose of documents."""
+    if name.endswith((".h", ".cc", ".c")):
+        for match in C_TEXT.finditer(content):
+            yield content.count("\n", 0, match.start()) + 1, match[0]
+    elif name.endswith(".py"):
+        try:
+            for token in tokenize.generate_tokens(io.StringIO(content).readline):
+                if token.type in (tokenize.COMMENT, tokenize.STRING):
+                    yield token.start[0], token.string
+        except (tokenize.TokenError, SyntaxError):
+            yield 1, content
+    elif name.endswith(".md"):
+        is_code = False
+        for number, line in enumerate(content.splitlines(), 1):
+            is_code ^= line.lstrip().startswith("```")
+            if not is_code and not line.startswith("    "):
+                yield number, re.sub(r"`[^`]*`", "", line)
+    elif name.endswith((".yaml", ".sh", ".cmake", "CMakeLists.txt")):
+        for number, line in enumerate(content.splitlines(), 1):
+            if "#" in line:
+                yield number, line[line.index("#"):]
+
+
+def guessed(name, content):
+    """Words that leave their meaning to the reader."""
+    for number, text in texts(name, content):
+        for offset, line in enumerate(text.splitlines()):
+            match = GUESSED_BEGIN.match(line) or GUESSED_WORD.search(line)
+            if match:
+                yield f"{name}:{number + offset}: '{match[0]}': name the subject, in the words of docs/glossary.md"
+    for match in TEST_NAME.finditer(content):
+        if GUESSED_NAME.search(match[1] or "") or GUESSED_WORD.search((match[2] or "").replace("_", " ")):
+            number = content.count("\n", 0, match.start()) + 1
+            yield f"{name}:{number}: test '{match[1] or match[2]}': say the condition and the result"
+
+
 def check(root):
     for name in sources.files(root):
         if not is_known(name):
@@ -78,6 +157,8 @@ def check(root):
                 match = pattern.search(line)
                 if match:
                     yield f"{name}:{number}: {what}: '{match[0]}'"
+        if name != "tools/check_text.py" and not name.startswith(NOT_YET):
+            yield from guessed(name, content)
 
 
 _HEAD = f"// {LICENCE}\n"
@@ -106,6 +187,16 @@ PLANTED = (
     ({"library/gain/gain.cc": _HEAD + "// ---\n"},
      "library/gain/gain.cc:2: a sentence is missing that says what this file does"),
     ({"chimera/base/x_test.cc": _HEAD, "chimera/base/testing/x.cc": _HEAD, "bench/x.cc": _HEAD}, None),
+    ({"a.cc": _HEAD + 'int meanwhile;  // Counts jobs.\nf("a task");\n', "b.md": "`nobody`\n"}, None),
+    ({"a.cc": _HEAD + "int x;  // as somebody asked\n"},
+     "a.cc:2: 'somebody': name the subject, in the words of docs/glossary.md"),
+    ({"a.h": _HEAD + "/// Of a task.\n"}, "a.h:2: '/// Of': name the subject, in the words of docs/glossary.md"),
+    ({"a.py": "# " + LICENCE + '\nx = """a\nb is told"""\n'},
+     "a.py:3: 'is told': name the subject, in the words of docs/glossary.md"),
+    ({"b.md": "It goes on meanwhile.\n"}, "b.md:1: 'meanwhile': name the subject, in the words of docs/glossary.md"),
+    ({"a.cc": _HEAD + "TEST(Bell, IsToldOnce) {}\n"}, "a.cc:2: test 'IsToldOnce': say the condition and the result"),
+    ({"a.py": "# " + LICENCE + "\ndef test_nobody_comes(self):\n    pass\n"},
+     "a.py:2: test 'test_nobody_comes': say the condition and the result"),
     ({"a.cc": _HEAD + "// TO" + "DO\n"}, "a.cc:2: something left to do: 'TO" + "DO'"),
 )
 

@@ -17,7 +17,7 @@ import sys
 import tempfile
 
 REQUIRED = ("Equation", "Ports", "Refused", "Execution time", "Source")
-HEAD = ("port", "kind", "type", "unit", "frame", "range", "initial", "what it is")
+HEAD = ("port", "type", "values", "what it is")
 TIME = re.compile(r"\d[\d.]* (ns|us|ms)\b")
 
 
@@ -25,33 +25,55 @@ def number(value):
     return value if isinstance(value, str) else f"{value:g}" if abs(value) < 1e6 else f"{value:.17g}"
 
 
-def values(port):
+def initial(port):
     """The initial value of an out-var, the default of an in-const: one for all elements, or the list."""
     texts = [("true" if v else "false") if isinstance(v, bool) else f'"{v}"' if isinstance(v, str) else
              "given" if isinstance(v, dict) else number(v) for v in port.get("initial", [])]
     return texts[0] if len(set(texts)) == 1 else ", ".join(texts)
 
 
-def row(port):
-    repeated = "max_instances" in port
-    name = f"`{port['name']}{'*' if repeated else ''}`"
-    kind = port["kind"] + (", safety" if port.get("safety") else "")
-    kind += ", safe state" if port.get("safe_state") and port["kind"] != "resource" else ""
-    kind += ", shared" if port.get("shared") else ""
-    if repeated:
-        kind += f", up to {port['max_instances']}"
+def marks(port):
+    """The end of the second column, after kind, type, unit and frame."""
+    if port.get("safety"):
+        yield "safety"
+    if port.get("safe_state") and port["kind"] != "resource":
+        yield "safe state"
+    if port.get("shared"):
+        yield "shared"
+    if "max_instances" in port:
+        yield f"up to {port['max_instances']}"
+
+
+def kind_of(port):
     if port["kind"] == "resource":
-        return (name, kind, "", "", "", "", "", port.get("doc", ""))
+        return ", ".join(["resource", *marks(port)])
     type_name = port.get("type_name") or port["type"]
     if port["type"] == "any":
         type_name = f"any {type_name}"
-    spread = " to ".join(number(end) for end in port["range"]) if "range" in port else ""
+    unit = [port["unit"]] if port["unit"] not in ("", "1") else []
+    frame = [port["frame"]] if port.get("frame") else []
+    return ", ".join([f"{port['kind']} {type_name}{port['shape']}", *unit, *frame, *marks(port)])
+
+
+def values_of(port):
+    parts = [" to ".join(number(end) for end in port["range"])] if "range" in port else []
     if "at_least" in port:
-        spread += (", " if spread else "") + f"at least `{port['at_least']}`"
+        parts.append(f"at least `{port['at_least']}`")
     if "one_of" in port:
-        spread = " ".join(f"`{word}`" for word in port["one_of"])
-    return (name, kind, type_name + port["shape"], port["unit"], port.get("frame", ""), spread, values(port),
-            port.get("doc", ""))
+        parts.append(" ".join(f"`{word}`" for word in port["one_of"]))
+    if port.get("initial"):
+        parts.append(("default " if port["kind"] == "in-const" else "initially ") + initial(port))
+    return ", ".join(parts)
+
+
+def row(port):
+    name = f"`{port['name']}{'*' if 'max_instances' in port else ''}`"
+    return name, kind_of(port), values_of(port), port.get("doc", "")
+
+
+def table_line(cells):
+    """One line of a Markdown table. An empty cell has no blanks."""
+    return re.sub(r"\|  +\|", "||", " | ".join(re.sub(r"  +", " ", cell.replace("|", "\\|")) for cell in cells))
 
 
 def table(descriptor):
@@ -59,13 +81,7 @@ def table(descriptor):
     rows = [row(port) for port in descriptor["ports"]]
     if not rows:
         return ["It has no ports."]
-    used = [any(r[i] for r in rows) for i in range(len(HEAD))]
-    lines = []
-    for cells in [HEAD, ["---"] * len(HEAD), *rows]:
-        kept = [cell.replace("|", "\\|") for cell, shown in zip(cells, used) if shown]
-        lines.append(("|" if cells[0] == "---" else "| ") + ("|" if cells[0] == "---" else " | ").join(kept) +
-                     ("|" if cells[0] == "---" else " |"))
-    return [re.sub(r"  +", " ", line) for line in lines]
+    return [table_line(HEAD), "|".join(["---"] * len(HEAD)), *map(table_line, rows)]
 
 
 def sections(lines):
@@ -165,9 +181,8 @@ def measured(program, name, components):
     def text(ns):
         return "less than 10 ns" if ns < 10 else f"{ns:.0f} ns" if ns < 1000 else f"{ns / 1000:.1f} us"
 
-    return (f"{text(report['typical_ns'])} (mean of the middle half), {text(report['worst_ns'])} worst of "
-            f"{report['measured_cycles']} cycles, each the shortest of three runs:\n"
-            f"`chimera test {name}`, release build, {cpu[1] if cpu else 'unknown processor'}.")
+    return (f"{text(report['typical_ns'])} typical, {text(report['worst_ns'])} worst: `chimera test {name}`, "
+            f"{cpu[1] if cpu else 'unknown processor'}.")
 
 
 def with_time(text, sentence):
@@ -189,9 +204,9 @@ For tests.
 
 ## Ports
 
-| port | kind | type | unit | range | what it is |
-|---|---|---|---|---|---|
-| `y` | out-var, safety | float64[2] | m | -1 to 1 | where |
+port | type | values | what it is
+---|---|---|---
+`y` | out-var float64[2], m, safety | -1 to 1 | where
 
 ## Refused
 
@@ -213,7 +228,7 @@ PLANTED = (
     (SHEET.replace("For tests.", ""), DESCRIPTOR, ["it does not say what the component is for"]),
     (SHEET.replace("## Source", "## Sources"), DESCRIPTOR, ["there is no section '## Source'"]),
     (SHEET.replace("Nothing.", ""), DESCRIPTOR, ["section '## Refused' is empty"]),
-    (SHEET.replace("| m |", "| mm |"), DESCRIPTOR,
+    (SHEET.replace(", m,", ", mm,"), DESCRIPTOR,
      ["the table of ports is not what the descriptor says: tools/data_sheets.py --write"]),
     (SHEET.replace("Ours.", "Meier 1999."), DESCRIPTOR | {"source": "Meier 1999, table 1"}, []),
     (SHEET, DESCRIPTOR | {"source": "Meier 1999, table 1"},
@@ -227,8 +242,8 @@ PLANTED = (
 
 def listed(index, descriptors):
     """The list of components has a row for each, and none for what is not there."""
-    wanted = [f"| [{d['name']}]({d['name']}/README.md) | {d['doc']} |" for d in descriptors]
-    rows = [line for line in index.splitlines() if line.startswith("| [")]
+    wanted = [f"[{d['name']}]({d['name']}/README.md) | {d['doc']}" for d in descriptors]
+    rows = [row for row in index.splitlines() if re.match(r"\[\w+\]\(\w+/README\.md\) \| ", row)]
     yield from (f"has no line {row}" for row in wanted if row not in rows)
     yield from (f"lists what is not there: {row}" for row in rows if row not in wanted)
 
@@ -244,11 +259,11 @@ def planted():
                                   ("t", [device | {"safe_state": True}, device], False)):
         if (list(unsafe(name, {"ports": ports})) == []) != is_right:
             yield f"hardware without a safe state is judged wrongly: {name} {ports}"
-    if list(listed("| [a](a/README.md) | A. |\n| [b](b/README.md) | B. |", [{"name": "a", "doc": "Another."}])) != [
-            "has no line | [a](a/README.md) | Another. |", "lists what is not there: | [a](a/README.md) | A. |",
-            "lists what is not there: | [b](b/README.md) | B. |"]:
+    if list(listed("[a](a/README.md) | A.\n[b](b/README.md) | B.", [{"name": "a", "doc": "Another."}])) != [
+            "has no line [a](a/README.md) | Another.", "lists what is not there: [a](a/README.md) | A.",
+            "lists what is not there: [b](b/README.md) | B."]:
         yield "a list that is not right is not found"
-    wrong = SHEET.replace("| m |", "| mm |")
+    wrong = SHEET.replace(", m,", ", mm,")
     if with_table(wrong, DESCRIPTOR) != SHEET:
         yield "a table that is not right is not put right"
     with tempfile.TemporaryDirectory() as name:

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "chimera/guard/guard.h"
-#include "chimera/platform/frozen_bytes.h"
 #include "chimera/platform/realtime.h"
+#include "chimera/platform/shared_memory.h"
 
 namespace {
 

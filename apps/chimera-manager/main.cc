@@ -14,7 +14,6 @@
 #include "chimera/manager/analyst.h"
 #include "chimera/manager/question.h"
 #include "chimera/manager/run.h"
-#include "chimera/platform/background.h"
 #include "chimera/platform/process.h"
 
 namespace {

@@ -13,13 +13,10 @@
 #include "chimera/load/descriptor.h"
 #include "chimera/load/sealed_objects.h"
 #include "chimera/manager/bundle.h"
-#include "chimera/platform/cpu_claim.h"
-#include "chimera/platform/frozen_bytes.h"
-#include "chimera/platform/limits.h"
 #include "chimera/platform/realtime.h"
-#include "chimera/platform/socket_folder.h"
+#include "chimera/platform/shared_memory.h"
 #include "chimera/platform/socket_place.h"
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/standard_streams.h"
 #include "chimera/runtime/hosted/application_image.h"
 
 namespace {

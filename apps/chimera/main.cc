@@ -13,8 +13,8 @@
 #include "apps/chimera/commands.h"
 #include "chimera/cli/command/command_result.h"
 #include "chimera/cli/files/file_refusal.h"
-#include "chimera/platform/limits.h"
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/realtime.h"
+#include "chimera/platform/standard_streams.h"
 
 namespace {
 

@@ -18,8 +18,8 @@
 #include "chimera/cli/run/own_process.h"
 #include "chimera/cli/run/run_plan.h"
 #include "chimera/platform/process.h"
-#include "chimera/platform/shared_pages.h"
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/shared_memory.h"
+#include "chimera/platform/standard_streams.h"
 
 using namespace chimera;  // NOLINT: a part of a main()
 using cli::Call;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "chimera/cli/files/file_refusal.h"
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/standard_streams.h"
 #include "chimera/text/nearest.h"
 
 using namespace chimera;  // NOLINT: a part of a main()

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the configurations of a description and the switches between them as JSON.
-#include <nlohmann/json.hpp>
 
 #include "chimera/analysis/mode_report.h"
+#include "chimera/text/json.h"
 
 namespace chimera {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json time_json(Nanoseconds time) { return time == kNever ? Json() : Json(time.count); }
 
@@ -95,7 +93,7 @@ std::string mode_json(const Configuration& configuration, const ModeReport& repo
                     {"transitions", std::move(edges)},
                     {"by_operator_only", std::move(alone)},
                     {"warnings", report.warnings}};
-  return all.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return all.dump(Json::Style::kAsMade);
 }
 
 }  // namespace chimera

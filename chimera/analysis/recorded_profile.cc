@@ -3,10 +3,10 @@
 #include "chimera/analysis/recorded_profile.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "chimera/base/hosted/ordinary_file.h"
-#include "chimera/platform/part_file.h"
+#include "chimera/platform/file.h"
+#include "chimera/text/json.h"
 #include "chimera/text/json_cursor.h"
 #include "chimera/text/json_text.h"
 
@@ -22,10 +22,10 @@ constexpr std::int64_t kLongestPeriod = 3'600'000'000'000;  // the longest perio
 constexpr std::uint64_t kMostSamples = std::uint64_t{1} << 53;
 
 std::uint64_t count_at(const JsonCursor& at, std::uint64_t most) {
-  const auto& json = at.value();
-  if (!json.is_number_unsigned() || json.get<std::uint64_t>() > most)
+  const Json& json = at.value();
+  if (!json.is_whole() || json.as_int64() < 0 || json.as_uint64() > most)
     at.refuse("expected a whole number from 0 to " + std::to_string(most));
-  return json.get<std::uint64_t>();
+  return json.as_uint64();
 }
 
 Nanoseconds time_at(const JsonCursor& at, std::string_view key) {
@@ -103,18 +103,19 @@ RecordedProfile recorded(const std::string& subsystem, std::span<const TaskProfi
 std::string to_json(const RecordedProfile& profile) {
   std::string rows;
   for (const RecordedTask& task : profile.tasks)
-    rows += (rows.empty() ? "\n    " : ",\n    ") + std::string("{\"task\": ") + json_string(task.task) +
-            ", \"samples\": " + std::to_string(task.samples) + ", \"worst_ns\": " + std::to_string(task.worst.count) +
-            ", \"mean_ns\": " + std::to_string(task.mean.count) +
-            ", \"response_ns\": " + std::to_string(task.response.count) +
-            ", \"jitter_ns\": " + std::to_string(task.jitter.count) + "}";
+    rows += (rows.empty() ? "\n    " : ",\n    ") + spaced_json({{"task", task.task},
+                                                                 {"samples", task.samples},
+                                                                 {"worst_ns", task.worst.count},
+                                                                 {"mean_ns", task.mean.count},
+                                                                 {"response_ns", task.response.count},
+                                                                 {"jitter_ns", task.jitter.count}});
   return "{\n  \"version\": 1,\n  \"subsystem\": " + json_string(profile.subsystem) + ",\n  \"tasks\": [" + rows +
          (rows.empty() ? "" : "\n  ") + "]\n}\n";
 }
 
 Result<RecordedProfile> parse_recorded_profile(std::string_view json) {
   try {
-    const nlohmann::json tree = read_json(json, kMostBytes, kNesting);
+    const Json tree = read_json(json, kMostBytes, kNesting);
     return profile_at(JsonCursor(tree, "$"));
   } catch (const JsonRefusal& refusal) {
     return bad(refusal.message, "profile");

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes a schedule report as JSON.
-#include <nlohmann/json.hpp>
 
 #include "chimera/analysis/schedule_report.h"
 #include "chimera/description/criticality.h"
 #include "chimera/schedule/utilisation.h"
+#include "chimera/text/json.h"
 
 namespace chimera {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json nanoseconds(Nanoseconds time) { return time == kNever ? Json() : Json(time.count); }
 
@@ -119,7 +117,7 @@ std::string schedule_json(const Configuration& configuration, const ScheduleRepo
                     {"fits", report.fits()},
                     {"notes", report.notes},
                     {"sets", std::move(sets)}};
-  return all.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return all.dump(Json::Style::kAsMade);
 }
 
 }  // namespace chimera

@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "chimera/analysis/transfer_cost.h"
@@ -15,6 +14,7 @@
 #include "chimera/task/profile.h"
 #include "chimera/task/server_spec.h"
 #include "chimera/task/state_machine.h"
+#include "chimera/text/json.h"
 
 namespace chimera {
 
@@ -34,10 +34,10 @@ struct TaskProfile {
 
 /// A JSON array with everything counted, one object a task, times in nanoseconds, of faults from `origin`.
 /// Context: setup.
-std::string profile_json(std::span<const TaskProfile> tasks, Nanoseconds origin);
+Json profile_json(std::span<const TaskProfile> tasks, Nanoseconds origin);
 
 /// Reads such an array; `origin` as when it was written. A mean is read as a sum that gives it again. Refuses what is
 /// no profile, naming the key. Context: setup.
-Result<std::vector<TaskProfile>> parse_profiles(std::string_view json, Nanoseconds origin);
+Result<std::vector<TaskProfile>> read_profiles(const Json& json, Nanoseconds origin);
 
 }  // namespace chimera

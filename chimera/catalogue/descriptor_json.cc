@@ -4,19 +4,17 @@
 
 #include <cmath>
 #include <iomanip>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/catalogue/descriptor_value.h"
 #include "chimera/task/signal.h"
+#include "chimera/text/json.h"
 #include "chimera/text/json_cursor.h"
 #include "chimera/text/nearest.h"
 
 namespace chimera {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::vector<std::string> words(std::uint32_t count, std::string_view (*name)(std::uint32_t)) {
   std::vector<std::string> all;
@@ -51,12 +49,12 @@ std::string hex(std::uint64_t value) {
 
 void read_plain(const JsonCursor& at, std::uint32_t type, std::span<std::byte> to) {
   PlainValue value;
-  const auto& json = at.value();
-  const bool is_wide = json.is_number_unsigned() && json.get<std::uint64_t>() > INT64_MAX;
-  if (json.is_boolean()) {
-    value = json.get<bool>();
-  } else if (json.is_number_integer() && !is_wide) {
-    value = json.get<std::int64_t>();
+  const Json& json = at.value();
+  const bool is_wide = json.is_number() && json.as_uint64() > INT64_MAX;
+  if (json.is_bool()) {
+    value = json.as_bool();
+  } else if (json.is_whole() && !is_wide) {
+    value = json.as_int64();
   } else if (type == CHIMERA_STRING) {
     value = at.text();
   } else {
@@ -256,11 +254,11 @@ Json port_json(const PortDescriptor& port) {
 
 Result<Descriptor> parse_descriptor(std::string_view text) {
   try {
-    const nlohmann::json tree = read_json(text, kMaxDescriptorBytes, kMaxDescriptorNesting);
+    const Json tree = read_json(text, kMaxDescriptorBytes, kMaxDescriptorNesting);
     return read_component(JsonCursor(tree, "$"));
   } catch (const JsonRefusal& refusal) {
     return Error{ErrorCode::kBadInput, std::string_view(refusal.message), {}};
-  } catch (const nlohmann::json::exception& error) {
+  } catch (const JsonError& error) {
     return Error{ErrorCode::kBadInput, std::string_view(error.what()), {}};
   }
 }
@@ -282,7 +280,7 @@ std::string to_json(const Descriptor& descriptor) {
   json["ports"] = Json::array();
   for (const PortDescriptor& port : descriptor.ports) json["ports"].push_back(port_json(port));
   json["fingerprint"] = hex(fingerprint(descriptor));
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(Json::Style::kLines) + "\n";
 }
 
 Result<Descriptor> read_descriptor_file(const std::string& path) {

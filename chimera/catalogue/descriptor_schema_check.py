@@ -31,7 +31,7 @@ def main():
     schema = json.loads((source / "docs/formats/descriptor.schema.json").read_text(encoding="utf-8"))
     jsonschema.Draft7Validator.check_schema(schema)
     validator = jsonschema.Draft7Validator(schema)
-    corpus = source / "chimera/catalogue/descriptor_corpus"
+    corpus = source / "chimera/catalogue/descriptor_json_corpus"
     files = [corpus / f"{name}.json" for name in LEGAL]
     if len(sys.argv) > 2:
         files += sorted(pathlib.Path(sys.argv[2]).glob("*.component.json"))

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "chimera/component_test/judge_values.h"
-#include "chimera/platform/system_call_name.h"
+#include "chimera/platform/forked_child.h"
 
 namespace chimera::component_test {
 namespace {

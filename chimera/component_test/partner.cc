@@ -5,7 +5,7 @@
 #include <csignal>
 
 #include "chimera/base/message.h"
-#include "chimera/platform/pipe.h"
+#include "chimera/platform/descriptor.h"
 
 namespace chimera::component_test {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "chimera/base/fixed.h"
-#include "chimera/platform/family_memory.h"
+#include "chimera/platform/shared_memory.h"
 #include "chimera/runtime/application_spec.h"
 #include "chimera/task/abi.h"
 #include "chimera/task/state_machine.h"

@@ -9,7 +9,7 @@
 
 #include "chimera/component_test/judge_values.h"
 #include "chimera/platform/allocation_count.h"
-#include "chimera/platform/open_resources.h"
+#include "chimera/platform/process_state.h"
 
 namespace chimera::component_test {
 namespace {

@@ -10,10 +10,9 @@
 #include "chimera/base/message.h"
 #include "chimera/catalogue/descriptor_json.h"
 #include "chimera/component_test/scenarios.h"
-#include "chimera/platform/family_memory.h"
+#include "chimera/platform/clock.h"
 #include "chimera/platform/forked_child.h"
-#include "chimera/platform/linux_clock.h"
-#include "chimera/platform/watched_child.h"
+#include "chimera/platform/shared_memory.h"
 
 namespace chimera::component_test {
 namespace {

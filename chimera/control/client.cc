@@ -6,17 +6,17 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "chimera/control/home.h"
 #include "chimera/control/listeners.h"
 #include "chimera/control/methods.h"
 #include "chimera/control/request.h"
 #include "chimera/control/running.h"
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
+#include "chimera/platform/descriptor.h"
 #include "chimera/platform/local_socket.h"
-#include "chimera/platform/readiness.h"
-#include "chimera/platform/socket_folder.h"
+#include "chimera/platform/socket_place.h"
+#include "chimera/text/json.h"
 #include "chimera/text/nearest.h"
 #include "chimera/text/time_text.h"
 
@@ -77,15 +77,16 @@ std::vector<std::string> those_here(const std::string& folder, const std::vector
   return here;
 }
 
+Json or_object(const Json* found) { return found == nullptr ? Json::object() : *found; }
+
 /// A message of the other end, whatever it is: never more than an answer or a note.
 RpcResponse answer_of(const Json& message) {
-  const auto error = message.find("error");
-  if (error == message.end()) return RpcResponse::good(message.value("result", Json::object()));
-  const auto code = error->find("code");
-  const auto words = error->find("message");
-  if (code == error->end() || !code->is_number_integer() || words == error->end() || !words->is_string())
+  const Json* error = message.find("error");
+  if (error == nullptr) return RpcResponse::good(or_object(message.find("result")));
+  const Json &code = (*error)["code"], &words = (*error)["message"];
+  if (!code.is_whole() || !words.is_string())
     return RpcResponse::error(kNoConnection, "the other end does not speak the control protocol");
-  return RpcResponse::error(code->get<int>(), words->get<std::string>(), error->value("data", Json::object()));
+  return RpcResponse::error(static_cast<int>(code.as_int64()), words.as_string(), or_object(error->find("data")));
 }
 
 }  // namespace
@@ -181,17 +182,15 @@ Client::Got Client::receive(std::string& line, Nanoseconds until) {
 
 /// Keeps a note, or takes the answer to `id` and is true; what is neither is passed over.
 bool Client::match_response(const std::string& line, std::uint64_t id, RpcResponse& answer) {
-  const Json message = Json::parse(line, nullptr, false);
+  const Json message = Json::parse_or_none(line).value_or(nullptr);
   if (!message.is_object()) return false;
-  const auto method = message.find("method");
-  if (method != message.end() && method->is_string()) {
-    auto parameters = std::make_shared<const Json>(message.value("params", Json::object()));
-    notes_.push_back({method->get<std::string>(), std::move(parameters)});
+  if (const Json& method = message["method"]; method.is_string()) {
+    notes_.push_back({method.as_string(), std::make_shared<const Json>(or_object(message.find("params")))});
     return false;
   }
-  const auto known = message.find("id");
-  const bool is_for_all = known == message.end() || known->is_null();  // the connection itself is refused
-  if (id == 0 || (is_for_all ? !message.contains("error") : *known != id)) return false;
+  const Json& known = message["id"];
+  const bool is_for_all = known.is_null();  // the connection itself is refused
+  if (id == 0 || (is_for_all ? !message.contains("error") : known != id)) return false;
   answer = answer_of(message);
   is_turned_out_ = is_for_all && (answer.code == kClosed || answer.code == kTooMany);
   return true;

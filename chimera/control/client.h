@@ -19,7 +19,7 @@
 #include "chimera/base/result.h"
 #include "chimera/base/time.h"
 #include "chimera/control/rpc_response.h"
-#include "chimera/platform/owned_descriptor.h"
+#include "chimera/platform/descriptor.h"
 
 namespace chimera::control {
 

@@ -5,12 +5,12 @@
 
 #include <atomic>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <thread>
 
-#include "chimera/control/testing/control_server_rig.h"
 #include "chimera/control/running.h"
-#include "chimera/platform/socket_folder.h"
+#include "chimera/control/testing/control_server_rig.h"
+#include "chimera/platform/socket_place.h"
+#include "chimera/text/json.h"
 
 namespace chimera::control {
 namespace {
@@ -144,7 +144,7 @@ struct HalfDeafServer {
       const OwnedDescriptor peer(::accept(listening_, nullptr, nullptr));
       std::string line;
       for (char byte = 0; byte != '\n' && ::recv(peer.fd, &byte, 1, 0) == 1;) line += byte;
-      const Json request = Json::parse(line, nullptr, false);
+      const Json request = Json::parse_or_none(line).value_or(nullptr);
       if (!request.contains("id") || ++lines_ == 1) continue;
       const std::string answer = Json{{"id", request["id"]}, {"result", Json::object()}}.dump() + "\n";
       (void)::send(peer.fd, answer.data(), answer.size(), MSG_NOSIGNAL);

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "chimera/control/allowance.h"
-#include "chimera/platform/process_id.h"
+#include "chimera/platform/process_state.h"
 
 namespace chimera::control {
 

@@ -16,8 +16,8 @@
 #include "chimera/control/pieces.h"
 #include "chimera/control/request.h"
 #include "chimera/control/rpc_response.h"
-#include "chimera/platform/owned_descriptor.h"
-#include "chimera/platform/process_id.h"
+#include "chimera/platform/descriptor.h"
+#include "chimera/platform/process_state.h"
 
 namespace chimera::control {
 

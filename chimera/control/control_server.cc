@@ -3,10 +3,10 @@
 #include "chimera/control/control_server.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "chimera/platform/local_socket.h"
+#include "chimera/text/json.h"
 #include "chimera/text/time_text.h"
 
 namespace chimera::control {

@@ -14,7 +14,7 @@
 #include "chimera/control/dispatcher.h"
 #include "chimera/control/places.h"
 #include "chimera/control/subscriptions.h"
-#include "chimera/platform/descriptor_set.h"
+#include "chimera/platform/descriptor.h"
 
 namespace chimera::control {
 

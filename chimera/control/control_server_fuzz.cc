@@ -9,12 +9,12 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
 #include "chimera/control/control_server.h"
 #include "chimera/task/state_machine.h"
+#include "chimera/text/json.h"
 
 namespace chimera::control {
 namespace {
@@ -60,11 +60,11 @@ class Model final : public ControlBackend {
 
  private:
   RpcResponse signal(const Json& parameters) {
-    const std::string word = parameters["signal"].get<std::string>();
+    const std::string word = parameters["signal"].as_string();
     for (std::uint32_t s = 0; s < CHIMERA_SIGNAL_WAKEUP; ++s) {
       if (word != signal_name(static_cast<Signal>(s))) continue;
       for (const Json& name : parameters["tasks"]) {
-        const std::string text = name.get<std::string>();
+        const std::string text = name.as_string();
         if (text.size() != 1 || text[0] < 'a' || text[0] >= static_cast<char>('a' + kTasks))
           return RpcResponse::unknown("no task", text, "a");
         State& state = states_[static_cast<std::size_t>(text[0] - 'a')];
@@ -197,12 +197,12 @@ class ManagerState {
     for (ssize_t n; (n = ::recv(peer.fd, bytes, sizeof bytes, 0)) > 0;)
       peer.got.append(bytes, static_cast<std::size_t>(n));
     for (std::size_t end; (end = peer.got.find('\n')) != std::string::npos; peer.got.erase(0, end + 1)) {
-      const Json message = Json::parse(peer.got.substr(0, end), nullptr, false);
-      require(message.is_object() && message.value("jsonrpc", "") == "2.0", "what is sent is JSON-RPC");
+      const Json message = Json::parse_or_none(peer.got.substr(0, end)).value_or(nullptr);
+      require(message.is_object() && message["jsonrpc"] == "2.0", "what is sent is JSON-RPC");
       if (message.contains("method")) continue;
       require(message.contains("result") != message.contains("error"), "a result or an error");
-      if (!message["id"].is_number_unsigned()) continue;
-      const auto found = peer.answers.find(message["id"].get<std::uint64_t>());
+      if (!message["id"].is_whole()) continue;
+      const auto found = peer.answers.find(message["id"].as_uint64());
       if (found != peer.answers.end()) require(++found->second == 1, "answered once");
     }
   }

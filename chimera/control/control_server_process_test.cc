@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "chimera/control/testing/control_server_rig.h"
+#include "chimera/text/json.h"
 
 namespace chimera::control {
 

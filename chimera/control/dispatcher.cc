@@ -3,10 +3,10 @@
 #include "chimera/control/dispatcher.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "chimera/control/turn.h"
+#include "chimera/text/json.h"
 #include "chimera/text/nearest.h"
 
 namespace chimera::control {

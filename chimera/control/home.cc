@@ -3,22 +3,12 @@
 #include "chimera/control/home.h"
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
-#include "chimera/platform/process_id.h"
+#include "chimera/platform/process_state.h"
+#include "chimera/text/json.h"
 
 namespace chimera::control {
 namespace {
-
-std::string text_of(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : "";
-}
-
-std::int64_t whole_of(const Json& object, const char* key, std::int64_t otherwise) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_number_integer() ? found->get<std::int64_t>() : otherwise;
-}
 
 bool is_working_folder(const std::filesystem::path& folder) {
   std::error_code error;
@@ -29,8 +19,8 @@ bool is_working_folder(const std::filesystem::path& folder) {
 
 Home home_of(const Json& hello) {
   if (!hello.is_object()) return {};
-  return {text_of(hello, "subsystem"), whole_of(hello, "keeper_pid", 0), whole_of(hello, "session", -1),
-          text_of(hello, "folder"), text_of(hello, "file")};
+  return {text_at(hello, "subsystem"), whole_at(hello, "keeper_pid"), whole_at(hello, "session", -1),
+          text_at(hello, "folder"), text_at(hello, "file")};
 }
 
 bool is_here(const Home& home) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/control/home.h"
+#include "chimera/text/json.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 namespace chimera::control {
 namespace {

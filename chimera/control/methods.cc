@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "chimera/task/signal.h"
+#include "chimera/text/json.h"
 #include "chimera/text/nearest.h"
 
 namespace chimera::control {
@@ -79,9 +79,10 @@ bool fits(Kind kind, const Json& value) {
   switch (kind) {
     case Kind::kText: return value.is_string();
     case Kind::kTexts: return is_texts(value);
-    case Kind::kBool: return value.is_boolean();
+    case Kind::kBool:
+      return value.is_bool();
     case Kind::kCount:
-      return value.is_number_unsigned() || (value.is_number_integer() && value.get<std::int64_t>() >= 0);
+      return value.is_whole() && value.as_int64() >= 0;
     case Kind::kObject: return value.is_object();
   }
   return false;
@@ -128,8 +129,8 @@ RpcResponse check_count(const Parameter& parameter, std::uint64_t count) {
 RpcResponse check_value(const Parameter& parameter, const Json& value) {
   if (!fits(parameter.kind, value))
     return bad(in_quotes(parameter.name) + " must be " + meaning(parameter.kind), parameter.name);
-  if (parameter.words != nullptr) return check_word(parameter, value.get<std::string>());
-  return parameter.kind == Kind::kCount ? check_count(parameter, value.get<std::uint64_t>()) : RpcResponse{};
+  if (parameter.words != nullptr) return check_word(parameter, value.as_string());
+  return parameter.kind == Kind::kCount ? check_count(parameter, value.as_uint64()) : RpcResponse{};
 }
 
 }  // namespace
@@ -153,8 +154,8 @@ RpcResponse check_parameters(const MethodRule& rule, const Json& parameters) {
                  near_of(key, names));
   for (const Parameter& parameter : rule.parameters) {
     if (parameter.name == nullptr) break;
-    const auto found = parameters.find(parameter.name);
-    if (found == parameters.end()) {
+    const Json* found = parameters.find(parameter.name);
+    if (found == nullptr) {
       if (!parameter.is_required) continue;
       return bad(in_quotes(rule.name) + " needs " + in_quotes(parameter.name), parameter.name);
     } else if (RpcResponse judged = check_value(parameter, *found); !judged.is_good()) {
@@ -165,13 +166,13 @@ RpcResponse check_parameters(const MethodRule& rule, const Json& parameters) {
 }
 
 std::vector<std::string> texts(const Json& parameters, const char* key) {
-  const auto found = parameters.find(key);
-  return found == parameters.end() ? std::vector<std::string>() : found->get<std::vector<std::string>>();
+  const Json* found = parameters.find(key);
+  return found == nullptr ? std::vector<std::string>() : found->as_strings();
 }
 
 std::uint64_t number(const Json& parameters, const char* key, std::uint64_t otherwise) {
-  const auto found = parameters.find(key);
-  return found == parameters.end() ? otherwise : found->get<std::uint64_t>();
+  const Json* found = parameters.find(key);
+  return found == nullptr ? otherwise : found->as_uint64();
 }
 
 }  // namespace chimera::control

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/control/methods.h"
+#include "chimera/text/json.h"
 
 #include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
 
 namespace chimera::control {
 namespace {

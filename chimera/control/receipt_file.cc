@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "chimera/base/hosted/ordinary_file.h"
-#include "chimera/platform/file_state.h"
-#include "chimera/platform/line_file.h"
+#include "chimera/platform/file.h"
+#include "chimera/text/json.h"
 
 namespace chimera::control {
 namespace {
@@ -27,7 +26,7 @@ std::vector<std::string> receipts_in(const std::string& text) {
   std::vector<std::string> lines;
   for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
     std::string line = text.substr(begin, end - begin);
-    if (line.starts_with("{\"number\": ") && nlohmann::json::accept(line)) lines.push_back(std::move(line));
+    if (line.starts_with("{\"number\": ") && Json::parse_or_none(line)) lines.push_back(std::move(line));
   }
   return lines;
 }

@@ -3,19 +3,15 @@
 #include "chimera/control/request.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
-#include <vector>
 
 #include "chimera/control/limits.h"
+#include "chimera/text/json.h"
 
 namespace chimera::control {
 namespace {
 
-std::string line_of(const Json& message) {
-  return message.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-}
+std::string line_of(const Json& message) { return message.dump() + "\n"; }
 
 Request refused(const Json& id, int code, std::string message, bool must_close = false) {
   Request request;
@@ -25,20 +21,7 @@ Request refused(const Json& id, int code, std::string message, bool must_close =
   return request;
 }
 
-/// Parses, and tells a key that stands twice in one object: who would know which one counts? Discarded: no JSON.
-Json parse(std::string_view line, std::optional<std::string>& twice) {
-  std::vector<std::set<std::string>> keys;
-  const auto look = [&](int, Json::parse_event_t event, Json& parsed) {
-    if (event == Json::parse_event_t::object_start) keys.emplace_back();
-    else if (event == Json::parse_event_t::object_end) keys.pop_back();
-    else if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
-      twice = parsed.get<std::string>().substr(0, 40);
-    return true;
-  };
-  return Json::parse(line, look, false);
-}
-
-bool is_id(const Json& id) { return id.is_string() || id.is_number_integer() || id.is_null(); }
+bool is_id(const Json& id) { return id.is_string() || id.is_whole() || id.is_null(); }
 
 }  // namespace
 
@@ -69,33 +52,29 @@ Request read_request(std::string_view line) {
   if (cost.depth > kMaxDepth) return refused(nullptr, kTooLarge, "nested deeper than 32 levels", true);
   if (cost.commas >= kMaxValues) return refused(nullptr, kTooLarge, "the line has more than 10,000 values", true);
   std::optional<std::string> twice;
-  const Json message = parse(line, twice);
-  if (message.is_discarded()) return refused(nullptr, kParseError, "this is no JSON");
-  if (twice) return refused(nullptr, kNoRequest, "the key '" + *twice + "' stands twice");
+  const std::optional<Json> parsed = Json::parse_or_none(line, &twice);
+  if (!parsed) return refused(nullptr, kParseError, "this is no JSON");
+  const Json& message = *parsed;
+  if (twice) return refused(nullptr, kNoRequest, "the key '" + twice->substr(0, 40) + "' stands twice");
   if (message.is_array()) return refused(nullptr, kNoRequest, "batches are not supported: send one message a line");
   if (!message.is_object()) return refused(nullptr, kNoRequest, "a request is an object");
-  const auto id = message.find("id");
-  if (id != message.end() && !is_id(*id)) return refused(nullptr, kNoRequest, "'id' must be a text or a whole number");
-  const Json known_id = id == message.end() ? Json(nullptr) : *id;
-  const auto version = message.find("jsonrpc");
-  if (version == message.end() || *version != "2.0") return refused(known_id, kNoRequest, "'jsonrpc' must be \"2.0\"");
-  const auto method = message.find("method");
-  if (method == message.end() || !method->is_string()) return refused(known_id, kNoRequest, "'method' must be a text");
+  const Json &id = message["id"], &method = message["method"];
+  if (!is_id(id)) return refused(nullptr, kNoRequest, "'id' must be a text or a whole number");
+  if (message["jsonrpc"] != "2.0") return refused(id, kNoRequest, "'jsonrpc' must be \"2.0\"");
+  if (!method.is_string()) return refused(id, kNoRequest, "'method' must be a text");
   for (const auto& [key, value] : message.items())
     if (key != "jsonrpc" && key != "id" && key != "method" && key != "params")
-      return refused(known_id, kNoRequest, "a request has 'jsonrpc', 'id', 'method' and 'params' only");
+      return refused(id, kNoRequest, "a request has 'jsonrpc', 'id', 'method' and 'params' only");
   Request request;
-  request.id = std::make_shared<const Json>(known_id);
-  request.wants_answer = id != message.end();
-  request.method = method->get<std::string>();
-  const auto parameters = message.find("params");
-  request.parameters = std::make_shared<const Json>(parameters == message.end() ? Json::object() : *parameters);
+  request.id = std::make_shared<const Json>(id);
+  request.wants_answer = message.contains("id");
+  request.method = method.as_string();
+  const Json* parameters = message.find("params");
+  request.parameters = std::make_shared<const Json>(parameters == nullptr ? Json::object() : *parameters);
   return request;
 }
 
-std::string result_begin(const Json& id) {
-  return R"({"id":)" + id.dump(-1, ' ', false, Json::error_handler_t::replace) + R"(,"jsonrpc":"2.0","result":)";
-}
+std::string result_begin(const Json& id) { return R"({"id":)" + id.dump() + R"(,"jsonrpc":"2.0","result":)"; }
 
 std::string answer_line(const Json& id, const RpcResponse& answer) {
   if (answer.is_good() && answer.text != nullptr) {

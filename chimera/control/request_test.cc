@@ -3,9 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "chimera/control/limits.h"
+#include "chimera/text/json.h"
 
 namespace chimera::control {
 namespace {

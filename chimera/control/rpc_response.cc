@@ -2,7 +2,7 @@
 // Makers of answers: one for each form that the data of an error have.
 #include "chimera/control/rpc_response.h"
 
-#include <nlohmann/json.hpp>
+#include "chimera/text/json.h"
 
 namespace chimera::control {
 
@@ -35,11 +35,7 @@ RpcResponse RpcResponse::unknown(std::string message, const std::string& where, 
   return error(kUnknown, std::move(message), data);
 }
 
-std::string RpcResponse::detail(const char* key) const {
-  if (data == nullptr || !data->is_object()) return {};
-  const auto found = data->find(key);
-  return found != data->end() && found->is_string() ? found->get<std::string>() : std::string{};
-}
+std::string RpcResponse::detail(const char* key) const { return data == nullptr ? std::string() : text_at(*data, key); }
 
 const char* role_name(Role role) noexcept {
   constexpr const char* kNames[] = {"nothing", "observe", "operate", "configure"};

@@ -4,14 +4,12 @@
 
 #include <functional>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "chimera/control/pieces.h"
+#include "chimera/text/json.h"
 
 namespace chimera::control {
-
-using Json = nlohmann::json;
 
 /// Numbers of errors, as in the document.
 enum : int {

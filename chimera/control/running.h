@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which subsystems of this user run, by their sockets (platform/socket_folder.h): docs/formats/control.md, "The
+// Which subsystems of this user run, by their sockets (platform/socket_place.h): docs/formats/control.md, "The
 // socket".
 #pragma once
 

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "chimera/platform/file_state.h"
+#include "chimera/platform/file.h"
 
 namespace chimera::control {
 

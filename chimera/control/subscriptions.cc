@@ -3,10 +3,10 @@
 #include "chimera/control/subscriptions.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "chimera/control/request.h"
 #include "chimera/control/turn.h"
+#include "chimera/text/json.h"
 
 namespace chimera::control {
 namespace {
@@ -23,15 +23,15 @@ RpcResponse Subscriptions::open(std::uint64_t connection, const Json& parameters
   const std::uint64_t number = ++last_;
   RpcResponse opened = backend_.open(number, parameters);
   if (!opened.is_good()) return opened;
-  const std::string to = parameters.at("to").get<std::string>();
+  const std::string to = parameters.at("to").as_string();
   const bool skips = to == "status" || to == "values";
-  const Nanoseconds period = skips ? milliseconds(parameters.value("period_ms", std::int64_t{100})) : kLookAtNews;
+  const Nanoseconds period = skips ? milliseconds(whole_at(parameters, "period_ms", 100)) : kLookAtNews;
   all_[number] = {connection, to, period, skips, now};
   return RpcResponse::good({{"subscription", number}});
 }
 
 RpcResponse Subscriptions::close(std::uint64_t connection, const Json& parameters) {
-  const auto number = parameters.at("subscription").get<std::uint64_t>();
+  const auto number = parameters.at("subscription").as_uint64();
   const auto found = all_.find(number);
   if (found == all_.end() || found->second.connection != connection)
     return RpcResponse::unknown("no subscription " + std::to_string(number), "subscription", "");

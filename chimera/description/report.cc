@@ -77,21 +77,24 @@ std::string Report::text() const {
 }
 
 std::string Report::json() const {
-  std::string out = "{\"file\": " + json_string(file_) + ", \"legal\": " + (is_legal() ? "true" : "false") +
-                    ", \"errors\": " + std::to_string(errors_) + ", \"warnings\": " + std::to_string(warnings_) +
-                    ", \"faults\": [";
-  for (std::size_t i = 0; i < faults_.size(); ++i) {
-    const Fault& fault = faults_[i];
-    out += std::string(i == 0 ? "" : ", ") + "{\"rule\": " + json_string(fault.rule) +
-           ", \"severity\": " + json_string(word(fault.severity)) + ", \"file\": " + json_string(file_) +
-           ", \"line\": " + std::to_string(fault.at.line) + ", \"column\": " + std::to_string(fault.at.column) +
-           ", \"found\": " + json_string(fault.found) + ", \"expected\": " + json_string(fault.expected) +
-           ", \"nearest\": " + json_string(fault.nearest) + ", \"message\": " + json_string(fault.message) +
-           ", \"remedy\": " + json_string(remedy(fault)) + '}';
-  }
-  out += "], \"notes\": [";
-  for (std::size_t i = 0; i < notes_.size(); ++i) out += (i == 0 ? "" : ", ") + json_string(notes_[i]);
-  return out + "]}";
+  Json faults = Json::array();
+  for (const Fault& fault : faults_)
+    faults.push_back({{"rule", fault.rule},
+                      {"severity", word(fault.severity)},
+                      {"file", file_},
+                      {"line", fault.at.line},
+                      {"column", fault.at.column},
+                      {"found", fault.found},
+                      {"expected", fault.expected},
+                      {"nearest", fault.nearest},
+                      {"message", fault.message},
+                      {"remedy", remedy(fault)}});
+  return spaced_json({{"file", file_},
+                      {"legal", is_legal()},
+                      {"errors", errors_},
+                      {"warnings", warnings_},
+                      {"faults", std::move(faults)},
+                      {"notes", notes_}});
 }
 
 }  // namespace chimera

@@ -6,8 +6,8 @@
 #include <array>
 #include <csignal>
 
+#include "chimera/platform/descriptor.h"
 #include "chimera/platform/process.h"
-#include "chimera/platform/readiness.h"
 #include "chimera/runtime/hosted/pages.h"
 
 namespace chimera {

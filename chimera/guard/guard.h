@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The process that writes the safe frames of real-time units that are dead: docs/decisions/0060-drill-and-guard.md and
+// The process that writes the safe frames of real-time units that are dead: docs/design/guard.md and
 // docs/formats/processes.md, "The guard". It runs no code of a component and outlives the keeper.
 #pragma once
 
@@ -10,13 +10,13 @@
 
 #include "chimera/base/result.h"
 #include "chimera/guard/safe_writes.h"
-#include "chimera/runtime/silence.h"
-#include "chimera/platform/channel.h"
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
+#include "chimera/platform/local_socket.h"
 #include "chimera/rtpu/guard_message.h"
 #include "chimera/runtime/hosted/application_image.h"
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/hosted/peer_segment.h"
+#include "chimera/runtime/silence.h"
 
 namespace chimera {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "chimera/platform/device_write.h"
+#include "chimera/platform/descriptor.h"
 
 namespace chimera {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "chimera/base/time.h"
-#include "chimera/platform/owned_descriptor.h"
+#include "chimera/platform/descriptor.h"
 #include "chimera/runtime/hosted/rtpu_block.h"
 
 namespace chimera {

@@ -6,7 +6,7 @@
 #include <csignal>
 #include <cstdio>
 
-#include "chimera/platform/readiness.h"
+#include "chimera/platform/descriptor.h"
 
 namespace chimera {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <new>
 
-#include "chimera/platform/doorbell.h"
+#include "chimera/platform/wake.h"
 
 namespace chimera {
 

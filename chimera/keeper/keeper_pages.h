@@ -4,8 +4,7 @@
 #pragma once
 
 #include "chimera/base/result.h"
-#include "chimera/platform/memory_region.h"
-#include "chimera/platform/shared_pages.h"
+#include "chimera/platform/shared_memory.h"
 #include "chimera/runtime/hosted/face_page.h"
 #include "chimera/runtime/hosted/pages.h"
 

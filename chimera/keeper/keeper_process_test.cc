@@ -11,7 +11,7 @@
 #include <sstream>
 
 #include "chimera/keeper/testing/child_folder.h"
-#include "chimera/platform/frozen_bytes.h"
+#include "chimera/platform/shared_memory.h"
 
 namespace chimera {
 namespace {

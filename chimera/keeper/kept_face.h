@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 #include "chimera/platform/process.h"
-#include "chimera/platform/shared_pages.h"
+#include "chimera/platform/shared_memory.h"
 #include "chimera/runtime/hosted/face_page.h"
 
 namespace chimera {

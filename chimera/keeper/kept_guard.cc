@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <csignal>
 
-#include "chimera/platform/owned_descriptor.h"
-#include "chimera/platform/process_id.h"
+#include "chimera/platform/descriptor.h"
+#include "chimera/platform/process_state.h"
 
 namespace chimera {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chimera/base/result.h"
-#include "chimera/platform/channel.h"
+#include "chimera/platform/local_socket.h"
 #include "chimera/platform/process.h"
 #include "chimera/rtpu/guard_message.h"
 #include "chimera/rtpu/keeper_message.h"

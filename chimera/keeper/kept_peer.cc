@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <vector>
 
-#include "chimera/platform/origin.h"
-#include "chimera/platform/process_id.h"
+#include "chimera/platform/orphans.h"
+#include "chimera/platform/process_state.h"
 #include "chimera/rtpu/guard_message.h"
 
 namespace chimera {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "chimera/base/result.h"
-#include "chimera/platform/channel.h"
-#include "chimera/platform/owned_descriptor.h"
+#include "chimera/platform/descriptor.h"
+#include "chimera/platform/local_socket.h"
 #include "chimera/platform/process.h"
 #include "chimera/rtpu/keeper_message.h"
 

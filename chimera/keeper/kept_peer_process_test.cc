@@ -10,8 +10,8 @@
 
 #include "chimera/keeper/keeper_pages.h"
 #include "chimera/keeper/testing/child_folder.h"
-#include "chimera/platform/frozen_bytes.h"
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
+#include "chimera/platform/shared_memory.h"
 
 namespace chimera {
 namespace {

@@ -11,7 +11,7 @@
 #include "chimera/keeper/keeper_pages.h"
 #include "chimera/keeper/kept_guard.h"
 #include "chimera/keeper/kept_peer.h"
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 #include "chimera/platform/orphans.h"
 
 namespace chimera {

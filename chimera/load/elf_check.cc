@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/platform/file_bytes.h"
+#include "chimera/platform/file.h"
 #include "chimera/task/abi.h"
 
 namespace chimera {

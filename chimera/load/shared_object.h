@@ -14,7 +14,7 @@
 
 #include "chimera/base/result.h"
 #include "chimera/load/descriptor.h"
-#include "chimera/platform/owned_descriptor.h"
+#include "chimera/platform/descriptor.h"
 #include "chimera/task/abi.h"
 
 namespace chimera {

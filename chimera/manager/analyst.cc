@@ -6,10 +6,9 @@
 
 #include "chimera/manager/bundle.h"
 #include "chimera/manager/question.h"
-#include "chimera/platform/channel.h"
-#include "chimera/platform/frozen_bytes.h"
-#include "chimera/platform/owned_descriptor.h"
-#include "chimera/platform/readiness.h"
+#include "chimera/platform/descriptor.h"
+#include "chimera/platform/local_socket.h"
+#include "chimera/platform/shared_memory.h"
 
 namespace chimera::manager {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "chimera/control/rpc_response.h"
-#include "chimera/platform/user_name.h"
+#include "chimera/platform/process_state.h"
 
 namespace chimera::manager {
 

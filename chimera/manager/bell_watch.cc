@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <system_error>
 
-#include "chimera/platform/owned_descriptor.h"
+#include "chimera/platform/descriptor.h"
 
 namespace chimera::manager {
 

@@ -7,8 +7,7 @@
 #include <thread>
 
 #include "chimera/base/result.h"
-#include "chimera/platform/doorbell.h"
-#include "chimera/platform/wake_event.h"
+#include "chimera/platform/wake.h"
 
 namespace chimera::manager {
 

@@ -2,34 +2,27 @@
 // Packs a description, its descriptors and its settings into one JSON text, and unpacks it.
 #include "chimera/manager/bundle.h"
 
-#include <nlohmann/json.hpp>
-
 #include "chimera/catalogue/descriptor_json.h"
+#include "chimera/load/utf8.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr int kVersion = 1;
 
 /// Texts are bytes to the bundle: what is no UTF-8 goes as one code point a byte.
 Json text_json(const std::string& text) {
-  Json plain = text;
-  try {
-    (void)plain.dump();
-    return plain;
-  } catch (const Json::exception&) {
-    Json bytes = Json::array();
-    for (const char c : text) bytes.push_back(static_cast<unsigned char>(c));
-    return bytes;
-  }
+  if (is_utf8(text)) return text;
+  Json bytes = Json::array();
+  for (const char c : text) bytes.push_back(static_cast<unsigned char>(c));
+  return bytes;
 }
 
 std::string text_of(const Json& json) {
-  if (json.is_string()) return json.get<std::string>();
+  if (json.is_string()) return json.as_string();
   std::string text;
-  for (const Json& byte : json) text += static_cast<char>(byte.get<unsigned char>());
+  for (const Json& byte : json) text += static_cast<char>(byte.as_uint64());
   return text;
 }
 
@@ -38,8 +31,8 @@ void put_group(Json& groups, const char* role, const std::optional<std::uint32_t
 }
 
 std::optional<std::uint32_t> group_of(const Json& groups, const char* role) {
-  const auto found = groups.find(role);
-  return found == groups.end() ? std::nullopt : std::optional(found->get<std::uint32_t>());
+  const Json* found = groups.find(role);
+  return found == nullptr ? std::nullopt : std::optional(static_cast<std::uint32_t>(found->as_uint64()));
 }
 
 Error refused(std::string_view why, std::string_view where = "bundle") { return {ErrorCode::kBadInput, why, where}; }

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "chimera/platform/lost_descriptor.h"
+#include "chimera/platform/descriptor.h"
 #include "chimera/platform/process.h"
 #include "chimera/runtime/task_word.h"
 #include "chimera/task/signal.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A drill: the illegal-configuration flag goes up while the machine runs, and each hardware task that is ON has to say
 // by its `safe_state` output that its device is in the state that the flag asks for.
-// docs/decisions/0060-drill-and-guard.md.
+// docs/design/guard.md.
 #pragma once
 
 #include <functional>

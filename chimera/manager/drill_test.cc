@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
-#include <nlohmann/json.hpp>
 
 #include "chimera/manager/status_json.h"
 #include "chimera/manager/testing/fake_subsystem.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {

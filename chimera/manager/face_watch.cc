@@ -2,17 +2,15 @@
 // Tells of deaths and lost output of the client of a run.
 #include "chimera/manager/face_watch.h"
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "chimera/manager/manager_state.h"
 #include "chimera/platform/process.h"
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/standard_streams.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {
-
-using Json = nlohmann::json;
 
 std::string last_end(const ManagerState& world) {
   return "ended by " + std::string(signal_text(world.keeper.face_signal.load(std::memory_order_relaxed)).view());

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 
 #include "chimera/base/time.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 
@@ -23,6 +23,6 @@ class FaceWatch {
 };
 
 /// {"deaths", "last_end", "lost_output"}: docs/formats/control.md.
-nlohmann::json face_json(const ManagerState& world);
+Json face_json(const ManagerState& world);
 
 }  // namespace chimera::manager

@@ -2,15 +2,12 @@
 // Writes readings a thousand numbers at a time.
 #include "chimera/manager/large_readings.h"
 
-#include <nlohmann/json.hpp>
-
 #include "chimera/manager/value_json.h"
+#include "chimera/text/json.h"
 #include "chimera/text/json_text.h"
 
 namespace chimera::manager {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr std::size_t kValuesOfPiece = 1000;
 
@@ -41,8 +38,7 @@ void LargeReadings::begin_reading(std::string& text) {
   reading_ = world_.readings->read(variable);
   text += (next_ == 0 ? "" : ",") + json_string(world_.readings->configured(variable).name) + ":";
   ++next_;
-  std::string head = reading_head_json(world_, variable, reading_, now()).dump(-1, ' ', false,
-                                                                              Json::error_handler_t::replace);
+  std::string head = reading_head_json(world_, variable, reading_, now()).dump();
   if (reading_.is_valid) {
     head.pop_back();  // goes on with "text" and "value"
     text += head + R"(,"text":")";

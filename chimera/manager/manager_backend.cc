@@ -3,7 +3,6 @@
 #include "chimera/manager/manager_backend.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "chimera/control/switch_reason.h"
 #include "chimera/manager/cause.h"
@@ -11,13 +10,13 @@
 #include "chimera/manager/operator_acts.h"
 #include "chimera/manager/status_json.h"
 #include "chimera/runtime/hosted/asked_set.h"
+#include "chimera/text/json.h"
 #include "chimera/text/json_text.h"
 #include "chimera/text/nearest.h"
 
 namespace chimera::manager {
 namespace {
 
-using control::Json;
 using control::MethodId;
 using control::RpcResponse;
 using subsystem::RefusalKind;
@@ -64,7 +63,7 @@ std::variant<TaskBits, RpcResponse> wanted_tasks(const ManagerState& world, cons
   if (is_named == is_listed)
     return RpcResponse::error(control::kBadParameters, "either 'configuration', or 'on' and 'off'",
                               {{"where", is_named ? "configuration" : "on"}});
-  if (is_named) return named_set(world.spec(), parameters.at("configuration"));
+  if (is_named) return named_set(world.spec(), parameters.at("configuration").as_string());
   TaskLists lists;
   for (const char* const key : {"on", "off"}) {
     if (!parameters.contains(key)) continue;
@@ -86,7 +85,7 @@ RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAns
       tasks.push_back({{"task", world.name(outcome.task)},
                        {"before", state_name(outcome.before)},
                        {"after", state_name(outcome.after)}});
-      if (outcome.is_already) tasks.back()["already"] = true;
+      if (outcome.is_already) tasks.elements().back()["already"] = true;
     }
     return RpcResponse::good({{"tasks", std::move(tasks)}});
   }
@@ -200,14 +199,14 @@ void ManagerBackend::unknown(const Request& request) {
 }
 
 void ManagerBackend::analyse(Question::Kind kind, const Request& request) {
-  Question question{kind, request.parameters.value("file", std::string("text")), request.parameters.at("text")};
+  Question question{kind, text_at(request.parameters, "file", "text"), request.parameters.at("text").as_string()};
   if (questions_ != nullptr)
     return questions_->ask(std::move(question), request.caller.connection, request.reply, now());
   request.reply(RpcResponse::ready(std::make_shared<const std::string>(answer_of(question, world().bundle.library))));
 }
 
 void ManagerBackend::signal(const Request& request) {
-  const std::string name = request.parameters.at("signal");
+  const std::string& name = request.parameters.at("signal").as_string();
   const auto at = std::ranges::find(kSignals, name);
   if (at == std::end(kSignals)) {
     const std::string near = nearest(name, std::vector<std::string>(std::begin(kSignals), std::end(kSignals)));
@@ -251,7 +250,9 @@ void ManagerBackend::set(const Request& request) {
   request.reply(set_values(world(), request.parameters.at("values")));
 }
 
-void ManagerBackend::flag(const Request& request) { request.reply(set_flag(world(), request.parameters.at("up"))); }
+void ManagerBackend::flag(const Request& request) {
+  request.reply(set_flag(world(), request.parameters.at("up").as_bool()));
+}
 
 void ManagerBackend::receipts(const Request& request) {
   request.reply(receipts_answer(driver_.receipts(), control::number(request.parameters, "last", 20)));
@@ -316,7 +317,7 @@ void ManagerBackend::drill(const Request& request) {
   const Nanoseconds wait = milliseconds(static_cast<std::int64_t>(wait_ms));
   RtpuId to_kill;
   if (request.parameters.contains("kill")) {
-    const std::string name = request.parameters.at("kill");
+    const std::string& name = request.parameters.at("kill").as_string();
     std::vector<std::string> names;
     for (const RtpuSpec& rtpu : world().spec().rtpus) names.emplace_back(rtpu.name);
     const auto at = std::ranges::find(names, name);

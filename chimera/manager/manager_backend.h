@@ -5,7 +5,6 @@
 #pragma once
 
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -15,6 +14,7 @@
 #include "chimera/manager/questions.h"
 #include "chimera/manager/read_methods.h"
 #include "chimera/manager/subscription_feeds.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 
@@ -25,9 +25,9 @@ control::RpcResponse signal_answer(const ManagerState& world, const subsystem::C
 control::RpcResponse switch_answer(const ManagerState& world, const SwitchOutcome& outcome);
 
 /// What a drill found out, by task. Context: setup.
-control::Json drill_json(const ManagerState& world, const DrillOutcome& outcome);
+Json drill_json(const ManagerState& world, const DrillOutcome& outcome);
 /// What a switch would do now, or why it would be refused. Context: setup.
-control::Json plan_json(const ManagerState& world, const ForeseenSwitch& foreseen);
+Json plan_json(const ManagerState& world, const ForeseenSwitch& foreseen);
 
 /// The last `n` receipts, and what is known of their file. Context: setup.
 control::RpcResponse receipts_answer(const ReceiptArchive& archive, std::size_t n);
@@ -39,24 +39,24 @@ class ManagerBackend final : public control::ControlBackend {
   explicit ManagerBackend(ManagerLoop& driver, Questions* questions = nullptr)
       : driver_(driver), questions_(questions), reads_(driver.world()), feeds_(driver.world()) {}
 
-  void call(const control::MethodRule& method, const control::Json& parameters, const control::Caller& caller,
+  void call(const control::MethodRule& method, const Json& parameters, const control::Caller& caller,
             control::Reply reply) override;
   void forget(std::uint64_t connection) override {
     if (questions_ != nullptr) questions_->forget(connection);
   }
-  control::RpcResponse open(std::uint64_t subscription, const control::Json& parameters) override {
+  control::RpcResponse open(std::uint64_t subscription, const Json& parameters) override {
     return feeds_.open(subscription, parameters);
   }
   void close(std::uint64_t subscription) override { feeds_.close(subscription); }
   std::shared_ptr<control::Pieces> pull_pieces(std::uint64_t subscription) override {
     return feeds_.pull_pieces(subscription);
   }
-  std::shared_ptr<const control::Json> pull(std::uint64_t subscription) override { return feeds_.pull(subscription); }
+  std::shared_ptr<const Json> pull(std::uint64_t subscription) override { return feeds_.pull(subscription); }
 
  private:
   /// One call: its parameters have been checked by the row of its method.
   struct Request {
-    const control::Json& parameters;
+    const Json& parameters;
     const control::Caller& caller;
     const control::Reply& reply;
   };

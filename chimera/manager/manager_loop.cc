@@ -7,9 +7,8 @@
 
 #include "chimera/control/state_folder.h"
 #include "chimera/manager/guard_news.h"
-#include "chimera/platform/doorbell.h"
-#include "chimera/platform/owned_descriptor.h"
-#include "chimera/platform/readiness.h"
+#include "chimera/platform/descriptor.h"
+#include "chimera/platform/wake.h"
 
 namespace chimera::manager {
 namespace {

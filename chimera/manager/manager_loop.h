@@ -17,9 +17,8 @@
 #include "chimera/manager/takeover_receipts.h"
 #include "chimera/manager/unit_health.h"
 #include "chimera/manager/unit_watch.h"
-#include "chimera/platform/channel.h"
-#include "chimera/platform/frozen_bytes.h"
-#include "chimera/platform/shared_pages.h"
+#include "chimera/platform/local_socket.h"
+#include "chimera/platform/shared_memory.h"
 #include "chimera/runtime/hosted/application_image.h"
 
 namespace chimera::manager {

@@ -3,12 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "chimera/manager/status_json.h"
 #include "chimera/manager/testing/fake_subsystem.h"
 #include "chimera/manager/value_json.h"
 #include "chimera/runtime/task_word.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {

@@ -4,17 +4,15 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "chimera/base/testing/tree_path.h"
 #include "chimera/control/client.h"
 #include "chimera/manager/testing/fake_subsystem.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {
-
-using control::Json;
 
 const char* program() {
   static const std::string kProgram = build_path("bin/chimera-manager");
@@ -110,7 +108,7 @@ TEST(ManagerProcess, KilledAtAnyMomentItForgetsNothing) {
     ::usleep(std::uniform_int_distribution<useconds_t>(0, 60'000)(random));
     kept.kill_next();
     EXPECT_EQ(ask(kept.path(), "get", {{"variables", {"kp"}}})["values"]["kp"]["value"], Json::array({round, -round}));
-    const std::uint64_t last = ask(kept.path(), "events")["last"];
+    const std::uint64_t last = ask(kept.path(), "events")["last"].as_uint64();
     EXPECT_GT(last, last_event);
     last_event = last;
   }

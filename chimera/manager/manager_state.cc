@@ -5,7 +5,7 @@
 #include <ctime>
 
 #include "chimera/manager/credible.h"
-#include "chimera/platform/doorbell.h"
+#include "chimera/platform/wake.h"
 
 namespace chimera::manager {
 namespace {

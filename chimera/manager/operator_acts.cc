@@ -2,17 +2,15 @@
 // Finds what names mean, judges acts that are no signals, and carries them out on the operator's part of the table.
 #include "chimera/manager/operator_acts.h"
 
-#include <nlohmann/json.hpp>
-
 #include "chimera/manager/operator_values.h"
 #include "chimera/manager/status_json.h"
 #include "chimera/manager/value_json.h"
+#include "chimera/text/json.h"
 #include "chimera/text/nearest.h"
 
 namespace chimera::manager {
 namespace {
 
-using control::Json;
 using control::RpcResponse;
 
 RpcResponse unknown(const char* what, const std::string& name, const std::vector<std::string>& names) {
@@ -107,7 +105,7 @@ RpcResponse set_values(ManagerState& world, const Json& values) {
   for (const auto& [index, value] : *bytes) world.own.publish_operator(index, value, at);
   Json answer = {{"values", readings_json(world, variables, at)}};
   for (const auto& [name, reading] : answer["values"].items())
-    world.tell("set", TaskId{}, RtpuId{}, name + " = " + reading["text"].get<std::string>(), at);
+    world.tell("set", TaskId{}, RtpuId{}, name + " = " + reading["text"].as_string(), at);
   return RpcResponse::good(answer);
 }
 

@@ -3,13 +3,13 @@
 // the words of a description.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "chimera/control/rpc_response.h"
 #include "chimera/manager/manager_state.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 
@@ -23,7 +23,7 @@ std::variant<std::vector<TaskId>, control::RpcResponse> tasks_named(const Manage
 /// Why nobody would answer a ring of the task's doorbell; good when it is behind a server and ON.
 control::RpcResponse judge_ring(const ManagerState& world, TaskId task);
 /// {name: value}: sets operator variables, all or none. The answer has their readings.
-control::RpcResponse set_values(ManagerState& world, const nlohmann::json& values);
+control::RpcResponse set_values(ManagerState& world, const Json& values);
 /// Raises or lowers the operator's part of the flag.
 control::RpcResponse set_flag(ManagerState& world, bool up);
 /// Present values of the operator variables in the words of a description.

@@ -4,17 +4,15 @@
 
 #include <algorithm>
 #include <functional>
-#include <nlohmann/json.hpp>
 
 #include "chimera/catalogue/descriptor_value.h"
+#include "chimera/text/json.h"
 #include "chimera/text/json_text.h"
 #include "chimera/verify/setting.h"
 #include "chimera/verify/verify.h"
 
 namespace chimera::manager {
 namespace {
-
-using Json = nlohmann::json;
 
 Node scalar(std::string text, bool quoted = false) {
   Node node;
@@ -54,8 +52,8 @@ Node node_of(const Json& json, const ValueForm& form, const std::string& unit, s
   if (json.is_array()) return list_node(json, form, unit, type);
   if (json.is_object()) return map_node(json, form);
   if (json.is_number()) return scalar(with_unit(json.dump(), unit));
-  if (json.is_string() && type == CHIMERA_STRING) return scalar(json.get<std::string>(), true);
-  if (json.is_string()) return written_value(json.get<std::string>());
+  if (json.is_string() && type == CHIMERA_STRING) return scalar(json.as_string(), true);
+  if (json.is_string()) return written_value(json.as_string());
   return scalar(json.dump());
 }
 
@@ -66,7 +64,7 @@ Json with_rows(const Json& json, const GivenSpec& given, const ValueForm& form) 
   Json rows = Json::array();
   for (std::size_t i = 0; i < json.size(); ++i) {
     if (i % columns == 0) rows.push_back(Json::array());
-    rows.back().push_back(json[i]);
+    rows.elements().back().push_back(json[i]);
   }
   return rows;
 }
@@ -148,7 +146,7 @@ Result<OperatorBytes> operator_bytes(const Configuration& configuration, const L
   }
   const Verdict verdict = chimera::verify(draft, library);
   if (!verdict.configuration)
-    return refused(words(verdict.report), values.size() == 1 ? values.begin().key() : std::string());
+    return refused(words(verdict.report), values.size() == 1 ? (*values.items().begin()).first : std::string());
   OperatorBytes bytes;
   for (const auto& [name, value] : values.items()) {
     const std::size_t index = operator_named(verdict.configuration->spec(), name);

@@ -4,12 +4,12 @@
 #pragma once
 
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "chimera/base/result.h"
 #include "chimera/catalogue/library.h"
+#include "chimera/text/json.h"
 #include "chimera/text/value_text.h"
 #include "chimera/verify/configuration.h"
 
@@ -22,8 +22,7 @@ using OperatorBytes = std::map<std::size_t, std::vector<std::byte>>;
 /// texts carry theirs ("100 N.m/rad", "[1, 2]", "[1 2] rad"). Refuses, all or none, with the words of the
 /// description's rules; Error::where is the variable. Requires: every name is an operator variable; `forms` has its
 /// present form. Context: setup; as long as a verification: 4 ms for a chain of 256 tasks, the most that a file has.
-Result<OperatorBytes> operator_bytes(const Configuration& configuration, const Library& library,
-                                     const nlohmann::json& values,
+Result<OperatorBytes> operator_bytes(const Configuration& configuration, const Library& library, const Json& values,
                                      const std::map<std::string, ValueForm>& forms);
 
 /// A value as a description says it: "true", "[100 N.m/rad, 90 N.m/rad]", "{x: 1 m, y: 2 m}". `columns`: elements of a

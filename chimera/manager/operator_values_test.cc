@@ -4,14 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "chimera/manager/testing/test_bundle.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {
-
-using Json = nlohmann::json;
 
 PortDescriptor in_var(const std::string& name, const std::string& unit, const std::string& shape,
                       std::uint32_t type = CHIMERA_FLOAT64, std::uint32_t size = 8) {

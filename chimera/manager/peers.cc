@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "chimera/platform/owned_descriptor.h"
+#include "chimera/platform/descriptor.h"
 
 namespace chimera::manager {
 

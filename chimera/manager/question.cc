@@ -2,20 +2,15 @@
 // Answers a question about a description: is it legal, and does it keep its deadlines.
 #include "chimera/manager/question.h"
 
-#include <nlohmann/json.hpp>
-
 #include "chimera/analysis/schedule_report.h"
+#include "chimera/text/json.h"
 #include "chimera/verify/verify.h"
 
 namespace chimera::manager {
 namespace {
 
-using Json = nlohmann::json;
-
 /// With its keys in the order of all other answers.
-std::string one_line(const std::string& json) {
-  return Json::parse(json).dump(-1, ' ', false, Json::error_handler_t::replace);
-}
+std::string one_line(const std::string& json) { return Json::parse(json).dump(); }
 
 }  // namespace
 

@@ -7,11 +7,11 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
-#include "chimera/platform/frozen_bytes.h"
-#include "chimera/platform/owned_descriptor.h"
-#include "chimera/platform/process_id.h"
+#include "chimera/platform/descriptor.h"
+#include "chimera/platform/process_state.h"
+#include "chimera/platform/shared_memory.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {

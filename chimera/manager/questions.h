@@ -10,7 +10,7 @@
 #include "chimera/base/time.h"
 #include "chimera/control/rpc_response.h"
 #include "chimera/manager/question.h"
-#include "chimera/platform/channel.h"
+#include "chimera/platform/local_socket.h"
 #include "chimera/platform/process.h"
 
 namespace chimera::manager {

@@ -6,15 +6,14 @@
 #include <sys/wait.h>
 
 #include <csignal>
-#include <nlohmann/json.hpp>
 
 #include "chimera/base/testing/tree_path.h"
 #include "chimera/manager/testing/fake_subsystem.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {
 
-using control::Json;
 using control::RpcResponse;
 
 struct QuestionsTest : ::testing::Test {

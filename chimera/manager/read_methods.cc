@@ -4,18 +4,17 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
-#include "chimera/manager/subscription_feeds.h"
 #include "chimera/manager/large_readings.h"
 #include "chimera/manager/operator_acts.h"
 #include "chimera/manager/status_json.h"
+#include "chimera/manager/subscription_feeds.h"
 #include "chimera/manager/value_json.h"
-#include "chimera/platform/process_id.h"
+#include "chimera/platform/process_state.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 
-using control::Json;
 using control::MethodId;
 using control::RpcResponse;
 
@@ -53,8 +52,7 @@ std::optional<RpcResponse> ReadMethods::answer(MethodId method, const Json& para
 
 /// What the bundle says does not change as long as the manager lives.
 RpcResponse ReadMethods::made_once(std::shared_ptr<const std::string>& text, Json (*make)(const ManagerState&)) const {
-  if (text == nullptr)
-    text = std::make_shared<const std::string>(make(world_).dump(-1, ' ', false, Json::error_handler_t::replace));
+  if (text == nullptr) text = std::make_shared<const std::string>(make(world_).dump());
   return RpcResponse::ready(text);
 }
 
@@ -86,7 +84,7 @@ RpcResponse ReadMethods::events(const Json& parameters) const {
 }
 
 RpcResponse ReadMethods::why(const Json& parameters) const {
-  const auto variables = variables_named(world_, {parameters.at("variable").get<std::string>()});
+  const auto variables = variables_named(world_, {parameters.at("variable").as_string()});
   if (const auto* refused = std::get_if<RpcResponse>(&variables)) return *refused;
   return RpcResponse::good(why_json(world_, std::get<0>(variables)[0], now()));
 }

@@ -3,12 +3,12 @@
 #pragma once
 
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
 #include "chimera/control/control_backend.h"
 #include "chimera/manager/manager_state.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 
@@ -20,16 +20,14 @@ class ReadMethods {
 
   /// The answer to a call whose parameters have been checked by the row of its method; none when the method is not one
   /// of these.
-  std::optional<control::RpcResponse> answer(control::MethodId method, const control::Json& parameters,
-                                             control::Role role);
+  std::optional<control::RpcResponse> answer(control::MethodId method, const Json& parameters, control::Role role);
 
  private:
   control::RpcResponse hello(control::Role role) const;
-  control::RpcResponse get(const control::Json& parameters) const;
-  control::RpcResponse events(const control::Json& parameters) const;
-  control::RpcResponse why(const control::Json& parameters) const;
-  control::RpcResponse made_once(std::shared_ptr<const std::string>& text,
-                                 control::Json (*make)(const ManagerState&)) const;
+  control::RpcResponse get(const Json& parameters) const;
+  control::RpcResponse events(const Json& parameters) const;
+  control::RpcResponse why(const Json& parameters) const;
+  control::RpcResponse made_once(std::shared_ptr<const std::string>& text, Json (*make)(const ManagerState&)) const;
 
   const ManagerState& world_;
   std::shared_ptr<const std::string> library_, description_;  // answers that never change, made at the first request

@@ -3,14 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "chimera/manager/testing/lone_state.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {
 
-using control::Json;
 using control::MethodId;
 using control::RpcResponse;
 
@@ -58,7 +56,7 @@ TEST_F(ReadMethodsTest, EventsBeginWhereTheyAreAskedForAndEndAtTheLimit) {
   const auto texts = [&](const Json& parameters) {
     std::string all;
     const Json result = *ask(MethodId::kEvents, parameters)->result;
-    for (const Json& event : result["events"]) all += event["text"].get<std::string>() + " ";
+    for (const Json& event : result["events"]) all += event["text"].as_string() + " ";
     return all;
   };
   EXPECT_EQ(texts(Json::object()), "one two three ");

@@ -9,7 +9,7 @@
 
 #include "chimera/control/receipt_file.h"
 #include "chimera/manager/testing/lone_state.h"
-#include "chimera/platform/line_file.h"
+#include "chimera/platform/file.h"
 
 namespace chimera::manager {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "chimera/base/assert.h"
 #include "chimera/control/receipt_file.h"
-#include "chimera/platform/ordinary_thread.h"
-#include "chimera/platform/readiness.h"
-#include "chimera/platform/wake_event.h"
+#include "chimera/platform/descriptor.h"
+#include "chimera/platform/thread.h"
+#include "chimera/platform/wake.h"
 
 namespace chimera::manager {
 

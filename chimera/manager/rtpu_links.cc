@@ -10,7 +10,7 @@
 #include "chimera/manager/status_json.h"
 #include "chimera/manager/switch_coordinator.h"
 #include "chimera/manager/unfinished.h"
-#include "chimera/platform/doorbell.h"
+#include "chimera/platform/wake.h"
 #include "chimera/runtime/hosted/making_text.h"
 #include "chimera/runtime/making.h"
 #include "chimera/text/not_off.h"

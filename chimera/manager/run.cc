@@ -8,7 +8,7 @@
 #include "chimera/control/control_server.h"
 #include "chimera/manager/manager_backend.h"
 #include "chimera/manager/questions.h"
-#include "chimera/platform/process_id.h"
+#include "chimera/platform/process_state.h"
 
 namespace chimera::manager {
 

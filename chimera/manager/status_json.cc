@@ -3,18 +3,16 @@
 #include "chimera/manager/status_json.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "chimera/analysis/schedule_report.h"
 #include "chimera/analysis/task_profile.h"
 #include "chimera/manager/cause.h"
 #include "chimera/manager/face_watch.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {
-
-using Json = nlohmann::json;
 
 const char* policy_text(Policy policy) {
   constexpr const char* kNames[] = {"rm", "edf", "llf", "muf", "muf-laxity"};
@@ -296,7 +294,7 @@ Json profile_json(const ManagerState& world, Nanoseconds at) {
                      world.configuration ? transfer_of(*world.configuration, t) : TransferCost{},
                      on_time(world, TaskId(t), profile, at), spec.server});
   }
-  return {{"tasks", Json::parse(chimera::profile_json(tasks, world.keeper.origin))}};
+  return {{"tasks", chimera::profile_json(tasks, world.keeper.origin)}};
 }
 
 Json event_json(const ManagerState& world, const LoggedEvent& event) {

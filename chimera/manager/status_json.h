@@ -2,23 +2,23 @@
 // The answers about what there is and what it does: docs/formats/control.md, objects rtpu, task, profile, event.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "chimera/manager/manager_state.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 
 /// Context of all: setup; may block for the time of a copy.
-nlohmann::json status_json(const ManagerState& world, Nanoseconds at);
+Json status_json(const ManagerState& world, Nanoseconds at);
 /// Whether the illegal-configuration flag is up, and by whom.
-nlohmann::json flag_json(const ManagerState& world);
-nlohmann::json describe_json(const ManagerState& world);
-nlohmann::json profile_json(const ManagerState& world, Nanoseconds at);
-nlohmann::json event_json(const ManagerState& world, const LoggedEvent& event);
+Json flag_json(const ManagerState& world);
+Json describe_json(const ManagerState& world);
+Json profile_json(const ManagerState& world, Nanoseconds at);
+Json event_json(const ManagerState& world, const LoggedEvent& event);
 /// At most `limit` events from number `since` on.
-nlohmann::json events_json(const ManagerState& world, std::uint64_t since, std::size_t limit);
-nlohmann::json library_json(const ManagerState& world);
+Json events_json(const ManagerState& world, std::uint64_t since, std::size_t limit);
+Json library_json(const ManagerState& world);
 /// The last fault of a task as "cycle: its words"; "" when there was none.
 std::string fault_text(const ManagerState& world, TaskId task);
 /// Name of the configuration whose tasks are ON, exactly; "" when it has no name.

@@ -10,7 +10,7 @@
 
 #include "chimera/manager/manager_state.h"
 #include "chimera/manager/rtpu_links.h"
-#include "chimera/platform/channel.h"
+#include "chimera/platform/local_socket.h"
 
 namespace chimera::manager {
 

@@ -3,17 +3,16 @@
 #include "chimera/manager/subscription_feeds.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "chimera/control/methods.h"
 #include "chimera/manager/large_readings.h"
 #include "chimera/manager/operator_acts.h"
 #include "chimera/manager/status_json.h"
 #include "chimera/manager/value_json.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 
-using control::Json;
 using control::RpcResponse;
 
 namespace {
@@ -24,7 +23,7 @@ std::shared_ptr<const Json> shared(Json json) { return std::make_shared<const Js
 
 RpcResponse SubscriptionFeeds::open(std::uint64_t subscription, const Json& parameters) {
   using To = Feed::To;
-  const std::string to = parameters.at("to");
+  const std::string to = parameters.at("to").as_string();
   const auto names = control::texts(parameters, "variables");
   auto variables = variables_named(world_, names);
   if (const auto* refused = std::get_if<RpcResponse>(&variables)) return *refused;

@@ -22,10 +22,10 @@ class SubscriptionFeeds {
   /// `world` outlives it.
   explicit SubscriptionFeeds(ManagerState& world) : world_(world) {}
 
-  control::RpcResponse open(std::uint64_t subscription, const control::Json& parameters);
+  control::RpcResponse open(std::uint64_t subscription, const Json& parameters);
   void close(std::uint64_t subscription) { feeds_.erase(subscription); }
   std::shared_ptr<control::Pieces> pull_pieces(std::uint64_t subscription);
-  std::shared_ptr<const control::Json> pull(std::uint64_t subscription);
+  std::shared_ptr<const Json> pull(std::uint64_t subscription);
 
  private:
   struct Feed {
@@ -34,10 +34,10 @@ class SubscriptionFeeds {
     std::uint64_t next = 0;             // event
     std::vector<VariableId> variables;  // values
     std::unique_ptr<TapFeed> tap;
-    std::deque<std::shared_ptr<const control::Json>> waiting;  // of the tap
+    std::deque<std::shared_ptr<const Json>> waiting;  // of the tap
   };
-  std::shared_ptr<const control::Json> pull_events(Feed& feed) const;
-  std::shared_ptr<const control::Json> pull_tap(Feed& feed) const;
+  std::shared_ptr<const Json> pull_events(Feed& feed) const;
+  std::shared_ptr<const Json> pull_tap(Feed& feed) const;
 
   ManagerState& world_;
   std::map<std::uint64_t, Feed> feeds_;

@@ -3,14 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "chimera/manager/testing/lone_state.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {
-
-using control::Json;
 
 class SubscriptionFeedsTest : public ::testing::Test, public LoneState {
  protected:
@@ -67,7 +64,7 @@ TEST_F(SubscriptionFeedsTest, AtMostAThousandEventsComeAtOnceAndThoseThatAreGone
     EXPECT_EQ(message["lost"], 0);
     EXPECT_EQ(message["events"][0]["number"], 6 + i * kEventsAtOnce);
   }
-  EXPECT_EQ(message["events"].back()["number"], kEventsKept + 5);
+  EXPECT_EQ(message["events"].elements().back()["number"], kEventsKept + 5);
   EXPECT_EQ(pull(1), Json());
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What tasks and reactions of the real-time units have asked for: the manager finds it as words in their blocks, has
 // the last of all carried out as a switch, and remembers which it has dealt with. A manager that follows another one
-// finds what is open. docs/formats/processes.md, docs/decisions/0057-requests-over-processes.md.
+// finds what is open. docs/formats/processes.md, docs/design/switch.md.
 #pragma once
 
 #include <optional>

@@ -3,15 +3,13 @@
 #include "chimera/manager/takeover_receipts.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "chimera/control/receipt_json.h"
 #include "chimera/control/receipt_text.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {
-
-using Json = nlohmann::json;
 
 // The number of the last takeover of that incarnation that was dealt with.
 std::uint32_t dealt_with(std::uint64_t word, std::uint32_t incarnation) {
@@ -28,9 +26,9 @@ bool is_in_range(const VariablePart& part, const Takeover& takeover, const Appli
 TakeoverReceipts::TakeoverReceipts(ManagerState& world, ReceiptArchive& archive)
     : world_(world), archive_(archive), journal_(world.own.block().journal()) {
   for (const SwitchJournal::Receipt& one : journal_.unfiled()) {
-    const Json receipt = Json::parse(one.text, nullptr, false);
-    if (receipt.is_discarded() || receipt.value("way", "") != "takeover") continue;
-    left_.push_back({receipt.value("asked_ns", std::int64_t{0}), receipt["asked_by"].value("task", "")});
+    const Json receipt = Json::parse_or_none(one.text).value_or(nullptr);
+    if (text_at(receipt, "way") != "takeover") continue;
+    left_.push_back({whole_at(receipt, "asked_ns"), text_at(receipt["asked_by"], "task")});
   }
 }
 

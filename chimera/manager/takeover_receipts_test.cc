@@ -3,15 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "chimera/control/receipt_json.h"
 #include "chimera/manager/testing/fake_subsystem.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr const char* kText = R"(subsystem: fake
 rtpus: {servo: {cpu: 0, policy: edf}, spare: {cpu: 1, policy: muf}}
@@ -59,7 +56,7 @@ TEST_F(TakeoverReceiptsTest, EachIsFiledOnce) {
             Json({{"reaction", "standby_for"}, {"lost", "filter"}, {"by", "death"}, {"task", "second"}}));
   EXPECT_EQ(one["end"], "done");
   EXPECT_GT(one["wall_ns"], 1'600'000'000'000'000'000);
-  EXPECT_EQ(one["at_ns"].get<std::int64_t>() - one["asked_ns"].get<std::int64_t>(), 1'000'000);
+  EXPECT_EQ(one["at_ns"].as_int64() - one["asked_ns"].as_int64(), 1'000'000);
   EXPECT_EQ(one["tasks"].size(), 2u);
   tell(takeover(2));
   ASSERT_TRUE(until_kept(2));

@@ -3,14 +3,12 @@
 #include "chimera/manager/tap_feed.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "chimera/manager/value_json.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr std::size_t kAtOnce = 4096;            // records of one read
 constexpr std::size_t kValuesOfMessage = 10'000;  // about 200 kB

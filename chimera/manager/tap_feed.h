@@ -5,17 +5,17 @@
 
 #include <functional>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "chimera/manager/manager_state.h"
 #include "chimera/runtime/hosted/tap_rows.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 
 /// Takes the parameters of one notification, the subscription left out.
-using TapSink = std::function<void(nlohmann::json)>;
+using TapSink = std::function<void(Json)>;
 
 /// As long as one lives its tasks are tapped: their rtpus append what they publish. Context: setup.
 class TapFeed {
@@ -41,7 +41,7 @@ class TapFeed {
     TaskId task;
     std::vector<Column> columns;
     std::uint64_t first = 0, lost = 0;
-    std::vector<nlohmann::json> waiting;  // rows for the next message
+    std::vector<Json> waiting;  // rows for the next message
   };
   struct Ring {
     RtpuId rtpu;
@@ -51,7 +51,7 @@ class TapFeed {
     std::uint64_t lost_before = 0;
     std::uint64_t gone = 0;               // before it was followed, and not told yet
     std::uint64_t first = 0;              // of scheduling records
-    std::vector<nlohmann::json> waiting;
+    std::vector<Json> waiting;
   };
 
   void add_producer(VariableId variable, const PortOf& port);

@@ -3,14 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "chimera/manager/testing/fake_subsystem.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {
-
-using Json = nlohmann::json;
 
 class TapFeedTest : public ::testing::Test {
  protected:
@@ -49,7 +46,7 @@ class TapFeedTest : public ::testing::Test {
     for (const Json& message : messages_) {
       if (message["rtpu"] != "spare") continue;
       EXPECT_EQ(message["first"], seen.lost + seen.records);
-      seen.lost += message["lost"].get<std::uint64_t>();
+      seen.lost += message["lost"].as_uint64();
       seen.records += message["records"].size();
     }
     return seen;
@@ -67,7 +64,7 @@ TEST_F(TapFeedTest, EveryPublicationComesOnceInOrder) {
   ASSERT_TRUE(pump_until(feed, 200));
   std::map<std::string, std::uint64_t> next, sequence;
   for (const Json& message : messages_) {
-    const std::string task = message["task"];
+    const std::string task = message["task"].as_string();
     EXPECT_EQ(message["rtpu"], task == "sensor" ? "servo" : "spare");
     EXPECT_EQ(message["variables"], Json::array({task == "sensor" ? "x" : "tau"}));
     EXPECT_EQ(message["first"], next[task]);
@@ -76,7 +73,7 @@ TEST_F(TapFeedTest, EveryPublicationComesOnceInOrder) {
     for (const Json& row : message["rows"]) {
       ASSERT_EQ(row.size(), 3u);
       EXPECT_EQ(row[2].size(), task == "sensor" ? 2u : 1u);
-      EXPECT_EQ(row[2][0].get<double>(), row[1].get<double>());  // the fake publishes its count
+      EXPECT_EQ(row[2][0].as_double(), row[1].as_double());  // the fake publishes its count
       EXPECT_TRUE(sequence[task] == 0 || row[1] == sequence[task] + 1);
       sequence[task] = row[1];
     }
@@ -99,7 +96,7 @@ TEST_F(TapFeedTest, WithoutVariablesItGivesTheSchedulingRecords) {
   ASSERT_TRUE(pump_until(feed, 50, "records"));
   std::map<std::string, Json> last;
   for (const Json& message : messages_)
-    for (const Json& record : message["records"]) last[record.at(1)] = record;
+    for (const Json& record : message["records"]) last[record[1].as_string()] = record;
   ASSERT_EQ(last.size(), 2u);
   ASSERT_EQ(last["run"].size(), 5u);
   EXPECT_EQ(last["run"][3], CHIMERA_CYCLE);
@@ -163,7 +160,7 @@ TEST_F(TapFeedTest, TheLastRowsOfADeadOneAreReadFromItsSegment) {
   pump(feed);
   std::uint64_t last = 0;
   for (const Json& message : messages_)
-    for (const Json& row : message["rows"]) last = std::max(last, row[1].get<std::uint64_t>());
+    for (const Json& row : message["rows"]) last = std::max(last, row[1].as_uint64());
   EXPECT_EQ(last, cycles);
 }
 

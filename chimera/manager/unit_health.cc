@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "chimera/platform/process_state.h"
 #include "chimera/platform/realtime.h"
 
 namespace chimera::manager {

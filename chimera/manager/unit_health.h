@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chimera/manager/manager_state.h"
-#include "chimera/platform/thread_rights.h"
+#include "chimera/platform/thread.h"
 
 namespace chimera::manager {
 

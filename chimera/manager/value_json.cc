@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "chimera/catalogue/descriptor_value.h"
 #include "chimera/manager/status_json.h"
+#include "chimera/text/json.h"
 #include "chimera/text/value_renderer.h"
 
 namespace chimera::manager {
 namespace {
-
-using Json = nlohmann::json;
 
 /// For people, who read no thousand numbers.
 std::string short_text(const ValueForm& form, std::span<const std::byte> bytes) {
@@ -166,7 +164,9 @@ Json reading_head_json(const ManagerState& world, VariableId variable, const Var
                {"age_ns", reading.age(at).count},
                {"sequence", reading.slot.sequence},
                {"valid", reading.is_valid}};
-  if (!reading.is_valid) head.update({{"value", nullptr}, {"text", "never written"}});
+  if (reading.is_valid) return head;
+  head["value"] = nullptr;
+  head["text"] = "never written";
   return head;
 }
 

@@ -6,10 +6,8 @@
 #include <signal.h>
 
 #include <atomic>
+#include <chrono>
 #include <thread>
-
-#include "chimera/platform/linux_clock.h"
-#include "chimera/platform/virtual/virtual_clock.h"
 
 namespace chimera {
 namespace {
@@ -19,29 +17,14 @@ TEST(VirtualClock, WaitStepsToTheInstant) {
   EXPECT_EQ(clock.now(), milliseconds(5));
   EXPECT_EQ(clock.wait_until(milliseconds(9)), WaitEnd::kReached);
   EXPECT_EQ(clock.now(), milliseconds(9));
+  clock.advance(milliseconds(2));
+  EXPECT_EQ(clock.now(), milliseconds(11));
 }
 
-TEST(VirtualClock, AnInstantInThePastIsReachedAtOnce) {
+TEST(VirtualClock, ReachesAnInstantInThePastAtOnce) {
   VirtualClock clock(milliseconds(5));
   EXPECT_EQ(clock.wait_until(milliseconds(4)), WaitEnd::kReached);
   EXPECT_EQ(clock.now(), milliseconds(5));
-}
-
-TEST(VirtualClock, AWakeEndsTheWaitEarlyOnce) {
-  VirtualClock clock;
-  clock.wake_at(milliseconds(3));
-  EXPECT_EQ(clock.wait_until(milliseconds(10)), WaitEnd::kWoken);
-  EXPECT_EQ(clock.now(), milliseconds(3));
-  EXPECT_EQ(clock.wait_until(milliseconds(10)), WaitEnd::kReached);
-  EXPECT_EQ(clock.now(), milliseconds(10));
-}
-
-TEST(VirtualClock, AWakeBeforeTheWaitIsNotLost) {
-  VirtualClock clock;
-  clock.wake_at(milliseconds(1));
-  clock.advance(milliseconds(2));
-  EXPECT_EQ(clock.wait_until(milliseconds(4)), WaitEnd::kWoken);
-  EXPECT_EQ(clock.now(), milliseconds(2));
 }
 
 TEST(LinuxClock, IsNotBeforeTheInstantItReached) {
@@ -56,7 +39,7 @@ TEST(LinuxClock, IsNotBeforeTheInstantItReached) {
   EXPECT_EQ(clock.wait_until(Nanoseconds{-1}), WaitEnd::kReached);
 }
 
-TEST(LinuxClock, AHandledSignalEndsTheWait) {
+TEST(LinuxClock, HandledSignalEndsTheWait) {
   struct sigaction action {};
   action.sa_handler = [](int) {};
   struct sigaction before {};
@@ -68,13 +51,22 @@ TEST(LinuxClock, AHandledSignalEndsTheWait) {
     end = clock.wait_until(clock.now() + milliseconds(60'000));
     ended = true;
   });
-  while (!ended) {  // again and again: the first may come before the wait
+  while (!ended) {  // again and again: the first signal may come before the wait
     ::pthread_kill(waiter.native_handle(), SIGUSR1);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   waiter.join();
   EXPECT_EQ(end, WaitEnd::kWoken);
   ::sigaction(SIGUSR1, &before, nullptr);
+}
+
+TEST(WallClockShift, LeadsFromTheMonotonicClockToTheWallClock) {
+  constexpr std::int64_t kSlew = 1'000'000;  // ns that NTP may move one clock between two readings
+  const auto wall = [] { return std::chrono::system_clock::now().time_since_epoch() / std::chrono::nanoseconds(1); };
+  const std::int64_t before = wall();
+  const std::int64_t shifted = wall_clock_shift() + LinuxClock().now().count;
+  EXPECT_GE(shifted, before - kSlew);
+  EXPECT_LE(shifted, wall() + kSlew);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CLOCK_MONOTONIC read through the processor's cycle counter where that is sound: a few nanoseconds a read.
+// Reads CLOCK_MONOTONIC through the processor's cycle counter where the counter is sound: a few nanoseconds a read.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace chimera {
 
-/// From ticks to nanoseconds, held to a reference clock by now and then comparing. Never steps back: when it is
-/// ahead of the reference it goes slower (by 1/1024, twice what NTP may slew) until the next comparison.
+/// Converts ticks to nanoseconds; repeated comparisons keep the result near a reference clock. Never steps back: when
+/// the scale is ahead of the reference, it runs slower until the next comparison, by 1/1024: twice what NTP may slew.
 /// Context: cycle; wait-free.
 class TickScale {
  public:
@@ -24,11 +24,11 @@ class TickScale {
 
   Nanoseconds at(std::uint64_t ticks) const noexcept {
     const auto gone = static_cast<std::int64_t>(ticks - ticks_);
-    if (gone < 0) return at_;  // another CPU's counter, a hair behind
+    if (gone < 0) return at_;  // the counter of another CPU may be a few ticks behind
     __extension__ using Wide = unsigned __int128;
     return {at_.count + static_cast<std::int64_t>((static_cast<Wide>(gone) * rate_) >> 32)};
   }
-  /// `ticks` and `reference` were read together.
+  /// Sets the scale by `ticks` and `reference`, which the caller read together.
   void compare(std::uint64_t ticks, Nanoseconds reference) noexcept {
     const Nanoseconds mine = at(ticks);
     const bool ahead = mine > reference;
@@ -47,13 +47,9 @@ class TickScale {
 /// A cheap now() on the time line of LinuxClock. One per thread; not shared.
 class CycleCounter {
  public:
-  enum class Source : std::uint8_t { kCycleCounter, kClockGettime };
-
-  /// Measures the counter's rate for about 10 ms; falls back to clock_gettime where the counter is not invariant
+  /// Measures the counter's rate for about 10 ms. Falls back to clock_gettime if the counter is not invariant
   /// (constant_tsc, nonstop_tsc, rdtscp) or the kernel itself does not trust it. Context: setup; blocks.
   static CycleCounter calibrate() noexcept;
-  /// As calibrate(), with the fallback forced: for comparison.
-  static CycleCounter by_clock_gettime() noexcept;
 
   /// Context: cycle; wait-free.
   Nanoseconds now() const noexcept {
@@ -65,15 +61,16 @@ class CycleCounter {
 #endif
     return read_clock();
   }
-  /// Sets the counter by CLOCK_MONOTONIC again. At least once a second, best after a wait: NTP slews the one and
-  /// not the other by up to 500 us a second. Context: cycle; wait-free.
+  /// Sets the counter by CLOCK_MONOTONIC again. Call compare() at least once a second, best after a wait: NTP slews
+  /// CLOCK_MONOTONIC, but not the counter, by up to 500 us a second. Context: cycle; wait-free.
   void compare() noexcept;
 
-  Source source() const noexcept { return source_; }
   /// "cycle counter at 2000 MHz" or "clock_gettime (clock source is hpet, not tsc)". Context: setup.
   const char* describe() const noexcept { return text_.c_str(); }
 
  private:
+  enum class Source : std::uint8_t { kCycleCounter, kClockGettime };
+
   CycleCounter(Source source, TickScale scale, FixedString<120> text) noexcept
       : source_(source), scale_(scale), text_(text) {}
   static Nanoseconds read_clock() noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Judges samples of a process: how long its loop is silent, and from its state in the kernel why.
+// Judges samples of a process: the silence of its loop, and the reason, from its state in the kernel.
 #include "chimera/platform/life_watch.h"
 
 namespace chimera {
@@ -31,7 +31,7 @@ bool is_told_again(Nanoseconds before, Nanoseconds now) noexcept {
   return before.count / seconds(600).count != now.count / seconds(600).count;
 }
 
-// A loop is known by what it has used, however many others share the processor with it.
+// An endless loop shows in the processor use, even if other processes share the processor.
 Life LifeWatch::life_of(const LifeSample& sample, Nanoseconds told) const noexcept {
   const ProcessState& process = sample.process;
   const Nanoseconds used = process.used - used_;
@@ -42,7 +42,7 @@ Life LifeWatch::life_of(const LifeSample& sample, Nanoseconds told) const noexce
   return would_run ? Life::kStarves : Life::kWaits;
 }
 
-// Nine tenths of a whole window.
+// True if the process used nine tenths of a whole window.
 bool LifeWatch::spins(const LifeSample& sample, Nanoseconds window) noexcept {
   const Nanoseconds time = sample.at - window_, used = sample.process.used - window_used_;
   if (time < window) return is_spinning_;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr Nanoseconds kEvery = milliseconds(250);
 
-/// A process and who watches it, in time that is stepped.
+/// A process and its watch, in stepped time.
 struct Scene {
   LifeSample sample{seconds(1000), 7, {'S', {}, 0}};
   LifeWatch watch;
@@ -30,14 +30,14 @@ struct Scene {
   int news = 0;
 };
 
-TEST(LifeWatch, SaysNothingOfOneThatComesRound) {
+TEST(LifeWatch, ReportsNothingWhileTheLoopRuns) {
   Scene scene;
   scene.look();
   EXPECT_EQ(scene.after(seconds(100), true).life, Life::kRuns);
   EXPECT_EQ(scene.news, 0);
 }
 
-TEST(LifeWatch, TellsOnceWithinTwoSecondsWhyAndThenHasNoMorePatience) {
+TEST(LifeWatch, ReportsAStoppedProcessOnceAndThenIsOver) {
   Scene scene;
   scene.look();
   scene.sample.process.letter = 'T';
@@ -54,7 +54,7 @@ TEST(LifeWatch, TellsOnceWithinTwoSecondsWhyAndThenHasNoMorePatience) {
   EXPECT_EQ(scene.news, 1);
 }
 
-TEST(LifeWatch, TellsThatItRunsAgainAndForHowLongItDidNot) {
+TEST(LifeWatch, ReportsThatTheProcessRunsAgainWithItsSilence) {
   Scene scene;
   scene.look();
   scene.sample.process.letter = 'T';
@@ -65,10 +65,10 @@ TEST(LifeWatch, TellsThatItRunsAgainAndForHowLongItDidNot) {
   EXPECT_TRUE(again.is_news);
   EXPECT_EQ(again.silent, milliseconds(2250));
   EXPECT_FALSE(scene.after(kEvery, true).is_news);
-  EXPECT_EQ(scene.after(seconds(1)).life, Life::kRuns) << "its time begins anew";
+  EXPECT_EQ(scene.after(seconds(1)).life, Life::kRuns) << "the silence starts again";
 }
 
-TEST(LifeWatch, WaitsForADebuggerAndRemindsOfIt) {
+TEST(LifeWatch, WaitsForADebuggerAndReportsItAgain) {
   Scene scene;
   scene.look();
   scene.sample.process = {'t', {}, 4711};
@@ -81,7 +81,7 @@ TEST(LifeWatch, WaitsForADebuggerAndRemindsOfIt) {
   EXPECT_EQ(scene.news, 3 + 6) << "after 1.5 s, 10 s, 60 s, and each ten minutes";
 }
 
-TEST(LifeWatch, KnowsALoopFromAWaitAndFromOneThatGetsNoProcessor) {
+TEST(LifeWatch, DistinguishesALoopAWaitAndAStarvedProcess) {
   for (const auto& [letter, load, life, is_over] :
        {std::tuple{'R', 1.0, Life::kLoops, true}, std::tuple{'S', 0.0, Life::kWaits, true},
         std::tuple{'D', 0.0, Life::kWaits, true}, std::tuple{'R', 0.1, Life::kStarves, false}}) {
@@ -94,13 +94,13 @@ TEST(LifeWatch, KnowsALoopFromAWaitAndFromOneThatGetsNoProcessor) {
   }
 }
 
-TEST(LifeWatch, TellsOfOneThatComesRoundAndNeverWaits) {
+TEST(LifeWatch, ReportsALoopThatNeverWaits) {
   Scene scene;
   scene.limits.spins = milliseconds(1500);
   scene.look();
   EXPECT_EQ(scene.after(seconds(10), true, 0.8).life, Life::kRuns);
   EXPECT_EQ(scene.news, 0);
-  const LifeVerdict spins = scene.after(seconds(3), true, 1.0);  // a window that it fills, at the latest
+  const LifeVerdict spins = scene.after(seconds(3), true, 1.0);  // at most one window until the report
   EXPECT_EQ(spins.life, Life::kSpins);
   EXPECT_EQ(spins.text(), "uses a whole processor");
   EXPECT_FALSE(scene.after(seconds(10), true, 1.0).is_over);
@@ -109,30 +109,30 @@ TEST(LifeWatch, TellsOfOneThatComesRoundAndNeverWaits) {
   EXPECT_EQ(scene.news, 2);
 }
 
-TEST(LifeWatch, KnowsALoopThatSharesItsProcessor) {
+TEST(LifeWatch, RecognisesALoopThatSharesItsProcessor) {
   Scene scene;
   scene.look();
   scene.sample.process.letter = 'R';
   EXPECT_EQ(scene.after(milliseconds(2750), false, 0.25).life, Life::kStarves);
   const LifeVerdict used = scene.after(kEvery, false, 0.25);
-  EXPECT_EQ(used.life, Life::kLoops) << "it has used 0.75 s";
+  EXPECT_EQ(used.life, Life::kLoops) << "0.75 s of processor use";
   EXPECT_TRUE(used.is_over);
 }
 
-TEST(LifeWatch, TakesNobodyForHungWhenItWasAwayItself) {
+TEST(LifeWatch, CountsNoSilenceWhileTheWatchItselfWasStopped) {
   Scene scene;
   scene.look();
   scene.after(kEvery);
-  scene.sample.at = scene.sample.at + seconds(60);  // who watches was stopped, and all others with it
+  scene.sample.at = scene.sample.at + seconds(60);  // the watch was stopped, and all other processes too
   const LifeVerdict back = scene.look();
   EXPECT_EQ(back.life, Life::kRuns);
   EXPECT_FALSE(back.is_news);
   EXPECT_EQ(back.silent, kEvery);
   EXPECT_EQ(scene.after(milliseconds(1000)).life, Life::kRuns);
-  EXPECT_EQ(scene.after(kEvery).life, Life::kWaits) << "but it goes on watching";
+  EXPECT_EQ(scene.after(kEvery).life, Life::kWaits) << "the watch continues";
 }
 
-TEST(LifeWatch, ThatIsOftenAwayLosesOnlyThatTime) {
+TEST(LifeWatch, SubtractsOnlyTheTimesWhenTheWatchWasStopped) {
   Scene scene;
   scene.look();
   LifeVerdict verdict;
@@ -144,13 +144,13 @@ TEST(LifeWatch, ThatIsOftenAwayLosesOnlyThatTime) {
   EXPECT_EQ(verdict.silent, milliseconds(1500));
 }
 
-TEST(LifeWatch, ThatWasAwayForgetsNothingItTold) {
+TEST(LifeWatch, RemembersItsReportAfterItWasStopped) {
   Scene scene;
   scene.look();
   scene.after(seconds(2));
   scene.sample.at = scene.sample.at + seconds(60);
   scene.look();
-  EXPECT_TRUE(scene.after(kEvery, true).is_news) << "it runs again";
+  EXPECT_TRUE(scene.after(kEvery, true).is_news) << "the process runs again";
 }
 
 }  // namespace

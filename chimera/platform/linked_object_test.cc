@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sealed copies; what is linked is tested with the objects of chimera/load.
+// Sealed copies. The tests of chimera/load link objects.
 #include "chimera/platform/linked_object.h"
 
 #include <fcntl.h>
@@ -8,7 +8,7 @@
 
 #include <cstdio>
 
-#include "chimera/platform/file_bytes.h"
+#include "chimera/platform/file.h"
 
 namespace chimera {
 namespace {
@@ -19,7 +19,7 @@ std::string content(int file) {
   return text;
 }
 
-TEST(SealedCopy, HasTheBytesAndTakesNoOthers) {
+TEST(SealedCopy, HasTheBytesAndRefusesOthers) {
   std::FILE* file = std::tmpfile();
   const std::string text(100'000, 'x');
   ASSERT_EQ(std::fwrite(text.data(), 1, text.size(), file), text.size());
@@ -40,20 +40,6 @@ TEST(SealedCopy, RefusesAFileThatCannotBeRead) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().message.view(), "cannot be read: Bad file descriptor");
   EXPECT_EQ(refused.error().where.view(), "a.so");
-}
-
-TEST(FileBytes, ReadsAtAPlaceUntilTheEnd) {
-  std::FILE* file = std::tmpfile();
-  ASSERT_EQ(std::fputs("abcdef", file), 1);
-  std::fflush(file);
-  char text[8] = {};
-  EXPECT_EQ(file_size(::fileno(file)), 6);
-  EXPECT_EQ(read_at(::fileno(file), 4, std::as_writable_bytes(std::span(text))), 2);
-  EXPECT_STREQ(text, "ef");
-  EXPECT_EQ(read_at(::fileno(file), 6, std::as_writable_bytes(std::span(text))), 0);
-  std::fclose(file);
-  EXPECT_EQ(file_size(-1), -1);
-  EXPECT_EQ(read_at(-1, 0, std::as_writable_bytes(std::span(text))), -1);
 }
 
 }  // namespace

@@ -1,19 +1,145 @@
 // SPDX-License-Identifier: Apache-2.0
-// Connections of this process with itself, alone and in a DescriptorSet.
+// Connections of this process with itself.
 #include "chimera/platform/local_socket.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
+#include <iterator>
 
-#include "chimera/platform/descriptor_set.h"
+#include "chimera/platform/shared_memory.h"
 
-namespace chimera {
+namespace chimera::local_socket_test {
 namespace {
+
+using Letter = std::array<std::byte, 8>;
+
+Letter letter(std::uint64_t number) {
+  Letter made;
+  std::memcpy(made.data(), &number, sizeof number);
+  return made;
+}
+
+std::pair<Channel, Channel> make_pair() {
+  auto made = Channel::pair();
+  EXPECT_TRUE(made.has_value());
+  return *std::move(made);
+}
+
+TEST(Channel, DeliversMessagesWholeAndInOrder) {
+  const auto [here, there] = make_pair();
+  ASSERT_TRUE(here.send(letter(1)));
+  ASSERT_TRUE(here.send(letter(2)));
+  Letter got{};
+  int passed = 0;
+  EXPECT_EQ(there.receive(got, passed), Channel::Got::kMessage);
+  EXPECT_EQ(got, letter(1));
+  EXPECT_EQ(passed, -1);
+  EXPECT_EQ(there.receive(got, passed), Channel::Got::kMessage);
+  EXPECT_EQ(got, letter(2));
+  EXPECT_EQ(there.receive(got, passed), Channel::Got::kNothing);
+}
+
+TEST(Channel, PassesADescriptorThatExecCloses) {
+  const auto [here, there] = make_pair();
+  const auto bytes = FrozenBytes::create("test", letter(7));
+  ASSERT_TRUE(here.send(letter(1), bytes->descriptor()));
+  Letter got{};
+  int passed = -1;
+  ASSERT_EQ(there.receive(got, passed), Channel::Got::kMessage);
+  ASSERT_GE(passed, 0);
+  EXPECT_NE(passed, bytes->descriptor());
+  EXPECT_EQ(::fcntl(passed, F_GETFD), FD_CLOEXEC);
+  EXPECT_EQ(FrozenBytes::open(passed)->bytes().size(), 8u);
+  ::close(passed);
+}
+
+TEST(Channel, DeliversTheLastMessageOfAnEndThatDiedWithAnUnreadMessage) {
+  auto [here, there] = make_pair();
+  const auto bytes = FrozenBytes::create("test", letter(7));
+  ASSERT_TRUE(here.send(letter(1), bytes->descriptor()));
+  ASSERT_TRUE(there.send(letter(2)));  // stays unread
+  { const Channel ends_here = std::move(here); }
+  Letter got{};
+  int passed = -1;
+  ASSERT_EQ(there.receive(got, passed), Channel::Got::kMessage);
+  EXPECT_EQ(got, letter(1));
+  EXPECT_EQ(FrozenBytes::open(passed)->bytes().size(), 8u);
+  ::close(passed);
+  EXPECT_EQ(there.receive(got, passed), Channel::Got::kClosed);
+}
+
+TEST(Channel, IsClosedAfterTheLastMessageOfADeadEnd) {
+  auto [here, there] = make_pair();
+  ASSERT_TRUE(here.send(letter(1)));
+  { const Channel ends_here = std::move(here); }
+  Letter got{};
+  int passed = -1;
+  EXPECT_EQ(there.receive(got, passed), Channel::Got::kMessage);
+  EXPECT_EQ(there.receive(got, passed), Channel::Got::kClosed);
+  EXPECT_FALSE(there.send(letter(2))) << "and no SIGPIPE";
+}
+
+TEST(Channel, ClosesOnAMessageOfAnotherLength) {
+  const auto [here, there] = make_pair();
+  Letter got{};
+  int passed = -1;
+  const std::array<std::byte, 4> brief{};
+  ASSERT_TRUE(here.send(brief));
+  EXPECT_EQ(there.receive(got, passed), Channel::Got::kClosed);
+  const auto bytes = FrozenBytes::create("test", letter(7));
+  const std::array<std::byte, 16> lengthy{};
+  ASSERT_TRUE(here.send(lengthy, bytes->descriptor()));
+  EXPECT_EQ(there.receive(got, passed), Channel::Got::kClosed);
+  EXPECT_EQ(passed, -1) << "the passed descriptor is closed";
+}
+
+TEST(Channel, ClosesSurplusDescriptors) {
+  const auto [here, there] = make_pair();
+  const int two[2] = {::dup(2), ::dup(2)};
+  union {
+    cmsghdr head;
+    char bytes[CMSG_SPACE(sizeof two)];
+  } control{};
+  Letter sent = letter(1);
+  iovec part{sent.data(), sent.size()};
+  msghdr message{};
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  message.msg_control = &control;
+  message.msg_controllen = sizeof control;
+  control.head.cmsg_level = SOL_SOCKET;
+  control.head.cmsg_type = SCM_RIGHTS;
+  control.head.cmsg_len = CMSG_LEN(sizeof two);
+  std::memcpy(CMSG_DATA(&control.head), two, sizeof two);
+  ASSERT_EQ(::sendmsg(here.descriptor(), &message, 0), 8);
+  const auto n_open = [] { return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {}); };
+  const auto before = n_open();
+  Letter got{};
+  int passed = -1;
+  ASSERT_EQ(there.receive(got, passed), Channel::Got::kMessage);
+  EXPECT_GE(passed, 0);
+  EXPECT_EQ(n_open(), before + 1);
+  for (const int fd : {two[0], two[1], passed}) ::close(fd);
+}
+
+TEST(Channel, RefusesWhenFullAndNeverBlocks) {
+  const auto [here, there] = make_pair();
+  int sent = 0;
+  while (sent < 1'000'000 && here.send(letter(1))) ++sent;
+  EXPECT_GT(sent, 10);
+  EXPECT_LT(sent, 1'000'000);
+  Letter got{};
+  int passed = -1;
+  EXPECT_EQ(there.receive(got, passed), Channel::Got::kMessage);
+}
 
 class LocalSocketTest : public ::testing::Test {
  protected:
@@ -30,9 +156,9 @@ class LocalSocketTest : public ::testing::Test {
   OwnedDescriptor listening_{::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
 };
 
-TEST_F(LocalSocketTest, CarriesBytesBothWaysAndTellsTheEnd) {
+TEST_F(LocalSocketTest, CarriesBytesAndReportsTheEnd) {
   listen();
-  auto near = connect_to_path(path_, seconds(1));
+  auto near = connect_to_path(path_, seconds(60));
   ASSERT_GE(near.fd, 0);
   const auto far = accept_now(listening_.fd);
   ASSERT_GE(far.fd, 0);
@@ -51,21 +177,21 @@ TEST_F(LocalSocketTest, CarriesBytesBothWaysAndTellsTheEnd) {
   EXPECT_EQ(unread_by_other_end(-1), -1);
 }
 
-TEST_F(LocalSocketTest, KnowsWhetherSomebodyListens) {
+TEST_F(LocalSocketTest, KnowsWhetherAProcessListens) {
   EXPECT_FALSE(is_listened_at(path_));
-  EXPECT_LT(connect_to_path(path_, seconds(1)).fd, 0);
+  EXPECT_LT(connect_to_path(path_, seconds(60)).fd, 0);
   EXPECT_EQ(errno, ECONNREFUSED);
   listen();
   EXPECT_TRUE(is_listened_at(path_));
   const std::string too_long(200, 'x');
   EXPECT_FALSE(is_listened_at(too_long));
-  EXPECT_LT(connect_to_path(too_long, seconds(1)).fd, 0);
+  EXPECT_LT(connect_to_path(too_long, seconds(60)).fd, 0);
   EXPECT_EQ(errno, ENAMETOOLONG);
 }
 
-TEST_F(LocalSocketTest, KnowsWhoConnected) {
+TEST_F(LocalSocketTest, KnowsTheProcessThatConnected) {
   listen();
-  const auto near = connect_to_path(path_, seconds(1)), far = accept_now(listening_.fd);
+  const auto near = connect_to_path(path_, seconds(60)), far = accept_now(listening_.fd);
   const auto peer = peer_of(far.fd);
   ASSERT_TRUE(peer);
   EXPECT_EQ(peer->process, ::getpid());
@@ -81,29 +207,5 @@ TEST_F(LocalSocketTest, KnowsOneFileByTwoPaths) {
   EXPECT_FALSE(are_one_file(path_, path_ + "x"));
 }
 
-TEST_F(LocalSocketTest, ADescriptorSetTellsWhichAreReady) {
-  listen();
-  const auto set = DescriptorSet::open(Message("test"));
-  ASSERT_TRUE(set);
-  auto near = connect_to_path(path_, seconds(1));
-  const auto far = accept_now(listening_.fd);
-  EXPECT_TRUE(set->add(far.fd, kToRead, 7));
-  EXPECT_FALSE(set->add(far.fd, kToRead, 7));
-  DescriptorSet::Ready ready[4];
-  EXPECT_EQ(set->take(ready), 0u);
-  EXPECT_EQ(send_now(near.fd, "x"), 1);
-  ASSERT_EQ(set->take(ready), 1u);
-  EXPECT_EQ(ready[0].number, 7u);
-  EXPECT_TRUE(ready[0].is_readable);
-  EXPECT_FALSE(ready[0].has_ended);
-  EXPECT_TRUE(set->change(far.fd, kToWrite, 8));
-  ASSERT_EQ(set->take(ready), 1u);
-  EXPECT_EQ(ready[0].number, 8u);
-  EXPECT_FALSE(ready[0].is_readable);
-  near = OwnedDescriptor();
-  ASSERT_EQ(set->take(ready), 1u);
-  EXPECT_TRUE(ready[0].has_ended);
-}
-
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::local_socket_test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The processes that a keeper adopted: what components started and left behind, and memory holders.
+// Where processes come from, and the end of processes that components started and left behind: Orphans.
 // docs/formats/processes.md, "What components start".
 #pragma once
 
@@ -15,25 +15,45 @@
 
 namespace chimera {
 
-/// Single-threaded. Context: setup; never blocks but in end_all().
+/// The environment variable that holds the origin of a process: a word that all its descendants inherit, unless one of
+/// them removes the word on purpose. An ordinary user may read the origin.
+inline constexpr const char* kOriginVariable = "CHIMERA_ORIGIN";
+
+/// The origin of process `pid` at the start of its program; "" without origin or if it cannot be read. Context: setup.
+std::string origin_of(pid_t pid);
+
+/// The name that process `pid` gave itself; "" if the process is gone. Context: setup.
+std::string name_of(pid_t pid);
+
+/// The children of this process, ended ones too, if the kernel lists them (CONFIG_PROC_CHILDREN). A child that starts
+/// or ends during the call may be missing. Context: setup.
+std::vector<pid_t> children_of_this_process();
+
+/// Sends SIGKILL to every process of `origin` on this machine except the caller, until there is none, at most `limit`.
+/// False if some remain. Context: setup; blocks.
+bool end_all_from(std::string_view origin, Nanoseconds limit);
+
+/// The processes that a keeper adopts: processes that components started and left behind, and memory holders.
+/// Single-threaded. Context: setup; only end_all() blocks.
 class Orphans {
  public:
-  /// Adopts from here on what loses its parent. A child that this process has already is not its own and is left alone:
-  /// it was somebody else's before this program began in the same process.
+  /// From now on each descendant of this process that loses its parent becomes its child. Children that this process
+  /// has already are left alone: their parent became this program by exec.
   Orphans();
 
-  /// What every origin of this keeper's begins with: no other process ever has it.
+  /// The begin of every origin of this keeper; unique for this process.
   const std::string& prefix() const noexcept { return prefix_; }
 
-  /// Reaps each child that has ended and is not among `held`: those of which somebody has a Process. Sends SIGKILL to
-  /// each that comes from a unit that does not live, to a memory holder 100 ms after it was first seen. One whose
-  /// origin is not known is left until the end. `lives`: whether the unit of that origin does.
+  /// Reaps each ended child that is not among `held`, the numbers of children with a Process. Sends SIGKILL to each
+  /// child of an rtpu that does not live; to a memory holder 100 ms after the first call that found it. A child of
+  /// unknown origin stays until the end. `lives`: true if the rtpu of that origin lives.
   void look(std::span<const pid_t> held, const std::function<bool(std::string_view)>& lives, Nanoseconds now);
-  /// When there is something to look at though nothing happens; kNever: no such thing.
+  /// When to call look() again even without an event; kNever: no need.
   Nanoseconds due() const noexcept { return due_; }
 
-  /// When everybody else has ended: SIGKILL for all of them, and for what becomes a child by that, until none is left.
-  /// Memory holders have 100 ms to end by themselves. Whoever else is left after `limit` is named on stderr.
+  /// After the end of all other processes: sends SIGKILL to all orphans, and to processes that become children by that,
+  /// until there is none. Memory holders have 100 ms to end by themselves. Names on stderr each process that is left
+  /// after `limit`.
   void end_all(Nanoseconds limit);
 
  private:

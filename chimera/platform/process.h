@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Child processes, held by pidfd: proof of death, and signals that never reach a stranger with the same number.
+// Child processes, held by pidfd: proof of death, and signals that never reach a stranger with the same number. And
+// what a process does with itself: follow its parent, give way to others, die quickly.
 #pragma once
 
 #include <sys/types.h>
 
+#include <cstdint>
 #include <span>
 #include <utility>
 
@@ -26,11 +28,11 @@ Message signal_text(int number) noexcept;
 class Process {
  public:
   /// Starts `program` by exec with `arguments` (argv[0] included; a null pointer is added). descriptors[i] becomes
-  /// descriptor 3 + i of the child; nothing else but 0, 1 and 2 is inherited. The signal mask of the child is empty but
-  /// for the signal `blocked` (0: none), which waits until the child is ready for it; SIGINT and SIGHUP are ignored:
-  /// those of a terminal reach everybody, and the parent answers them; so are SIGPIPE and SIGXFSZ: a write that fails
-  /// ends nobody. Refuses with the system's reason. Call from one
-  /// thread of the process only, the one that lives longest: a child that follows its parent follows that thread.
+  /// descriptor 3 + i of the child, which inherits no others but 0, 1 and 2. The child blocks the signal `blocked`
+  /// (0: none) alone, until it is ready for that signal. The child ignores SIGINT and SIGHUP, because a terminal sends
+  /// them to all processes and the parent answers them; also SIGPIPE and SIGXFSZ, so that a write fails instead of
+  /// ending the child. Refuses with the system's reason. Call start() from one thread of the process only, the thread
+  /// that lives longest: a child that follows its parent follows that thread.
   static Result<Process> start(const char* program, std::span<const char* const> arguments,
                                std::span<const int> descriptors, int blocked = 0) noexcept;
 
@@ -40,13 +42,13 @@ class Process {
   ~Process();
 
   bool is_held() const noexcept { return pidfd_ >= 0; }
-  int pidfd() const noexcept { return pidfd_; }  ///< readable when it ended
-  pid_t pid() const noexcept { return pid_; }    ///< for people; never to signal by
-  /// True, once, when it ended; reaps it. Never blocks.
+  int pidfd() const noexcept { return pidfd_; }  ///< readable after the end of the child
+  pid_t pid() const noexcept { return pid_; }    ///< for messages; never send signals to this number
+  /// True, once, after the child ended; reaps the child. Never blocks.
   bool has_ended(ProcessEnd& end) noexcept;
-  /// Waits at most `limit_ns` for the end. True when it ended (and was reaped).
+  /// Waits at most `limit_ns` for the end. True if the child ended (and was reaped).
   bool wait(ProcessEnd& end, std::int64_t limit_ns) noexcept;
-  /// Sends a signal by pidfd. False when it has ended.
+  /// Sends a signal by pidfd. False after the end of the child.
   bool signal(int number) const noexcept;
 
  private:
@@ -54,24 +56,42 @@ class Process {
   pid_t pid_ = -1;
 };
 
-/// From now on, whoever loses its parent among this process's descendants becomes its child. Context: setup.
-bool adopt_orphans() noexcept;
-
-/// By a child: from now on it is sent `signal` when its parent dies. False when the parent is not `parent` (any more):
-/// the caller should end. Context: setup.
-bool follow_parent(pid_t parent, int signal) noexcept;
-
-/// Ends this process by the default action of `signal`, even where it is blocked or ignored. Returns only where that
-/// action ends nothing. Context: setup.
-void end_by_signal(int signal) noexcept;
-
-/// What this process starts by exec from now on does not have `descriptor`. Context: setup.
-void close_at_exec(int descriptor) noexcept;
-
-/// Sends `signal` to the process of that pidfd; false when it has ended. Context: any; one system call.
+/// Sends `signal` to the process of that pidfd; false after its end. Context: any; one system call.
 bool signal_process(int pidfd, int signal) noexcept;
 
-/// By a child: sends `signal` to its parent, by pidfd. False when that is not `parent` (any more). Context: setup.
+/// By a child: from now on the kernel sends it `signal` when its parent dies. False if `parent` is not (or no longer)
+/// the parent: then the caller should end. Context: setup.
+bool follow_parent(pid_t parent, int signal) noexcept;
+
+/// By a child: sends `signal` to its parent, by pidfd. False if `parent` is not (or no longer) the parent.
+/// Context: setup.
 bool signal_parent(pid_t parent, int signal) noexcept;
+
+/// Ends this process by the default action of `signal`, even if the signal is blocked or ignored. Returns only if that
+/// action does not end a process. Context: setup.
+void end_by_signal(int signal) noexcept;
+
+/// Programs that this process starts by exec do not inherit `descriptor`. Context: setup.
+void close_at_exec(int descriptor) noexcept;
+
+/// From now on this process and its threads give way to all others: a small share of the processors, the first to be
+/// killed if memory runs out, no core image, and at most `memory` bytes of addresses; an allocation beyond fails. The
+/// address and thread sanitizers need more memory: no such limit under them. A request that the system refuses is
+/// skipped: results do not depend on these limits. Context: setup.
+void run_in_background(std::uint64_t memory) noexcept;
+
+/// Starts the memory holder: a second process that shares the memory of this process, does nothing, and frees that
+/// memory after the death of this process. From now on this process dies quickly.
+///
+/// Linux frees the memory of a killed process before its pidfd becomes readable: milliseconds if the memory is locked,
+/// on the processor and at the priority of the thread that ends last, even a SCHED_FIFO thread. Memory with another
+/// user is not freed: the death is known at once, and the memory holder frees the memory later
+/// (docs/design/guard.md).
+///
+/// The memory holder has no descriptor of this process, accepts no signal but SIGKILL, runs on idle processors only
+/// (SCHED_IDLE), and ends some milliseconds after this process. False if the system grants no second process: then this
+/// process dies slowly. Once per process, by its first thread, before the process opens descriptors that must not leak.
+/// Context: setup.
+bool start_memory_holder() noexcept;
 
 }  // namespace chimera

@@ -5,26 +5,33 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <csignal>
+#include <ctime>
+#include <fstream>
 #include <string>
+#include <vector>
 
-#include "chimera/platform/frozen_bytes.h"
+#include "chimera/platform/descriptor.h"
+#include "chimera/platform/shared_memory.h"
 
-namespace chimera {
+namespace chimera::process_process_test {
 namespace {
 
-constexpr std::int64_t kLimit = 20'000'000'000;
+constexpr std::int64_t kLimit = 60'000'000'000;  // ns
+constexpr int kPatienceMs = 60'000;
 
 Result<Process> shell(const std::string& script, std::span<const int> descriptors = {}) {
   const std::array<const char*, 3> words = {"sh", "-c", script.c_str()};
   return Process::start("/bin/sh", words, descriptors);
 }
 
-// What the script writes to its descriptor 3, and that it ended well.
+// Returns the output of the script on its descriptor 3; expects exit status 0.
 std::string output_of(const std::string& script, std::vector<int> more = {}) {
   int ends[2];
   EXPECT_EQ(::pipe2(ends, O_CLOEXEC), 0);
@@ -42,7 +49,7 @@ std::string output_of(const std::string& script, std::vector<int> more = {}) {
   return text;
 }
 
-TEST(Process, TellsHowItsChildEnded) {
+TEST(Process, ReportsTheEndOfItsChild) {
   auto child = shell("exit 7");
   ASSERT_TRUE(child.has_value()) << child.error().message.view();
   EXPECT_GT(child->pid(), 0);
@@ -55,11 +62,11 @@ TEST(Process, TellsHowItsChildEnded) {
   EXPECT_FALSE(child->signal(SIGKILL));
 }
 
-TEST(Process, ItsPidfdIsReadableWhenItEnded) {
+TEST(Process, PidfdIsReadableAfterTheEnd) {
   auto child = shell("kill -9 $$");
   ASSERT_TRUE(child.has_value());
   pollfd ended{child->pidfd(), POLLIN, 0};
-  ASSERT_EQ(::poll(&ended, 1, 20'000), 1);
+  ASSERT_EQ(::poll(&ended, 1, kPatienceMs), 1);
   ProcessEnd end;
   ASSERT_TRUE(child->has_ended(end));
   EXPECT_TRUE(end.by_signal);
@@ -76,20 +83,19 @@ TEST(Process, IsEndedByASignalToItsPidfd) {
   EXPECT_EQ(end.code, SIGKILL);
 }
 
-TEST(Process, InheritsWhatIsPassedInItsOrderAndNothingElse) {
+TEST(Process, InheritsPassedDescriptorsInOrderAndNoOthers) {
   const auto one = FrozenBytes::create("test", std::as_bytes(std::span("one\n", 4)));
   const auto two = FrozenBytes::create("test", std::as_bytes(std::span("two\n", 4)));
   const int careless = ::dup(2);  // not close-on-exec
-  EXPECT_EQ(output_of("cat <&4 >&3; cat <&5 >&3; exec ls /proc/self/fd >&3",
-                      {one->descriptor(), two->descriptor()}),
+  EXPECT_EQ(output_of("cat <&4 >&3; cat <&5 >&3; exec ls /proc/self/fd >&3", {one->descriptor(), two->descriptor()}),
             "one\ntwo\n0\n1\n2\n3\n4\n5\n6\n");  // 6: the listing itself reads the folder
   ::close(careless);
 }
 
-TEST(Process, PassesDescriptorsThatStandInEachOthersPlace) {
+TEST(Process, PassesDescriptorsWithCrossedNumbers) {
   const auto one = FrozenBytes::create("test", std::as_bytes(std::span("one\n", 4)));
   const auto two = FrozenBytes::create("test", std::as_bytes(std::span("two\n", 4)));
-  // Whatever stands at 4 and 5 of this process comes back afterwards.
+  // The descriptors 4 and 5 of this process are restored afterwards.
   const int kept4 = ::fcntl(4, F_DUPFD_CLOEXEC, 20), kept5 = ::fcntl(5, F_DUPFD_CLOEXEC, 20);
   const int high1 = ::fcntl(one->descriptor(), F_DUPFD_CLOEXEC, 20);
   const int high2 = ::fcntl(two->descriptor(), F_DUPFD_CLOEXEC, 20);
@@ -103,8 +109,10 @@ TEST(Process, PassesDescriptorsThatStandInEachOthersPlace) {
   const std::array<int, 3> crossed = {out, 5, 4};
   auto child = shell("cat <&4 >&3; cat <&5 >&3", crossed);
   for (const auto& [kept, place] : {std::pair(kept4, 4), std::pair(kept5, 5)}) {
-    if (kept >= 0) ::dup3(kept, place, O_CLOEXEC);
-    else ::close(place);
+    if (kept >= 0)
+      ::dup3(kept, place, O_CLOEXEC);
+    else
+      ::close(place);
     if (kept >= 0) ::close(kept);
   }
   ::close(out);
@@ -118,7 +126,7 @@ TEST(Process, PassesDescriptorsThatStandInEachOthersPlace) {
   EXPECT_TRUE(child->wait(end, kLimit));
 }
 
-TEST(Process, StartsWithAnEmptySignalMaskAndIgnoresWhatTheTerminalSends) {
+TEST(Process, StartsWithAnEmptySignalMaskAndIgnoresSignalsOfTheTerminal) {
   sigset_t some, before;
   sigemptyset(&some);
   sigaddset(&some, SIGTERM);
@@ -142,7 +150,7 @@ TEST(Process, RefusesAProgramThatCannotBeStarted) {
   EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "no child is left";
 }
 
-TEST(Process, AChildFollowsItsParent) {
+TEST(Process, ChildFollowsItsParent) {
   int ends[2];
   ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
   // The grandchild holds the write end until it dies; its parent dies at once.
@@ -165,16 +173,121 @@ TEST(Process, AChildFollowsItsParent) {
   ::waitpid(parent, &status, 0);
   EXPECT_EQ(status, 0);
   pollfd ended{ends[0], POLLIN, 0};
-  EXPECT_EQ(::poll(&ended, 1, 20'000), 1) << "the grandchild lives on";
+  EXPECT_EQ(::poll(&ended, 1, kPatienceMs), 1) << "the grandchild lives on";
   ::close(ends[0]);
 }
 
-TEST(Process, AChildSeesThatItsParentIsGoneAlready) {
+TEST(Process, ChildSeesThatItsParentIsGone) {
   EXPECT_FALSE(follow_parent(::getpid(), SIGTERM)) << "no process is its own parent";
-  EXPECT_FALSE(signal_parent(::getpid(), SIGTERM)) << "nor is it signalled as that";
+  EXPECT_FALSE(signal_parent(::getpid(), SIGTERM)) << "and is not signalled as its parent";
   EXPECT_TRUE(signal_parent(::getppid(), 0));
   ::prctl(PR_SET_PDEATHSIG, 0);
 }
 
+TEST(Background, LowersTheChildAndNotItsParent) {
+  constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;
+  const int before = ::getpriority(PRIO_PROCESS, 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    run_in_background(kMemory);
+    int score = 0;
+    std::ifstream("/proc/self/oom_score_adj") >> score;
+    rlimit core{}, addresses{};
+    ::getrlimit(RLIMIT_CORE, &core);
+    ::getrlimit(RLIMIT_AS, &addresses);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    const bool is_bound = addresses.rlim_cur == kMemory;
+#else
+    const bool is_bound = true;
+#endif
+    const bool gives_way = ::getpriority(PRIO_PROCESS, 0) >= 10;
+    ::_exit((gives_way ? 0 : 1) | (score == 1000 ? 0 : 2) | (core.rlim_cur == 0 ? 0 : 4) | (is_bound ? 0 : 8));
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(::getpriority(PRIO_PROCESS, 0), before);
+}
+
+void pause_ms(long ms) {
+  const timespec time{ms / 1000, ms % 1000 * 1'000'000};
+  ::nanosleep(&time, nullptr);
+}
+
+// A child with a memory holder; killed at the end of the test at the latest.
+class MemoryHolder : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(::pipe2(ends_, O_CLOEXEC), 0);
+    pid_ = ::fork();
+    ASSERT_GE(pid_, 0);
+    if (pid_ == 0) live();
+    ::close(ends_[1]);
+    char granted = 'n';
+    ASSERT_EQ(::read(ends_[0], &granted, 1), 1);
+    ASSERT_EQ(granted, 'y');
+    std::ifstream children("/proc/" + std::to_string(pid_) + "/task/" + std::to_string(pid_) + "/children");
+    if (!(children >> holder_)) GTEST_SKIP() << "this kernel lists no children of a thread";
+    pidfd_ = OwnedDescriptor(static_cast<int>(::syscall(SYS_pidfd_open, holder_, 0)));
+    ASSERT_GE(pidfd_.fd, 0);
+  }
+  void TearDown() override {
+    if (pid_ > 0) kill_it();
+    ::close(ends_[0]);
+  }
+
+  [[noreturn]] void live() {
+    follow_parent(::getppid(), SIGKILL);  // an aborted test leaves no process behind
+    const char granted = start_memory_holder() ? 'y' : 'n';
+    if (::write(ends_[1], &granted, 1) != 1) ::_exit(1);
+    while (true) ::pause();
+  }
+  void kill_it() {
+    ::kill(pid_, SIGKILL);  // still ours: not reaped yet
+    EXPECT_EQ(::waitpid(pid_, nullptr, 0), pid_);
+    pid_ = -1;
+  }
+  bool has_ended(int limit_ms) const {
+    pollfd ended{pidfd_.fd, POLLIN, 0};
+    return ::poll(&ended, 1, limit_ms) == 1;
+  }
+
+  int ends_[2] = {-1, -1};
+  pid_t pid_ = -1, holder_ = -1;
+  OwnedDescriptor pidfd_;
+};
+
+TEST_F(MemoryHolder, OutlivesItsProcessAndEndsSoonAfterwards) {
+  EXPECT_FALSE(has_ended(0));
+  kill_it();
+  EXPECT_TRUE(has_ended(kPatienceMs));
+}
+
+TEST_F(MemoryHolder, LetsDescriptorsCloseAtTheDeathOfItsProcess) {
+  kill_it();
+  char byte;
+  EXPECT_EQ(::read(ends_[0], &byte, 1), 0) << "closed although the memory holder may still live";
+  EXPECT_TRUE(has_ended(kPatienceMs));
+}
+
+TEST_F(MemoryHolder, KeepsThePidfdOnly) {
+  const std::string folder = "/proc/" + std::to_string(holder_) + "/fd/";
+  const auto is_open = [&](int fd) { return ::access((folder + std::to_string(fd)).c_str(), F_OK) == 0; };
+  for (int left = kPatienceMs; is_open(ends_[1]) && left > 0; --left) pause_ms(1);
+  EXPECT_TRUE(is_open(0));
+  for (int fd = 1; fd < 64; ++fd) EXPECT_FALSE(is_open(fd)) << fd;
+}
+
+TEST_F(MemoryHolder, IsEndedBySigkillOnly) {
+  const auto send = [&](int number) { ::syscall(SYS_pidfd_send_signal, pidfd_.fd, number, nullptr, 0); };
+  for (const int number : {SIGTERM, SIGINT, SIGHUP, SIGUSR1}) send(number);
+  EXPECT_FALSE(has_ended(50));
+  EXPECT_EQ(::kill(pid_, 0), 0) << "the signals reached no other process";
+  send(SIGKILL);
+  EXPECT_TRUE(has_ended(kPatienceMs));
+  EXPECT_EQ(::waitpid(pid_, nullptr, WNOHANG), 0) << "the process survives its memory holder";
+}
+
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::process_process_test

@@ -12,11 +12,11 @@ namespace chimera {
 namespace {
 
 char await_letter(pid_t pid, char letter) {
-  for (int i = 0; i < 2000 && process_state(pid).letter != letter; ++i) ::usleep(1'000);
+  for (int i = 0; i < 60'000 && process_state(pid).letter != letter; ++i) ::usleep(1'000);
   return process_state(pid).letter;
 }
 
-TEST(ProcessState, TellsWhoWaitsFromWhoIsStopped) {
+TEST(ProcessState, DistinguishesAWaitingFromAStoppedProcess) {
   const pid_t child = ::fork();
   if (child == 0)
     for (;;) ::pause();
@@ -26,10 +26,10 @@ TEST(ProcessState, TellsWhoWaitsFromWhoIsStopped) {
   EXPECT_EQ(process_state(child).tracer, 0);
   ::kill(child, SIGKILL);  // still ours
   ::waitpid(child, nullptr, 0);
-  EXPECT_EQ(process_state(child).letter, 0) << "nobody is left to ask";
+  EXPECT_EQ(process_state(child).letter, 0) << "the process is gone";
 }
 
-TEST(ProcessState, CountsTheTimeThatItUsed) {
+TEST(ProcessState, CountsTheProcessorTime) {
   const Nanoseconds before = process_state(::getpid()).used;
   const auto used = [] {
     timespec now{};

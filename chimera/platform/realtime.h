@@ -1,53 +1,79 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real-time rights of the calling thread: asked for, then looked up again, because a request that "succeeded" may
-// still not hold (a cgroup, an emulated kernel, a zero budget).
+// What a process needs of the machine to run in real time: scheduling rights, a CPU of its own, locked memory, and
+// limits of the shell that are not too low. The system may accept a request and not follow it (a cgroup, an emulated
+// kernel, a zero budget): enter_realtime() reads back which rights are in force.
 #pragma once
 
 #include <cstdint>
 #include <string_view>
 
 #include "chimera/base/fixed.h"
+#include "chimera/base/result.h"
 #include "chimera/base/time.h"
+#include "chimera/platform/descriptor.h"
 
 namespace chimera {
 
 struct RealtimeRequest {
   int priority = 0;         ///< SCHED_FIFO 1..99; 0 leaves the thread as it is
   int cpu = -1;             ///< the only CPU to run on; -1: any
-  bool lock_memory = true;  ///< no page of the process is ever fetched again
+  bool lock_memory = true;  ///< keep all pages of the process in memory
 };
 
-/// The words of RealtimeGrant::report behind which other processes read what was granted.
+/// Words of RealtimeGrant::report. Other processes read the granted rights behind them.
 inline constexpr std::string_view kLevelWords = "SCHED_FIFO ", kPinnedWords = "pinned to CPU ",
                                   kLockedWords = "memory locked", kRefusedWords = " refused";
 
-/// What of a RealtimeRequest is in force now. What was not asked for counts as granted.
+/// The rights of a RealtimeRequest that are in force now. A right that was not requested counts as granted.
 struct RealtimeGrant {
   bool priority = false;
   bool cpu = false;
   bool memory = false;
-  /// Of each period the kernel lets real-time threads run this share: 0.95 by default, 1 when not throttled.
+  /// Share of each period in which the kernel lets real-time threads run: 0.95 by default, 1 if not throttled.
   double throttle_share = 1;
-  /// What was granted, in one line; or a line that begins with "WARNING" and below it, each in a line that begins
-  /// with two spaces, what is missing with what to set, and what was granted.
+  /// If all rights are granted: one line that names them. Otherwise a line that begins with "WARNING"; below it, each
+  /// in a line that begins with two spaces, the missing rights with the setting that gives them, and the granted
+  /// rights.
   FixedString<400> report;
 
   bool is_complete() const noexcept { return priority && cpu && memory; }
 };
 
-/// Applies `request` to the calling thread (memory: the process), as far as the system allows. Nothing is fatal:
-/// without rights the same program runs, late. Threads and processes that the thread starts from then on are ordinary
+/// Applies `request` to the calling thread (memory: to the process), as far as the system allows. Without rights the
+/// program still runs, but late. Threads and processes that the thread starts later are ordinary
 /// (SCHED_RESET_ON_FORK). Context: setup; may block.
 RealtimeGrant enter_realtime(const RealtimeRequest& request) noexcept;
 
-/// The share of a CPU that the kernel lets real-time threads have (sched_rt_runtime_us of sched_rt_period_us); 1: all.
+/// The share of a CPU that the kernel leaves to real-time threads (sched_rt_runtime_us of sched_rt_period_us); 1: all.
 /// Context: setup.
 double realtime_share() noexcept;
-/// The time of which that is a share (sched_rt_period_us). Context: setup.
+/// The period of that share (sched_rt_period_us). Context: setup.
 Nanoseconds realtime_period() noexcept;
 
-/// True when the system grants SCHED_FIFO at `priority` to this user. The calling thread is left as it was.
+/// True if the system grants SCHED_FIFO at `priority` to this user. The calling thread keeps its policy.
 /// Context: setup.
 bool may_be_realtime(int priority) noexcept;
+
+/// The claim of a CPU for the SCHED_FIFO levels, one on the whole machine: priorities of two subsystems on one CPU are
+/// not comparable, so both would lose their guarantees. Held until its end or the death of the process. Move-only. Not
+/// inherited by exec. The claim is an abstract Unix socket "chimera-cpu-N": "machine" means one network namespace.
+class CpuClaim {
+ public:
+  /// Refuses a claimed CPU: names the process and user that hold the claim, and the remedy. Context: setup.
+  static Result<CpuClaim> take(int cpu) noexcept;
+
+  CpuClaim() noexcept = default;
+
+  bool is_held() const noexcept { return descriptor_.fd >= 0; }
+
+ private:
+  explicit CpuClaim(OwnedDescriptor descriptor) noexcept : descriptor_(std::move(descriptor)) {}
+  OwnedDescriptor descriptor_;
+};
+
+/// Refuse limits of the shell or the service (ulimit, LimitSTACK=) under which the process would die without a message:
+/// a stack below 256 KiB, which every process needs; files below 4 MiB, which shared memory needs. Context: setup.
+Result<void> may_run_here() noexcept;
+Result<void> may_share_memory_here() noexcept;
 
 }  // namespace chimera

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory locking can be judged in a release build only: the address sanitizer turns mlockall into nothing.
+// For a release build: under the address sanitizer mlockall does nothing.
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 
@@ -18,7 +18,7 @@ long locked_kib() {
   return -1;
 }
 
-TEST(RealtimeMemory, IsReportedLockedWhenTheKernelSaysSo) {
+TEST(RealtimeMemory, IsReportedLockedIfTheKernelReportsIt) {
   const RealtimeGrant grant = enter_realtime({.priority = 0, .cpu = -1, .lock_memory = true});
   EXPECT_EQ(grant.memory, locked_kib() > 0);
   if (grant.memory) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs with and without rights: what is reported must be what the kernel says, either way.
+// Runs with and without rights: in both cases the report must match the kernel.
 #include "chimera/platform/realtime.h"
 
 #include <gtest/gtest.h>
@@ -12,12 +12,12 @@
 #include <string_view>
 #include <thread>
 
-#include "chimera/platform/processor_level.h"
+#include "chimera/platform/thread.h"
 
 namespace chimera {
 namespace {
 
-// On a thread of its own, so that the test's thread stays ordinary.
+// Uses a thread of its own, so that the thread of the test stays ordinary.
 RealtimeGrant enter_on_a_thread(const RealtimeRequest& request, int* policy = nullptr, int* cpus = nullptr) {
   RealtimeGrant grant;
   std::thread([&] {
@@ -45,7 +45,7 @@ int first_allowed_cpu() {
 constexpr const char* kOrdinary =
     "WARNING: not real time\n  ordinary scheduling was asked for (priority 0): any job may come late";
 
-TEST(Realtime, NothingAskedForIsGrantedAndNotRealTime) {
+TEST(Realtime, EmptyRequestIsGrantedAndNotRealTime) {
   const RealtimeGrant grant = enter_on_a_thread({.priority = 0, .cpu = -1, .lock_memory = false});
   EXPECT_TRUE(grant.is_complete());
   EXPECT_EQ(grant.report.view(), kOrdinary);
@@ -60,7 +60,7 @@ TEST(Realtime, CpuIsGrantedToAnOrdinaryUser) {
   EXPECT_EQ(grant.report.view(), std::string(kOrdinary) + "\n  granted: pinned to CPU " + std::to_string(cpu));
 }
 
-TEST(Realtime, ACpuThatDoesNotExistIsRefusedByNumber) {
+TEST(Realtime, RefusesAMissingCpuByNumber) {
   const RealtimeGrant grant = enter_on_a_thread({.priority = 0, .cpu = 1000, .lock_memory = false});
   EXPECT_FALSE(grant.cpu);
   EXPECT_EQ(grant.report.view(), "WARNING: not real time\n  CPU 1000 refused: this machine has CPU 0 to " +
@@ -85,8 +85,8 @@ TEST(Realtime, PriorityIsReportedAsTheKernelHasIt) {
   }
 }
 
-// Also after its level was changed, as the preemptive executor does with every job.
-TEST(Realtime, WhatAThreadStartsIsOrdinary) {
+// A change of the level must keep this: the preemptive executor changes the level for every job.
+TEST(Realtime, ThreadsAndProcessesOfARealtimeThreadAreOrdinary) {
   int policies[4] = {-1, -1, -1, -1};
   bool granted = false;
   std::thread([&] {
@@ -109,7 +109,7 @@ TEST(Realtime, WhatAThreadStartsIsOrdinary) {
   for (const int policy : policies) EXPECT_EQ(policy, SCHED_OTHER);
 }
 
-TEST(Realtime, APriorityOutOfRangeIsRefusedEvenWithRights) {
+TEST(Realtime, RefusesAPriorityOutOfRangeEvenWithRights) {
   int policy = -1;
   const RealtimeGrant grant = enter_on_a_thread({.priority = 100, .cpu = -1, .lock_memory = false}, &policy);
   EXPECT_FALSE(grant.priority);

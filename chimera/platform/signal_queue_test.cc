@@ -15,7 +15,7 @@ bool is_blocked(int number) {
   return ::sigismember(&mask, number) == 1;
 }
 
-TEST(SignalQueue, TellsWhatArrivedAndWhoSentIt) {
+TEST(SignalQueue, ReturnsTheSignalAndItsSender) {
   const int numbers[] = {SIGUSR1, SIGUSR2};
   auto queue = SignalQueue::open(numbers);
   ASSERT_TRUE(queue);
@@ -28,8 +28,8 @@ TEST(SignalQueue, TellsWhatArrivedAndWhoSentIt) {
   EXPECT_FALSE(queue->take(arrived));
 }
 
-TEST(SignalQueue, BlocksWithoutTellingWhatIsIgnored) {
-  const int numbers[] = {SIGUSR1}, ignored[] = {SIGURG};  // SIGURG does nothing when it is let through again
+TEST(SignalQueue, BlocksIgnoredSignalsWithoutReturningThem) {
+  const int numbers[] = {SIGUSR1}, ignored[] = {SIGURG};  // SIGURG has no effect when it is unblocked
   auto queue = SignalQueue::open(numbers, ignored);
   ASSERT_TRUE(queue);
   EXPECT_TRUE(is_blocked(SIGURG));
@@ -38,7 +38,7 @@ TEST(SignalQueue, BlocksWithoutTellingWhatIsIgnored) {
   EXPECT_FALSE(queue->take(arrived));
 }
 
-TEST(SignalQueue, RestoresTheMaskAtItsEndOnce) {
+TEST(SignalQueue, RestoresTheMaskOnceAtItsEnd) {
   const int numbers[] = {SIGUSR1};
   {
     SignalQueue kept;
@@ -53,7 +53,7 @@ TEST(SignalQueue, RestoresTheMaskAtItsEndOnce) {
   EXPECT_FALSE(is_blocked(SIGUSR1));
 }
 
-TEST(SignalQueue, MayLeaveItsSignalsBlocked) {
+TEST(SignalQueue, LeavesItsSignalsBlockedAfterStayBlocked) {
   const int numbers[] = {SIGUSR2};
   {
     auto queue = SignalQueue::open(numbers);
@@ -67,7 +67,7 @@ TEST(SignalQueue, MayLeaveItsSignalsBlocked) {
   ::pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
 }
 
-TEST(SignalQueue, EmptyBlocksNothingAndTellsNothing) {
+TEST(SignalQueue, EmptyQueueBlocksAndReturnsNothing) {
   SignalQueue queue;
   SignalQueue::Arrived arrived;
   EXPECT_FALSE(queue.take(arrived));

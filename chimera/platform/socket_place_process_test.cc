@@ -8,10 +8,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstring>
+#include <cstdlib>
 #include <filesystem>
-
-#include "chimera/platform/socket_folder.h"
 
 namespace chimera {
 namespace {
@@ -35,7 +33,7 @@ class SocketPlaceTest : public ::testing::Test {
   std::string base_, folder_;
 };
 
-TEST_F(SocketPlaceTest, ListensForItsUserAloneAndLeavesNothing) {
+TEST_F(SocketPlaceTest, ListensForItsUserOnlyAndLeavesNothing) {
   {
     const auto place = SocketPlace::open(folder_, "arm", false);
     ASSERT_TRUE(place.has_value()) << place.error().message.view();
@@ -50,21 +48,21 @@ TEST_F(SocketPlaceTest, ListensForItsUserAloneAndLeavesNothing) {
   EXPECT_FALSE(std::filesystem::exists(folder_ + "/arm.sock"));
 }
 
-TEST_F(SocketPlaceTest, IsOpenedForOthersWhenTheirRightsAreJudgedAtTheDoor) {
+TEST_F(SocketPlaceTest, IsOpenToOtherUsersWhenAsked) {
   const auto place = SocketPlace::open(folder_, "arm", true);
   ASSERT_TRUE(place.has_value());
   EXPECT_EQ(mode(folder_), 0711u);
   EXPECT_EQ(mode(place->path()), 0666u);
 }
 
-TEST_F(SocketPlaceTest, RefusesASubsystemThatRunsAndNamesItsProcess) {
+TEST_F(SocketPlaceTest, RefusesARunningSubsystemAndNamesItsProcess) {
   const auto place = SocketPlace::open(folder_, "arm", false);
   EXPECT_EQ(refusal(), "a subsystem 'arm' runs already (process " + std::to_string(::getpid()) +
                            "): end it, or give this one another name");
   EXPECT_EQ(refusal("leg"), "");
 }
 
-TEST_F(SocketPlaceTest, TakesOverTheSocketOfADeadKeeper) {
+TEST_F(SocketPlaceTest, ReplacesTheSocketOfADeadKeeper) {
   const pid_t child = ::fork();
   if (child == 0) {
     const auto place = SocketPlace::open(folder_, "arm", false);
@@ -77,7 +75,7 @@ TEST_F(SocketPlaceTest, TakesOverTheSocketOfADeadKeeper) {
   EXPECT_EQ(refusal(), "");
 }
 
-TEST_F(SocketPlaceTest, DoesNotRemoveTheSocketOfAnother) {
+TEST_F(SocketPlaceTest, DoesNotRemoveAFileInItsPlace) {
   const std::string path = folder_ + "/arm.sock";
   {
     const auto place = SocketPlace::open(folder_, "arm", false);
@@ -88,7 +86,7 @@ TEST_F(SocketPlaceTest, DoesNotRemoveTheSocketOfAnother) {
   EXPECT_TRUE(std::filesystem::exists(path));
 }
 
-TEST_F(SocketPlaceTest, RefusesAFolderThatIsNotSafe) {
+TEST_F(SocketPlaceTest, RefusesAnUnsafeFolder) {
   std::filesystem::create_directory(base_ + "/elsewhere");
   std::filesystem::create_symlink(base_ + "/elsewhere", folder_);
   EXPECT_EQ(refusal(), "the folder of the sockets is no folder, or a symbolic link: remove it");
@@ -106,7 +104,7 @@ TEST_F(SocketPlaceTest, RefusesAFolderThatIsNotSafe) {
   EXPECT_FALSE(is_safe_folder(folder_.c_str()));
 }
 
-TEST_F(SocketPlaceTest, OpensTheFolderForOthersAndLeavesOneAsItIsThatTheyMayList) {
+TEST_F(SocketPlaceTest, OpensTheFolderToOthersUnlessTheyMayListItAlready) {
   const auto mode_after = [this](mode_t before) {
     std::filesystem::create_directory(folder_);
     ::chmod(folder_.c_str(), before);
@@ -116,10 +114,10 @@ TEST_F(SocketPlaceTest, OpensTheFolderForOthersAndLeavesOneAsItIsThatTheyMayList
   };
   EXPECT_EQ(mode_after(0700), 0711u);
   EXPECT_EQ(mode_after(0755), 0755u);
-  EXPECT_EQ(mode(folder_), 0755u) << "also behind it";
+  EXPECT_EQ(mode(folder_), 0755u) << "at the end of the socket too";
 }
 
-TEST_F(SocketPlaceTest, ClosesTheFolderBehindTheLastThatLetOthersPass) {
+TEST_F(SocketPlaceTest, ClosesTheFolderAfterTheLastSocketThatIsOpenToOthers) {
   auto first = SocketPlace::open(folder_, "a", true);
   auto second = SocketPlace::open(folder_, "b", true);
   const auto own = SocketPlace::open(folder_, "c", false);
@@ -136,17 +134,19 @@ TEST_F(SocketPlaceTest, RefusesAPathTooLongForASocket) {
             "subsystem a shorter name");
 }
 
-TEST(SocketFolder, IsTheUsersRuntimeFolderElseOneInTmp) {
+TEST(SocketFolder, IsTheRuntimeFolderOfTheUserOtherwiseAFolderInTmp) {
   const char* before = std::getenv("XDG_RUNTIME_DIR");
   const std::string kept = before == nullptr ? "" : before;
-  ::setenv("XDG_RUNTIME_DIR", "/run/somebody", 1);
-  EXPECT_EQ(socket_folder().view(), "/run/somebody/chimera");
+  ::setenv("XDG_RUNTIME_DIR", "/run/other", 1);
+  EXPECT_EQ(socket_folder().view(), "/run/other/chimera");
   ::setenv("XDG_RUNTIME_DIR", "relative", 1);  // not a place
   const std::string user = std::to_string(::geteuid());
   const bool has_given = std::filesystem::is_directory("/run/user/" + user);
   EXPECT_EQ(socket_folder().view(), has_given ? "/run/user/" + user + "/chimera" : "/tmp/chimera-" + user);
-  if (before == nullptr) ::unsetenv("XDG_RUNTIME_DIR");
-  else ::setenv("XDG_RUNTIME_DIR", kept.c_str(), 1);
+  if (before == nullptr)
+    ::unsetenv("XDG_RUNTIME_DIR");
+  else
+    ::setenv("XDG_RUNTIME_DIR", kept.c_str(), 1);
 }
 
 }  // namespace

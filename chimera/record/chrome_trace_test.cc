@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 
 #include "chimera/task/state_machine.h"
+#include "chimera/text/json.h"
 
 namespace chimera {
 namespace {
@@ -21,7 +21,7 @@ TapRecord record(TapKind kind, std::int64_t at, std::uint32_t task, std::uint32_
   return made;
 }
 
-nlohmann::json trace_of(std::span<const TapRecord> records, std::uint64_t lost = 0) {
+Json trace_of(std::span<const TapRecord> records, std::uint64_t lost = 0) {
   const std::string rtpus[] = {"main"};
   const std::string tasks[] = {"pid", "say \"hi\""};
   char* text = nullptr;
@@ -31,7 +31,7 @@ nlohmann::json trace_of(std::span<const TapRecord> records, std::uint64_t lost =
   trace.add(records);
   EXPECT_TRUE(trace.end(lost, 2 * lost));
   std::fclose(file);
-  nlohmann::json parsed = nlohmann::json::parse(std::string(text, size));
+  Json parsed = Json::parse(std::string(text, size));
   std::free(text);
   return parsed;
 }
@@ -53,8 +53,8 @@ TEST(ChromeTrace, KeepsEveryNanosecond) {
   EXPECT_EQ(events[4]["ph"], "X");
   EXPECT_EQ(events[4]["name"], "cycle");
   EXPECT_EQ(events[4]["tid"], 2);
-  EXPECT_DOUBLE_EQ(events[4]["ts"].get<double>(), 0.001);
-  EXPECT_DOUBLE_EQ(events[4]["dur"].get<double>(), 12.345);
+  EXPECT_DOUBLE_EQ(events[4]["ts"].as_double(), 0.001);
+  EXPECT_DOUBLE_EQ(events[4]["dur"].as_double(), 12.345);
   EXPECT_EQ(events[4]["args"]["ns"], 1);
   EXPECT_EQ(events[4]["args"]["dur_ns"], 12'345);
 }
@@ -71,7 +71,7 @@ TEST(ChromeTrace, NamesEveryKindOfRecord) {
   const auto trace = trace_of(records, 3);
   std::string names;
   for (const auto& event : trace["traceEvents"])
-    if (event["ph"] == "i") names += event["name"].get<std::string>() + ", ";
+    if (event["ph"] == "i") names += event["name"].as_string() + ", ";
   EXPECT_EQ(names, "release, preempt, drop, signal off, fault in cycle, state ERROR, flag up, flag down, ");
   EXPECT_EQ(trace["otherData"]["lost_records"], 3);
   EXPECT_EQ(trace["otherData"]["missed_records"], 6);
@@ -86,7 +86,7 @@ TEST(ChromeTrace, SortsWhatIsToldLaterAndShowsDeadlines) {
   const auto trace = trace_of(records);
   for (const auto& event : trace["traceEvents"])
     if (event["ph"] != "M")
-      seen += event["name"].get<std::string>() + " " + std::to_string(event["args"]["ns"].get<int>()) + ", ";
+      seen += event["name"].as_string() + " " + std::to_string(event["args"]["ns"].as_int64()) + ", ";
   EXPECT_EQ(seen, "release 1000, cycle 2000, cycle 3000, release 3000, deadline 6000, ");
 }
 
@@ -97,7 +97,7 @@ TEST(ChromeTrace, HoldsBackNoMoreThanTwoSeconds) {
   std::string seen;
   const auto trace = trace_of(records);
   for (const auto& event : trace["traceEvents"])
-    if (event["ph"] != "M") seen += event["name"].get<std::string>() + " ";
+    if (event["ph"] != "M") seen += event["name"].as_string() + " ";
   EXPECT_EQ(seen, "preempt drop preempt ");
 }
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "chimera/platform/realtime.h"
-#include "chimera/platform/wake_event.h"
+#include "chimera/platform/wake.h"
 #include "chimera/schedule/bands.h"
 #include "chimera/schedule/shares.h"
 #include "chimera/schedule/utilisation.h"

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <thread>
 
-#include "chimera/platform/doorbell.h"
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
+#include "chimera/platform/wake.h"
 #include "chimera/rtpu/rtpu_control.h"
 #include "chimera/runtime/executive/executive.h"
 #include "chimera/runtime/hosted/background_writer.h"

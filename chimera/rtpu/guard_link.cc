@@ -2,7 +2,7 @@
 // Hands the unit's memory and the descriptors of its devices to the guard.
 #include "chimera/rtpu/guard_link.h"
 
-#include "chimera/platform/readiness.h"
+#include "chimera/platform/descriptor.h"
 
 namespace chimera {
 namespace {

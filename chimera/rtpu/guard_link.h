@@ -2,7 +2,7 @@
 // A real-time unit's line to the guard, which writes to the devices when the unit is dead.
 #pragma once
 
-#include "chimera/platform/channel.h"
+#include "chimera/platform/local_socket.h"
 #include "chimera/rtpu/guard_message.h"
 #include "chimera/runtime/hosted/rtpu_block.h"
 #include "chimera/runtime/safe_frame.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "chimera/base/time.h"
-#include "chimera/platform/wake_event.h"
+#include "chimera/platform/wake.h"
 #include "chimera/runtime/task_word.h"
 
 namespace chimera {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "chimera/platform/doorbell.h"
+#include "chimera/platform/wake.h"
 #include "chimera/rtpu/group_claims.h"
 #include "chimera/rtpu/peers.h"
 #include "chimera/runtime/peer_view.h"

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "chimera/platform/process_id.h"
+#include "chimera/platform/process_state.h"
 
 namespace chimera {
 

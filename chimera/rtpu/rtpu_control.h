@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "chimera/base/fixed.h"
-#include "chimera/platform/doorbell.h"
+#include "chimera/platform/wake.h"
 #include "chimera/rtpu/hanging_jobs.h"
 #include "chimera/rtpu/peer_links.h"
 #include "chimera/rtpu/supervised_signals.h"

@@ -2,7 +2,7 @@
 // Runs the slow methods init and kill one after the other.
 #include "chimera/rtpu/service_thread.h"
 
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 #include "chimera/runtime/executive/executive.h"
 
 namespace chimera {

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <thread>
 
-#include "chimera/platform/doorbell.h"
+#include "chimera/platform/wake.h"
 #include "chimera/rtpu/task_queue.h"
 #include "chimera/runtime/service.h"
 #include "chimera/runtime/task_set.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lies within the time that a task is charged with (docs/decisions/0018-execution-time.md): no value is copied
-// outside it. Durations are not judged: the clock of the test looks at the memory each time it is read.
+// The execution time of a task (docs/decisions/0026-instructions-of-a-job.md): no value is copied outside of it.
+// Durations are not judged: the clock of the test looks at the memory each time it is read.
 #include <gtest/gtest.h>
 
 #include <limits>

@@ -8,7 +8,7 @@
 // All copying and all checking of values is done by begin_cycle: it stages the last outputs before the method and looks
 // at the safety ports after it. A clock read between the two halves therefore ends the execution time of the job with
 // both transfers in it; what end_cycle adds is the store of the counter that makes the outputs visible, whatever their
-// size (docs/decisions/0018-execution-time.md).
+// size (docs/decisions/0026-instructions-of-a-job.md).
 #pragma once
 
 #include "chimera/base/time.h"

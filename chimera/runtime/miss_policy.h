@@ -14,7 +14,7 @@
 //
 // A job with a thread of its own is looked at when its deadline comes, and when its budget is used up: the cause is
 // reported then, and flag and stop act then. Else the job's end does that, as it does the rest in any case
-// (docs/decisions/0017-late-jobs-are-told.md).
+// (docs/decisions/0003-releases-and-late-jobs.md).
 //
 // A release that is dropped because jobs took too long is a missed deadline as well, in Profile::missed and towards
 // max_consecutive; one that a reaction drops on purpose is not.

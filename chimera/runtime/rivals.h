@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which tasks open the same resource, so that only one of them can be created at a time. Two tasks are rivals when each
 // has a resource port with the same text, neither port is declared `shared`, and no configuration names both: who lets
-// them run together says that the device takes it. docs/decisions/0065-tasks-with-the-same-resource.md.
+// them run together says that the device takes it. docs/design/switch.md.
 #pragma once
 
 #include <cstdint>

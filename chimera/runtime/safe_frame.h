@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is to be written to a device when the process that drives it is dead: docs/decisions/0060-drill-and-guard.md.
+// What is to be written to a device when the process that drives it is dead: docs/design/guard.md.
 #pragma once
 
 #include <atomic>

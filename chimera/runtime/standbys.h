@@ -2,7 +2,7 @@
 // Tasks that stand in for each other. A primary and its standbys are a group, of which one is ON at a time. When that
 // one goes to ERROR, or its process dies, another one takes over, in this order: the primary, its standbys in the order
 // of the description. Follows from the states of tasks over all contexts, so that every context comes to the same; who
-// turns tasks ON is runtime/recovery.h. docs/decisions/0059-standbys-take-over-by-themselves.md.
+// turns tasks ON is runtime/recovery.h. docs/design/standby.md.
 #pragma once
 
 #include <cstdint>

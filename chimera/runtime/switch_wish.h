@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The configuration that a task or a reaction of one context asked for last, as words that outlive whoever carries it
-// out: a state, not a message. docs/formats/processes.md, docs/decisions/0057-requests-over-processes.md.
+// out: a state, not a message. docs/formats/processes.md, docs/design/switch.md.
 #pragma once
 
 #include <atomic>

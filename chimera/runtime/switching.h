@@ -19,8 +19,7 @@
 //
 // `on` and `off` run while the processor is idle (idle_gap.h), where jobs have threads of their own at the urgency of
 // the task (job_threads.h). Jobs take no part: each step is an act of an edge.
-// docs/decisions/0045-a-switch-is-committed-by-the-rtpus.md, docs/decisions/0049-switch-in-one-context.md,
-// docs/decisions/0055-a-switch-among-threads.md.
+// docs/design/switch.md, docs/decisions/0045-a-switch-is-committed-by-the-rtpus.md.
 #pragma once
 
 #include <cstdint>

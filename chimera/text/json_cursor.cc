@@ -4,24 +4,21 @@
 
 #include <algorithm>
 #include <limits>
-#include <nlohmann/json.hpp>
-#include <set>
 #include <vector>
 
+#include "chimera/text/json.h"
 #include "chimera/text/nearest.h"
 
 namespace chimera {
 namespace {
 
-using nlohmann::json;
-
 std::string in_quotes(std::string_view text) { return "\"" + std::string(text.substr(0, 60)) + "\""; }
 
-std::string kind(const json& value) {
-  if (value.is_number_float()) return "a fraction";
-  if (value.is_number()) return "a whole number";
-  if (value.is_string()) return in_quotes(value.get_ref<const std::string&>());
-  if (value.is_boolean()) return value.get<bool>() ? "true" : "false";
+std::string kind(const Json& value) {
+  if (value.is_whole()) return "a whole number";
+  if (value.is_number()) return "a fraction";
+  if (value.is_string()) return in_quotes(value.as_string());
+  if (value.is_bool()) return value.as_bool() ? "true" : "false";
   return value.is_null() ? "null" : value.is_array() ? "a list" : "an object";
 }
 
@@ -44,13 +41,6 @@ std::size_t nesting_of(std::string_view text) {
   return deepest;
 }
 
-/// The place and reason in the parser's message, without its own name and number.
-std::string reason(const json::parse_error& error) {
-  const std::string_view what = error.what();
-  const std::size_t at = what.find("parse error");
-  return std::string(at == std::string_view::npos ? what : what.substr(at)).substr(0, 200);
-}
-
 }  // namespace
 
 void JsonCursor::expect_keys(std::initializer_list<std::string_view> required,
@@ -70,11 +60,9 @@ void JsonCursor::expect_keys(std::initializer_list<std::string_view> required,
 
 bool JsonCursor::has(std::string_view key) const { return value_.contains(key); }
 
-JsonCursor JsonCursor::at(std::string_view key) const {
-  return {value_.at(std::string(key)), path_ + "." + std::string(key)};
-}
+JsonCursor JsonCursor::at(std::string_view key) const { return {value_.at(key), path_ + "." + std::string(key)}; }
 
-JsonCursor JsonCursor::at(std::size_t i) const { return {value_.at(i), path_ + "[" + std::to_string(i) + "]"}; }
+JsonCursor JsonCursor::at(std::size_t i) const { return {value_[i], path_ + "[" + std::to_string(i) + "]"}; }
 
 std::size_t JsonCursor::size(std::size_t limit) const {
   if (!value_.is_array()) refuse("expected a list, found " + kind(value_));
@@ -86,52 +74,41 @@ std::size_t JsonCursor::size(std::size_t limit) const {
 
 std::string JsonCursor::text() const {
   if (!value_.is_string()) refuse("expected a text, found " + kind(value_));
-  return value_.get<std::string>();
+  return value_.as_string();
 }
 
 bool JsonCursor::truth() const {
-  if (!value_.is_boolean()) refuse("expected true or false, found " + kind(value_));
-  return value_.get<bool>();
+  if (!value_.is_bool()) refuse("expected true or false, found " + kind(value_));
+  return value_.as_bool();
 }
 
 std::uint32_t JsonCursor::whole() const {
-  if (!value_.is_number_unsigned() || value_.get<std::uint64_t>() > UINT32_MAX) {
+  if (!value_.is_whole() || value_.as_int64() < 0 || value_.as_int64() > UINT32_MAX) {
     refuse("expected a whole number from 0 to 4294967295, found " + kind(value_));
   }
-  return value_.get<std::uint32_t>();
+  return static_cast<std::uint32_t>(value_.as_int64());
 }
 
 double JsonCursor::number() const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if (value_.is_string() && value_.get_ref<const std::string&>() == "inf") return kInfinity;
-  if (value_.is_string() && value_.get_ref<const std::string&>() == "-inf") return -kInfinity;
+  if (value_.is_string() && value_.as_string() == "inf") return kInfinity;
+  if (value_.is_string() && value_.as_string() == "-inf") return -kInfinity;
   if (!value_.is_number()) refuse("expected a number, found " + kind(value_));
-  return value_.get<double>();
+  return value_.as_double();
 }
 
-json read_json(std::string_view text, std::size_t bytes, std::size_t nesting) {
+Json read_json(std::string_view text, std::size_t bytes, std::size_t nesting) {
   if (text.size() > bytes) {
     throw JsonRefusal{"$: " + std::to_string(text.size()) + " bytes, at most " + std::to_string(bytes) +
                       " are allowed"};
   }
   if (nesting_of(text) > nesting) throw JsonRefusal{"$: nested deeper than " + std::to_string(nesting)};
-  std::vector<std::set<std::string>> open;
-  std::string twice;
-  const auto watch = [&](int, json::parse_event_t event, json& parsed) {
-    if (event == json::parse_event_t::object_start) open.emplace_back();
-    if (event == json::parse_event_t::object_end) open.pop_back();
-    if (event == json::parse_event_t::key && !open.back().insert(parsed.get<std::string>()).second && twice.empty()) {
-      twice = in_quotes(parsed.get<std::string>());
-    }
-    return true;
-  };
+  std::optional<std::string> twice;
   try {
-    json tree = json::parse(text, watch);
-    if (!twice.empty()) throw JsonRefusal{"$: the key " + twice + " comes twice in one object"};
+    Json tree = Json::parse(text, &twice);
+    if (twice) throw JsonRefusal{"$: the key " + in_quotes(*twice) + " comes twice in one object"};
     return tree;
-  } catch (const json::parse_error& error) {
-    throw JsonRefusal{"$: " + reason(error)};
-  } catch (const json::exception& error) {  // a number beyond every double
+  } catch (const JsonError& error) {
     throw JsonRefusal{"$: " + std::string(error.what()).substr(0, 200)};
   }
 }

@@ -4,9 +4,10 @@
 
 #include <cstdint>
 #include <initializer_list>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+
+#include "chimera/text/json.h"
 
 namespace chimera {
 
@@ -18,7 +19,7 @@ struct JsonRefusal {
 /// A value of the tree and its path ("$.ports[2].unit"). The tree outlives its cursors. Context: setup.
 class JsonCursor {
  public:
-  JsonCursor(const nlohmann::json& value, std::string path) : value_(value), path_(std::move(path)) {}
+  JsonCursor(const Json& value, std::string path) : value_(value), path_(std::move(path)) {}
 
   [[noreturn]] void refuse(std::string_view why) const { throw JsonRefusal{path_ + ": " + std::string(why)}; }
 
@@ -36,15 +37,15 @@ class JsonCursor {
   bool truth() const;
   std::uint32_t whole() const;
   double number() const;  ///< or the words "inf" and "-inf"
-  const nlohmann::json& value() const { return value_; }
+  const Json& value() const { return value_; }
 
  private:
-  const nlohmann::json& value_;
+  const Json& value_;
   std::string path_;
 };
 
 /// The tree of `text`. Throws JsonRefusal for text above `bytes` or nested deeper than `nesting` (judged before
 /// parsing), for what is no JSON, and for a key that comes twice in one object.
-nlohmann::json read_json(std::string_view text, std::size_t bytes, std::size_t nesting);
+Json read_json(std::string_view text, std::size_t bytes, std::size_t nesting);
 
 }  // namespace chimera

@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "chimera/base/hosted/ordinary_file.h"
-#include "chimera/platform/frozen_bytes.h"
+#include "chimera/platform/shared_memory.h"
 #include "chimera/text/nearest.h"
 #include "chimera/units/unit_text.h"
 

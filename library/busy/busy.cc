@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes a stated execution time in every cycle: the task sets of schedules, and load for measurements.
+// Uses a stated execution time in every cycle: task sets of schedules, load for measurements.
 #include <cmath>
 
 #include "chimera/task/component.h"

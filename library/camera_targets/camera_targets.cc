@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vision subsystem, simulated: a ball moves, a camera looks at it, and what is found in the picture is sent away.
+// Simulates the vision subsystem: a ball moves before a camera, and its place in each picture is sent over a link.
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -14,17 +14,16 @@ namespace {
 
 struct CameraTargets : library::CameraPorts {
   Out<double[3]> ball{"ball", "m", frame = "base", doc = "Where the ball is."};
-  Out<double[3]> feature{"feature", "1", doc = "Its picture: right, down, diameter in pixels; 0 while out of sight."};
+  Out<double[3]> feature{"feature", "1",
+                         doc = "Place (right, down) and diameter in the picture, in pixels; 0 out of sight."};
   Out<bool> in_sight{"in_sight", "1", initial = false, doc = "The ball is in the picture."};
-  Out<std::int64_t> sent{"sent", "1", initial = 0, doc = "Features given to the link."};
-  InConst<double[3]> centre{"centre", "m", frame = "base", doc = "Of the ball's path."};
+  Out<std::int64_t> sent{"sent", "1", initial = 0, doc = "Features sent."};
+  InConst<double[3]> centre{"centre", "m", frame = "base", doc = "Middle of the path of the ball."};
   InConst<double[3]> amplitude{"amplitude", "m", initial = 0.0, range(0, 10), frame = "base", doc = "Along each axis."};
   InConst<double[3]> frequency{"frequency", "Hz", initial = 0.0, range(0, 10), doc = "Along each axis."};
   InConst<double[3]> phase{"phase", "rad", initial = 0.0, doc = "Along each axis."};
-  InConst<double> noise{"noise", "1", initial = 0.0, range(0, 20),
-                        doc = "Pixels: each number of a feature is off by at most this."};
-  Resource link{"link", safe_state, shared,
-                doc = "Where features go: udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH."};
+  InConst<double> noise{"noise", "1", initial = 0.0, range(0, 20), doc = "Largest error of a number, in pixels."};
+  Resource link{"link", safe_state, shared, doc = "udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH."};
 
   void init() {
     reinit();
@@ -62,7 +61,7 @@ struct CameraTargets : library::CameraPorts {
       ball[i] = centre[i] + amplitude[i] * std::sin(2 * std::numbers::pi * frequency[i] * t + phase[i]);
     }
   }
-  // The same errors in every run.
+  // Errors of the picture. Every run has the same ones.
   double off_by() {
     random_ = random_ * 6364136223846793005u + 1442695040888963407u;
     return *noise * (static_cast<double>(random_ >> 11) * 0x1p-52 - 1);
@@ -74,7 +73,7 @@ struct CameraTargets : library::CameraPorts {
   std::uint64_t random_ = 1;
 };
 
-CHIMERA_COMPONENT(CameraTargets, "camera_targets", "Simulated vision: a ball before a camera, its features sent away.",
+CHIMERA_COMPONENT(CameraTargets, "camera_targets", "Simulated vision: sends the features of a ball before a camera.",
                   rate = 30.0, source = "1994 paper, section 3.4: the visual servoing subsystem");
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds for the cars of either kind.
+// Properties of both simulated cars.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The physical world of the cruise control (2000 paper, section 6): a car with a combustion engine on a hilly road.
+// Simulates the car of the cruise control (2000 paper, section 6): a combustion engine on a hilly road.
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +19,7 @@ struct Car : library::RollingCar {
   }
   Outcome cycle(Cycle c) {
     if (!std::isfinite(*gas) || !std::isfinite(*fb)) return fault("gas or fb is not finite");
-    // Whoever drives when the configuration is illegal takes the foot off the gas and rolls.
+    // An illegal configuration releases gas and brake, and the car rolls.
     const double wanted = c.illegal() ? 0 : std::clamp(*gas, 0.0, 1.0), brake = c.illegal() ? 0 : std::fmax(0, *fb);
     roll(c.dt(), brake, [&](double h) {
       opening_ += (wanted - opening_) * h / (engine_.lag + h);

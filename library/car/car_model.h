@@ -7,7 +7,7 @@
 
 namespace chimera::library {
 
-/// What the car is made of. The defaults are the book's; lag and wheel radius are ours.
+/// Properties of a car. The defaults are those of the book; lag and wheel radius are ours.
 struct CarBody {
   double mass = 1600;            ///< kg
   double drag_area = 0.32 * 2.4; ///< Cd A, m2
@@ -41,17 +41,17 @@ class CarModel {
     distance_ = 0;
     wheel_angle_ = 0;
   }
-  /// Goes on where another car is: a wheel of this one that has turned by `wheel_angle` (rad) has come so far.
+  /// Continues at the speed of another car, with the distance of a wheel angle of `wheel_angle` (rad).
   void resume(double speed, double wheel_angle) noexcept {
     speed_ = speed;
     wheel_angle_ = wheel_angle;
     distance_ = wheel_angle * body_.wheel_radius;
   }
-  /// Another load or other wheels, at the same place and speed.
+  /// Changes load or wheels and keeps place and speed.
   void refit(const CarBody& body) noexcept { body_ = body; }
 
-  /// Moves on by `dt` (s) under `drive` and `brake` (N, brake >= 0) on a `grade` (rise over run).
-  /// Brakes and rolling resistance can stop the car but not push it. Requires: dt >= 0. Context: cycle; wait-free.
+  /// Advances by `dt` (s) under `drive` and `brake` (N, brake >= 0) on a `grade` (rise over run). Brakes and rolling
+  /// resistance can stop the car but not push it. Requires: dt >= 0. Context: cycle; wait-free.
   void step(double drive, double brake, double grade, double dt) noexcept {
     constexpr double kGravity = 9.81;
     const double slope = std::atan(grade);

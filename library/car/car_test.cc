@@ -19,7 +19,7 @@ TEST_F(CarTest, BrakesStopItAndHoldItOnAHill) {
   ASSERT_TRUE(rig.init());
   ASSERT_TRUE(rig.drive(10));
   EXPECT_EQ(rig.speed(), 0);
-  rig.set("fb", -8000.0);  // below 0 nothing pushes
+  rig.set("fb", -8000.0);  // a negative brake force does not push
   rig.resource("road", "0:0");
   ASSERT_TRUE(rig.reinit());
   ASSERT_TRUE(rig.drive(1));

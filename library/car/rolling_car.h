@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the simulated cars have in common: everything but what drives them.
+// Ports and methods that all simulated cars share. A component adds the drive.
 #pragma once
 
 #include <cmath>
@@ -10,16 +10,15 @@
 
 namespace chimera::library {
 
-/// The ports and methods of a car that a component derives from. It adds the in-vars of the driver and cycle().
+/// Base of a component that simulates a car. The component adds the in-vars of the driver and cycle().
 struct RollingCar {
   Out<double> xw{"xw", "rad", doc = "Angle of a wheel since init, forward positive."};
-  Out<double> speed{"speed", "km/h", doc = "True speed, for judging; no module of the control reads it."};
+  Out<double> speed{"speed", "km/h", doc = "True speed, for monitors only."};
   Out<double> grade{"grade", "1", doc = "Rise over run where the car is."};
-  Out<bool> coasts{"coasts", initial = false, safe_state,
-                   doc = "The flag is up: the car rolls, nobody drives or brakes."};
+  Out<bool> coasts{"coasts", initial = false, safe_state, doc = "The flag is up and the car rolls freely."};
   InConst<double> mass{"mass", "kg", initial = 1600.0, range(500, 40000), doc = "With load."};
-  InConst<double> wheel_radius{"wheel_radius", "m", initial = 0.3, range(0.1, 1), doc = "Of the tyre under load."};
-  InConst<double> start_speed{"start_speed", "m/s", initial = 0.0, range(0, 60), doc = "At init."};
+  InConst<double> wheel_radius{"wheel_radius", "m", initial = 0.3, range(0.1, 1), doc = "Tyre under load."};
+  InConst<double> start_speed{"start_speed", "m/s", initial = 0.0, range(0, 60), doc = "Speed at init."};
   Resource road{"road", shared, doc = "Script of metres:grade, straight lines between; \"0:0\" is level."};
 
   Outcome init() {
@@ -27,7 +26,7 @@ struct RollingCar {
     car_.place(*start_speed);
     return reinit();
   }
-  // Another load, other wheels or another road, where the car is and at its speed.
+  // Changes load, wheels or road and keeps place and speed.
   Outcome reinit() {
     const char* const too_steep = "a grade of the road is outside -0.3 to 0.3";
     if (const char* wrong = grade_.read(road.text(), -0.3, 0.3, too_steep)) return fault(wrong);
@@ -36,7 +35,7 @@ struct RollingCar {
     car_.refit({.mass = *mass, .wheel_radius = *wheel_radius});
     return ok();
   }
-  // A simulated car that takes the place of another goes on where that one stopped being simulated, at its speed.
+  // A car that replaces another continues at the last published place and speed of that car.
   void on() {
     const bool has_predecessor = xw.inherited() != kNever && speed.inherited() != kNever;
     const bool is_elsewhere = *xw != car_.wheel_angle() || *speed != car_.speed() * 3.6;
@@ -46,8 +45,8 @@ struct RollingCar {
   }
 
  protected:
-  /// For cycle: `dt` passes in steps of at most 5 ms. `drive` is asked for the force of each, given its length; `brake`
-  /// is as in CarModel::step.
+  /// For cycle: advances by `dt` in steps of at most 5 ms. `drive(h)` returns the drive force of a step of length h.
+  /// `brake` is as in CarModel::step.
   template <class Drive>
   void roll(double dt, double brake, Drive drive) {
     const double n = std::ceil(dt / 5e-3), h = dt / n;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Input element of the cruise control (2000 paper, figure 15): the cruise control's user interface.
+// The user interface of the cruise control (2000 paper, figure 15), operated by a script.
 #include "chimera/task/component.h"
 #include "library/script/script.h"
 
@@ -9,9 +9,9 @@ namespace {
 
 struct Ccui {
   Out<double> vr{"vr",   "m/s",        initial = 0.0,
-                 safety, range(0, 70), doc = "Speed to hold; 0: the cruise control is off."};
+                 safety, range(0, 70), doc = "Speed to hold; 0: off."};
   Resource buttons{"buttons", safe_state,
-                   doc = "Script of seconds:km/h, each held until the next; \"0:0\" is never switched on."};
+                   doc = "Script of seconds:km/h, each held until the next; \"0:0\": always off."};
 
   Outcome init() {
     const char* const wrong = speed_.read(buttons.text(), 0, 250, "a set speed is 0 to 250 km/h");
@@ -33,7 +33,7 @@ struct Ccui {
   double elapsed_ = 0;
 };
 
-CHIMERA_COMPONENT(Ccui, "ccui", "User interface of the cruise control, worked by a script.", rate = 10.0,
+CHIMERA_COMPONENT(Ccui, "ccui", "User interface of the cruise control, operated by a script.", rate = 10.0,
                   source = "2000 paper, section 6");
 
 }  // namespace

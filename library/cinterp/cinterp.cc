@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cartesian trajectory interpolator: from where the tool is to where it should be, no faster than allowed.
+// Cartesian trajectory interpolator: moves the reference towards the desired pose within speed limits.
 #include "library/kinematics/dh_ports.h"
 
 using namespace chimera;
@@ -7,15 +7,15 @@ using namespace chimera;
 namespace {
 
 struct Cinterp {
-  In<Pose> xd{"xd", frame = "base", doc = "Desired tool pose; may come at a much lower rate."};
+  In<Pose> xd{"xd", frame = "base", doc = "Desired tool pose, at any rate."};
   In<Pose> xm{"xm", frame = "base", doc = "Measured tool pose."};
-  Out<Pose> xr{"xr", frame = "base", doc = "Reference tool pose on the way."};
-  InConst<double> gain{"gain", "1/s", initial = 10.0, range(0, 100), doc = "How fast xr closes in on xd."};
-  InConst<double> speed_limit{"speed_limit", "m/s", initial = 0.5, range(0, 10), doc = "Of xr."};
-  InConst<double> turn_limit{"turn_limit", "rad/s", initial = 1.0, range(0, 10), doc = "Of the orientation of xr."};
-  InConst<double> leash{"leash", "m", initial = 0.1, range(1e-3, 10), doc = "xr is no farther than this from xm."};
+  Out<Pose> xr{"xr", frame = "base", doc = "Reference tool pose."};
+  InConst<double> gain{"gain", "1/s", initial = 10.0, range(0, 100), doc = "Rate at which xr approaches xd."};
+  InConst<double> speed_limit{"speed_limit", "m/s", initial = 0.5, range(0, 10), doc = "Largest speed of xr."};
+  InConst<double> turn_limit{"turn_limit", "rad/s", initial = 1.0, range(0, 10), doc = "Largest turning speed of xr."};
+  InConst<double> leash{"leash", "m", initial = 0.1, range(1e-3, 10), doc = "Largest distance from xm to xr."};
 
-  // Bumpless: a reference that is handed over goes on. Else it begins where the tool is.
+  // Bumpless: continues from a reference that is handed over, else starts at the measured pose.
   Outcome on() {
     if (xr.is_handed_over() && library::DhPorts::is_pose(*xr)) return ok();
     if (!library::DhPorts::is_pose(*xm)) return fault("xm is not finite or no orientation: xr cannot begin there");

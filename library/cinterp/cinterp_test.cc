@@ -17,7 +17,7 @@ struct CinterpTest : ::testing::Test {
     ASSERT_TRUE(rig.on());
   }
   Pose xr() { return rig.get<Pose>("xr"); }
-  /// One cycle in which the arm follows at once.
+  /// One cycle of an arm that follows without delay.
   Pose follow() {
     EXPECT_TRUE(rig.cycle());
     rig.set("xm", xr());

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Says when a signal is above or below a level, inside or outside a band about it, with hysteresis.
-// README.md is the data sheet.
+// Compares a signal with a level or a band, with hysteresis. README.md is the data sheet.
 #include "chimera/task/component.h"
 #include "library/signals/input.h"
 
@@ -10,22 +9,21 @@ namespace {
 
 struct Comparator {
   In<double[]> x{"x", "U", "[n...<=64]", doc = "Any signal."};
-  In<double[]> level{"level", "U", "[n...<=64]", doc = "What it is compared with: of the operator, or a signal."};
-  InConst<Text<16>> when{"when", "1", initial = "above",
-                         doc = "y is true above or below the level, inside or outside its band."};
+  In<double[]> level{"level", "U", "[n...<=64]", doc = "Level to compare with."};
+  InConst<Text<16>> when{"when", "1", initial = "above", doc = "above, below, inside or outside."};
   InConst<double[]> width{"width",
                           "U",
                           "[n...<=64]",
                           initial = 0.0,
                           range(0, library::kNoLimit),
-                          doc = "From the level to each end of the band; for inside and outside."};
+                          doc = "Half width of the band."};
   InConst<double[]> hysteresis{"hysteresis",
                                "U",
                                "[n...<=64]",
                                initial = 0.0,
                                range(0, library::kNoLimit),
-                               doc = "From where y becomes true to where it becomes false, its middle the threshold."};
-  Out<bool[]> y{"y", "1", "[n...<=64]", initial = false, doc = "Whether it is so."};
+                               doc = "Distance between the thresholds of true and false."};
+  Out<bool[]> y{"y", "1", "[n...<=64]", initial = false, doc = "Result."};
 
   Outcome init() {
     if (*when == "above")
@@ -47,7 +45,7 @@ struct Comparator {
     return ok();
   }
   Outcome reinit() { return init(); }
-  // Within the hysteresis y goes on from what stands.
+  // Between the thresholds y keeps its last value.
   void on() {
     if (library::all_finite(x) && library::all_finite(level)) compare();
   }
@@ -63,7 +61,7 @@ struct Comparator {
   enum class Relation { kAbove, kBelow, kInside, kOutside };
 
   static bool is_amount(double value) { return value >= 0 && math::is_finite(value); }
-  /// How far the signal is beyond the threshold.
+  /// Distance of the signal beyond the threshold.
   double beyond(std::size_t i) const {
     const double apart = x.begin()[i] - level.begin()[i];
     if (relation_ == Relation::kAbove) return apart;

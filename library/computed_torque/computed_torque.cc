@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The controller that knows the arm: each joint follows its reference as if it were alone and without weight.
+// Computed-torque control: compensates the dynamics of the arm, so that each joint follows its reference independently.
 #include "library/kinematics/dh_dynamics.h"
 #include "library/kinematics/dh_ports.h"
 
@@ -15,15 +15,15 @@ struct ComputedTorque : library::DhPorts {
   In<double[]> qd{"qd", "rad/s", "[ndof<=10]", frame = "joint", doc = "Measured velocities."};
   Out<double[]> tau{"tau", "N.m", "[ndof<=10]", frame = "joint", initial = 0.0, safety,
                     doc = "Torque for each joint, within tau_max."};
-  InConst<library::LinkMass[]> links{"links", "1", "[ndof<=10]", doc = "Mass and drive, a link a joint, base to tip."};
+  InConst<library::LinkMass[]> links{"links", "1", "[ndof<=10]", doc = "Mass and drive of each link, base to tip."};
   InConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", range(0, 1e6), frame = "joint",
-                            doc = "What the drives can give."};
+                            doc = "Largest torque of the drives."};
   InConst<double> bandwidth{"bandwidth", "rad/s", initial = 20.0, range(0, 500),
                             doc = "Angular frequency at which an error decays; 0: no feedback."};
-  InConst<double> damping_ratio{"damping_ratio", "1", initial = 1.0, range(0, 10), doc = "1: without overshoot."};
-  InConst<double> payload_mass{"payload_mass", "kg", initial = 0.0, range(0, 1000), doc = "A point at the tool."};
+  InConst<double> damping_ratio{"damping_ratio", "1", initial = 1.0, range(0, 10), doc = "1: no overshoot."};
+  InConst<double> payload_mass{"payload_mass", "kg", initial = 0.0, range(0, 1000), doc = "Point mass at the tool."};
   InConst<double[3]> gravity{"gravity", "m/s2", initial = {0.0, 0.0, -9.81}, frame = "base",
-                             doc = "Acceleration of what falls."};
+                             doc = "Acceleration of gravity."};
 
   Outcome init() {
     const DhChain chain = read_chain();
@@ -39,10 +39,10 @@ struct ComputedTorque : library::DhPorts {
     return ok();
   }
   Outcome reinit() { return init(); }
-  // The law has no memory: what it says now is right whoever drove the arm before.
+  // The law has no state, so its output does not depend on the previous controller.
   Outcome on() { return follow(); }
   Outcome cycle(Cycle c) { return c.illegal() ? ok() : follow(); }
-  // No off(): the last torque stands, as that of pid_joint does.
+  // There is no off(): the last torque holds, as that of pid_joint.
 
  private:
   using DhChain = library::DhChain;

@@ -47,7 +47,7 @@ struct ComputedTorqueTest : ::testing::Test {
     const RigAnswer answer = rig.init();
     return answer ? "accepted" : answer.text;
   }
-  /// The largest tracking error (rad) over 2 s behind a simulated arm, after 0.5 s to come near.
+  /// Largest tracking error (rad) in 2 s of a simulated arm, after 0.5 s of settling.
   double error_behind_an_arm(double payload) {
     library::PumaArm arm;
     EXPECT_TRUE(arm.load(library::kPumaModel, {.payload_mass = payload}));

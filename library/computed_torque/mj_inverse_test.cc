@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Against a reference that nobody here wrote: MuJoCo's inverse dynamics of the same arms, told as MJCF.
+// Compares ArmDynamics with an independent implementation: MuJoCo's inverse dynamics of the same arms, as MJCF.
 #include <gtest/gtest.h>
 
 #include "library/mujoco/testing/random_arm.h"

@@ -6,8 +6,8 @@
 
 namespace chimera::library {
 
-/// u = kp e + I within [low, high]; I stands still while u is cut and e would drive it further out. So a driver who
-/// overrides the control for a minute does not leave a minute of error behind. Context: cycle; wait-free.
+/// u = kp e + I within [low, high]; I holds while u is cut and e would drive it further out. A driver who overrides the
+/// control for a minute therefore leaves no error of that minute in I. Context: cycle; wait-free.
 class Pi {
  public:
   void start(double integral) noexcept { integral_ = integral; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The speed control of the 2000 paper's cruise control (figure 17): how much force a car needs to hold a speed.
+// Speed control of the 2000 paper's cruise control (figure 17): computes the force that holds the speed of a car.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ class SpeedControl {
     double drive_max, brake_max;  ///< N: the force lies in [-brake_max, drive_max]
   };
 
-  /// The text of a fault; null: the gains are in order.
+  /// Returns the text of a fault, or null if the gains are valid.
   static const char* fault_in(const Gains& gains) noexcept {
     if (!(gains.drive_max >= 0 && gains.drive_max <= 20000) || !(gains.brake_max >= 0 && gains.brake_max <= 20000))
       return "drive_max and brake_max are 0 to 20000 N";
@@ -26,14 +26,14 @@ class SpeedControl {
     return nullptr;
   }
 
-  /// Goes on from `force`, bumpless. Not before the first step, because a speed made by differences is known only then.
-  /// A force of 0 is nobody to go on from.
+  /// Continues from `force` without a step. The first step applies it, because a speed from differences is unknown
+  /// before. A force of 0 means that there is no predecessor.
   void start(double force) noexcept {
     pi_.start(0);
     taken_over_ = std::isfinite(force) ? force : 0;
   }
 
-  /// The force for the next `dt` seconds, from the speed wanted (0: the control is off) and the speed measured.
+  /// Returns the force for the next `dt` seconds. `wanted` and `measured` are speeds; a wanted speed of 0 means off.
   double step(const Gains& gains, double wanted, double measured, double dt) noexcept {
     const double force = std::exchange(taken_over_, 0);
     if (!(wanted > 0)) {

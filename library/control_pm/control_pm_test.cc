@@ -12,7 +12,7 @@ namespace {
 constexpr Nanoseconds kPeriod = milliseconds(20);
 
 struct ControlPmTest : ::testing::Test {
-  /// Force of the engine less that of the brakes.
+  /// Engine force less brake force.
   double cycle(double vr, double vz) {
     rig.set("vr", vr);
     rig.set("vz", vz);

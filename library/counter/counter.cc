@@ -7,14 +7,14 @@ using namespace chimera;
 
 namespace {
 
-constexpr double kMostCount = 9007199254740992.0;  // 2^53: a number of a description holds it exactly
+constexpr double kMostCount = 9007199254740992.0;  // 2^53: the greatest exact count in a description
 
 struct EdgeCounter {
   In<bool[]> up{"up", "1", "[n...<=64]", doc = "Each rising edge counts one up."};
   In<bool[]> down{"down", "1", "[n...<=64]", doc = "Each rising edge counts one down."};
-  In<bool[]> reset{"reset", "1", "[n...<=64]", doc = "While it is true the count is the preset."};
+  In<bool[]> reset{"reset", "1", "[n...<=64]", doc = "While true, the count is the preset."};
   InConst<std::int64_t[]> preset{
-      "preset", "1", "[n...<=64]", initial = 0, range(-kMostCount, kMostCount), doc = "Where it begins."};
+      "preset", "1", "[n...<=64]", initial = 0, range(-kMostCount, kMostCount), doc = "First count."};
   InConst<std::int64_t[]> low{
       "low", "1", "[n...<=64]", initial = -kMostCount, range(-kMostCount, kMostCount), doc = "Least count."};
   InConst<std::int64_t[]> high{"high",
@@ -25,16 +25,16 @@ struct EdgeCounter {
                                at_least = "low",
                                doc = "Greatest count."};
   InConst<bool> wraps{"wraps", "1", initial = false,
-                      doc = "One above high is low, and one below low is high; else it stands there."};
+                      doc = "At one end the count continues at the other; false: it holds."};
   Out<std::int64_t[]> count{"count", "1", "[n...<=64]", initial = 0, doc = "The count."};
-  Out<bool[]> at_high{"at_high", "1", "[n...<=64]", initial = false, doc = "The count is high."};
+  Out<bool[]> at_high{"at_high", "1", "[n...<=64]", initial = false, doc = "The count is at high."};
 
   Outcome init() {
     is_preset_ = false;
     return judge();
   }
   Outcome reinit() { return judge(); }
-  // The count goes on from what stands; what came while it was off is not counted.
+  // Continues from the last count. Edges while the task was off do not count.
   void on() {
     has_last_ = false;
     for (std::size_t i = 0; i < count.size(); ++i) publish(i, is_preset_ ? count[i] : preset[i]);

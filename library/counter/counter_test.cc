@@ -15,7 +15,7 @@ struct Counted : Rig {
   void limits(std::int64_t low, std::int64_t high, std::int64_t preset, bool wraps = false) {
     set("low", low), set("high", high), set("preset", preset), set("wraps", wraps);
   }
-  /// A cycle each: 'u' both edges of up, 'd' of down, 'b' of both, 'r' reset. The count at the end.
+  /// Runs one cycle for each letter and returns the last count. u: edge of up, d: edge of down, b: both, r: reset.
   std::int64_t run(const std::string& keys) {
     for (const char key : keys) {
       give(key == 'u' || key == 'b', key == 'd' || key == 'b', key == 'r');
@@ -41,7 +41,7 @@ TEST(Counter, CountsUpAndDown) {
 TEST(Counter, CountsEdgesNotLevels) {
   Counted rig;
   ASSERT_TRUE(rig.init() && rig.on());
-  rig.give(true, false, false);  // true as it is found: no edge
+  rig.give(true, false, false);  // true when first read: no edge
   EXPECT_EQ(rig.get<std::int64_t>("count"), 0);
   for (int i = 0; i < 10; ++i)
     for (const bool is_up : {false, true, true}) rig.give(is_up, false, false);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes its inputs of every cycle to a CSV file, beside the cycles. README.md is the data sheet.
+// Writes its inputs of every cycle to a CSV file in the background. README.md is the data sheet.
 //
 //   cycle (one writer)                         background (one reader)
 //   ring[put mod capacity] = row               put (acquire) | text of the row | taken = taken + 1 (release)
-//   put = put + 1 (release)                    write; what the disk refuses stays in text_ and is offered again
-// A row is lost only here: when cycle finds capacity rows between taken and put.
+//   put = put + 1 (release)                    write; text_ keeps the bytes that the disk refuses, for the next try
+// A row is lost only if cycle finds capacity rows between taken and put.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -25,18 +25,18 @@ using namespace chimera;
 
 namespace {
 
-constexpr std::size_t kTextBytes = 1 << 16;     // gathered for one write
-constexpr std::uint64_t kMostBytes = 1u << 29;  // of all rows that may wait
+constexpr std::size_t kTextBytes = 1 << 16;     // bytes of one write
+constexpr std::uint64_t kMostBytes = 1u << 29;  // bytes of all rows in the ring
 
 struct CsvLog {
-  Many<In<Any[]>>       in{"in*", "U", "[n...<=64]", type = "T", doc = "What is kept: numbers or truth values."};
+  Many<In<Any[]>>       in{"in*", "U", "[n...<=64]", type = "T", doc = "Numbers or truth values."};
   InConst<std::int32_t> capacity{"capacity", "1", initial = 10000, range(1, 1000000),
                                  doc = "Rows that may wait for the disk."};
-  Out<std::int64_t>     rows{"rows", "1", initial = 0, doc = "Rows that found room: in the file, or on the way."};
-  Out<std::int64_t>     lost{"lost", "1", initial = 0, doc = "Rows that found no room."};
+  Out<std::int64_t>     rows{"rows", "1", initial = 0, doc = "Rows in the file or in the ring."};
+  Out<std::int64_t>     lost{"lost", "1", initial = 0, doc = "Rows dropped."};
   Out<std::int32_t>     disk_error{"disk_error", "1", initial = 0,
-                                   doc = "0: the disk takes what it is given; else the error number of its refusal."};
-  Resource              file{"file", safe_state, doc = "The file to write; what was in it is lost."};
+                                   doc = "Error number while the disk refuses data; 0: none."};
+  Resource              file{"file", safe_state, doc = "File to write; old content is lost."};
 
   void init(Cycle c) {
     check_inputs();
@@ -46,7 +46,7 @@ struct CsvLog {
     for (const auto& port : in) columns_ += port.size();
     capacity_ = static_cast<std::uint64_t>(*capacity);
     check_room();
-    // Filled, not reserved: the first touch of a page is a fault of the memory, and that belongs here.
+    // Writes every page now, because the first access to a page costs a page fault, which a cycle must not pay.
     ring_.assign(columns_ * capacity_, 0.0);
     text_.reserve(2 * kTextBytes);
     text_ = header(c);
@@ -59,7 +59,7 @@ struct CsvLog {
     *disk_error = error_.load(std::memory_order_relaxed);
     if (*disk_error != 0) tell_refusal(c);
     const std::uint64_t put = put_.load(std::memory_order_relaxed);
-    // SYNC: pairs with the release in background(): it is done with the rows it passed.
+    // SYNC: pairs with the release in background(): background has finished with the rows before taken_.
     if (put - taken_.load(std::memory_order_acquire) >= capacity_) {
       *lost = static_cast<std::int64_t>(++n_lost_);
       tell_loss(c);
@@ -74,7 +74,7 @@ struct CsvLog {
         *row++ = port.valid() ? value : std::nan("");
       }
     }
-    // SYNC: pairs with the acquire in background(): the row is whole before it is counted.
+    // SYNC: pairs with the acquire in background(): the row is complete before it is counted.
     put_.store(put + 1, std::memory_order_release);
     *rows += 1;
   }
@@ -83,15 +83,15 @@ struct CsvLog {
     const std::uint64_t put = put_.load(std::memory_order_acquire);
     std::uint64_t taken = taken_.load(std::memory_order_relaxed);
     do {
-      // What the disk has refused is offered again before more is taken.
+      // Bytes that the disk refused are written before new rows.
       const bool was_empty = text_.empty();
       while (was_empty && taken != put && text_.size() < kTextBytes)
         add_text(ring_.data() + taken++ % capacity_ * columns_);
-      // SYNC: pairs with the acquire in cycle(): those places are free.
+      // SYNC: pairs with the acquire in cycle(): the places of these rows are free.
       taken_.store(taken, std::memory_order_release);
     } while (!text_.empty() && write_text());
   }
-  // The last background() has been: what is still here the disk refused.
+  // The last background() has run, so the disk has refused the remaining rows.
   Outcome kill() {
     if (file_ < 0) return ok();
     const std::uint64_t left = rows_left();
@@ -122,7 +122,7 @@ struct CsvLog {
                                " bytes: at most " + std::to_string(kMostBytes / row) +
                                " of them may wait, and capacity is " + std::to_string(capacity_));
   }
-  // Once after each `on`: a disk that is full now and then says so once, and `lost` counts on.
+  // One note after each `on`. Later refusals and losses only count in `lost`.
   void tell_refusal(Cycle c) {
     if (std::exchange(has_told_refusal_, true)) return;
     char text[CHIMERA_FAULT_TEXT];
@@ -137,12 +137,12 @@ struct CsvLog {
                   *disk_error == 0 ? "the disk does not keep up" : reason(*disk_error));
     c.note(text);
   }
-  // strerror() looks for a translation, which no cycle has time for.
+  // strerror() may load a translation, which takes too long for a cycle.
   static const char* reason(int error) {
     const char* text = ::strerrordesc_np(error);
     return text != nullptr ? text : "it refuses";
   }
-  // One word a column, "q[0](rad)": whoever guesses the separator finds more commas than blanks.
+  // Column names have no blank, "q[0](rad)", so that a reader that guesses the separator finds the comma.
   static std::string column(std::string_view variable, const std::string& element, std::string_view unit) {
     std::string name = std::string(variable) + element;
     if (!unit.empty() && unit != "1") name += "(" + std::string(unit) + ")";
@@ -172,7 +172,7 @@ struct CsvLog {
     }
     text_ += '\n';
   }
-  // False when the disk did not take all of it: the rest is offered again the next time.
+  // Returns false if the disk did not accept all bytes. The next call writes the rest.
   bool write_text() {
     std::size_t done = 0;
     while (done < text_.size()) {
@@ -185,7 +185,7 @@ struct CsvLog {
     text_.erase(0, done);
     return is_whole;
   }
-  // Begun ones counted; the first line of the file is none.
+  // Rows not yet written, with a partly written one, without the header line.
   std::uint64_t rows_left() const {
     std::uint64_t lines = 0;
     for (const char c : text_) lines += c == '\n' ? 1 : 0;
@@ -194,22 +194,22 @@ struct CsvLog {
     return in_ring + lines - (has_header ? 1 : 0);
   }
 
-  // Fixed by init.
+  // Constant after init.
   std::size_t columns_ = 1;
   std::uint64_t capacity_ = 0;
-  std::vector<double> ring_;  // row by row
-  // Of cycle.
+  std::vector<double> ring_;  // one row after the other
+  // Used by cycle only.
   Nanoseconds origin_;
   std::uint64_t n_lost_ = 0;
   bool has_told_refusal_ = false, has_told_loss_ = false;
-  alignas(64) std::atomic<std::uint64_t> put_{0};  // rows, ever; release by the cycle, acquire by background
-  // Of background.
-  alignas(64) std::atomic<std::uint64_t> taken_{0};  // release by background, acquire by the cycle: the places are free
-  std::atomic<int> error_{0};                        // relaxed, pairs with nothing: told by the cycle in a fault
-  std::string text_;  // on its way to the disk
+  alignas(64) std::atomic<std::uint64_t> put_{0};  // rows since init; release by cycle, acquire by background
+  // Used by background.
+  alignas(64) std::atomic<std::uint64_t> taken_{0};  // release by background, acquire by cycle: these places are free
+  std::atomic<int> error_{0};                        // relaxed: orders no other data; cycle reports it
+  std::string text_;  // bytes not yet written
   int file_ = -1;
 };
 
-CHIMERA_COMPONENT(CsvLog, "csv_log", "Writes its inputs of every cycle to a CSV file, beside the cycles.");
+CHIMERA_COMPONENT(CsvLog, "csv_log", "Writes its inputs of every cycle to a CSV file, without delaying a cycle.");
 
 }  // namespace

@@ -33,7 +33,7 @@ struct CsvLogTest : ::testing::Test {
     ASSERT_TRUE(made) << made.text;
     ASSERT_TRUE(rig.on());
   }
-  // As the framework ends a task: a last background, then kill.
+  // Ends the task as the framework does: a last background, then kill.
   RigAnswer end() {
     EXPECT_TRUE(rig.background());
     return rig.kill();
@@ -46,7 +46,7 @@ struct CsvLogTest : ::testing::Test {
     all << std::ifstream(path).rdbuf();
     return all.str();
   }
-  // Rows in the file, each of them whole: five columns.
+  // Counts the rows of the file. Each must have five columns.
   std::int64_t rows_in_file() const {
     std::istringstream all(text());
     std::string line;
@@ -66,7 +66,7 @@ TEST_F(CsvLogTest, WritesARowForEachCycleBesideTheCycles) {
   ASSERT_TRUE(rig.cycle());
   rig.set("in", 0.1, 0, 1);
   rig.set("in", 1e20, 1, 1);
-  EXPECT_EQ(text(), "");  // nothing on its way to the disk in a cycle
+  EXPECT_EQ(text(), "");  // a cycle does not write to the disk
   ASSERT_TRUE(rig.background());
   EXPECT_EQ(text(), "t(s),in[0][0],in[0][1],in[1][0],in[1][1]\n0.001,1.5,-2,,\n");
   ASSERT_TRUE(rig.cycle());
@@ -178,7 +178,7 @@ TEST_F(CsvLogTest, NamesItsColumnsByVariableElementAndUnit) {
 }
 
 TEST_F(CsvLogTest, ADiskThatFailsIsTold) {
-  path = "/proc/self/mem";  // at its start nothing is mapped: EIO
+  path = "/proc/self/mem";  // no memory is mapped at its start, so a write fails with EIO
   start(10);
   ASSERT_TRUE(rig.cycle());
   ASSERT_TRUE(rig.background());
@@ -188,7 +188,7 @@ TEST_F(CsvLogTest, ADiskThatFailsIsTold) {
   path = "";
 }
 
-// A limit of the file's size refuses as a full disk does, in the middle of a row, and can be lifted.
+// A file size limit stops a write within a row, as a full disk does, and can be lifted.
 TEST_F(CsvLogTest, ADiskThatHasRoomAgainGetsEveryRowThatWasKeptWhole) {
   start(50);
   rlimit before{};
@@ -217,7 +217,7 @@ TEST_F(CsvLogTest, ADiskThatHasRoomAgainGetsEveryRowThatWasKeptWhole) {
   EXPECT_EQ(rows() + lost(), cycles);
 }
 
-// A pipe that nobody empties stalls whoever writes to it. Cycles go on meanwhile, here as fast as they can.
+// A pipe without a reader blocks the writer. The cycles run on, here as fast as possible.
 TEST_F(CsvLogTest, AStalledDiskHoldsUpNoCycleAndEveryRowIsWrittenOrCounted) {
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
   const int reading = ::open(path.c_str(), O_RDONLY | O_NONBLOCK);

@@ -13,13 +13,12 @@ namespace {
 
 struct CsvPlayer {
   Many<Out<double[]>> out{"out*", "U", "[n...<=64]",
-                          doc = "The columns of the file after the first, in their order; a matrix row by row."};
-  InConst<bool>       is_repeated{"is_repeated", "1", initial = false, doc = "Begins again behind the last row."};
+                          doc = "Columns after the first, in order; a matrix row by row."};
+  InConst<bool>       is_repeated{"is_repeated", "1", initial = false, doc = "Starts again behind the last row."};
   InConst<bool>       is_interpolated{"is_interpolated", "1", initial = false,
-                                      doc = "Straight lines between the rows; else a row holds until the next."};
-  Out<bool>           done{"done", "1", initial = false, doc = "The last row has been played; it stands."};
-  Resource            file{"file", safe_state, shared,
-                                doc = "What csv_log wrote, or any CSV whose first column is the time in s."};
+                                      doc = "Interpolates between rows; false: a row holds until the next."};
+  Out<bool>           done{"done", "1", initial = false, doc = "The last row was played."};
+  Resource            file{"file", safe_state, shared, doc = "CSV file whose first column is the time in s."};
 
   void init() {
     std::size_t values = 0;

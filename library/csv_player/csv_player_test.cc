@@ -108,7 +108,7 @@ TEST_F(CsvPlayerTest, PlaysWhatCsvLogWrote) {
   const RigAnswer made = rig.init();
   ASSERT_TRUE(made) << made.text;
   ASSERT_TRUE(rig.on());
-  ASSERT_TRUE(rig.cycle(microseconds(500)));  // in the middle between rows
+  ASSERT_TRUE(rig.cycle(microseconds(500)));  // halfway between rows
   for (int k = 0; k < 500; ++k) {
     EXPECT_NEAR(value(0), std::sin(0.01 * k), 1e-14);
     EXPECT_EQ(value(1), k);

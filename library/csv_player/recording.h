@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A CSV file in memory: a time and the same number of values in every row.
+// A CSV file in memory: each row has a time and the same number of values.
 #pragma once
 
 #include <algorithm>
@@ -18,16 +18,16 @@ namespace chimera::library {
 
 class Recording {
  public:
-  /// Times in s since the first row, which is at 0. Context: cycle; wait-free.
+  /// Times are in s since the first row. Context: cycle; wait-free.
   std::size_t rows() const noexcept { return times_.size(); }
   double time(std::size_t row) const noexcept { return times_[row]; }
   double length() const noexcept { return times_.back(); }
-  /// The last row that is not behind `t`: at most 32 steps for 2^32 rows.
+  /// Returns the last row at or before `t`: at most 32 steps for 2^32 rows.
   std::size_t row_at(double t) const noexcept {
     const auto behind = std::upper_bound(times_.begin(), times_.end(), t);
     return behind == times_.begin() ? 0 : static_cast<std::size_t>(behind - times_.begin()) - 1;
   }
-  /// Column `column` at `row`, `part` of the way to the next.
+  /// Value of `column`, interpolated: `part` (0 to 1) of the way from `row` to the next row.
   double value(std::size_t row, std::size_t column, double part) const noexcept {
     const double here = values_[row * columns_ + column];
     return part > 0 ? here + part * (values_[(row + 1) * columns_ + column] - here) : here;
@@ -40,7 +40,7 @@ class Recording {
   std::vector<double> times_, values_;
 };
 
-/// Reads line by line; what is wrong throws std::runtime_error with file and line.
+/// Reads line by line. Throws std::runtime_error with file and line for a bad line.
 class RecordingReader {
  public:
   RecordingReader(const char* path, std::size_t columns) : path_(path) { made_.columns_ = columns; }
@@ -51,7 +51,7 @@ class RecordingReader {
       fail("has " + std::to_string(fields) + " columns after the time, and there are " +
            std::to_string(made_.columns_) + " outputs");
   }
-  /// An empty field keeps the value of the row before; there must be one.
+  /// An empty field keeps the value of the previous row, which must exist.
   void row(const std::string& line) {
     const char* at = line.c_str();
     const double time = number(at, "the time");
@@ -95,7 +95,7 @@ class RecordingReader {
 
 inline constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 
-/// The file with `columns` values behind the time. Throws std::runtime_error. Context: setup; may block.
+/// Reads a file with `columns` values after the time. Throws std::runtime_error. Context: setup; may block.
 inline Recording read_recording(const char* path, std::size_t columns) {
   if (const std::string why = not_ordinary(path, kMostBytes); !why.empty())
     throw std::runtime_error(std::string(path) + ": " + why);

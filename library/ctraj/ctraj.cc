@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Cartesian trajectory of one application: the tool goes round a figure, so nobody need hold the trackball.
+// Moves the tool on a figure of sines, in place of a person at the trackball.
 #include <cmath>
 #include <numbers>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joint speeds that bring the tool to its target, and stay bounded where the arm is singular (1994 paper, figure 9).
+// Computes joint speeds for a tool error that stay bounded at singular poses (1994 paper, figure 9).
 #include "library/kinematics/dh_ports.h"
 #include "library/signals/input.h"
 
@@ -13,15 +13,14 @@ struct DampedLeastSquares {
   In<Matrix<double>> jv{"jv", "m/rad", "[3][ndof<=10]", frame = "base", doc = "Tool velocity by joint speeds."};
   In<Matrix<double>> jw{"jw", "1", "[3][ndof<=10]", frame = "base", doc = "Angular tool velocity by joint speeds."};
   Out<double[]> qd_ref{"qd_ref", "rad/s", "[ndof<=10]", initial = 0.0, frame = "joint", doc = "Joint speeds."};
-  Out<double> manipulability{"manipulability", "1", initial = 0.0,
-                             doc = "sqrt(det J J^T): 0 where the arm is singular."};
+  Out<double> manipulability{"manipulability", "1", initial = 0.0, doc = "sqrt(det J J^T): 0 at a singular pose."};
   InConst<std::int32_t> ndof{"ndof", "1", range(1, 10), doc = "Joints."};
-  InConst<double> gain{"gain", "1/s", initial = 10.0, range(0, 100), doc = "How fast an error of the tool decays."};
-  InConst<double> damping{"damping", "1", initial = 0.05, range(1e-6, 1), doc = "Where the arm is singular."};
+  InConst<double> gain{"gain", "1/s", initial = 10.0, range(0, 100),
+                       doc = "Rate at which an error of the tool decays."};
+  InConst<double> damping{"damping", "1", initial = 0.05, range(1e-6, 1), doc = "Damping at a singular pose."};
   InConst<double> threshold{"threshold", "1", initial = 0.02, range(1e-9, 10),
                             doc = "Manipulability below which damping begins."};
-  InConst<double> speed_limit{"speed_limit", "rad/s", initial = 2.0, range(0.01, 100),
-                              doc = "Of the fastest joint; the others keep their share."};
+  InConst<double> speed_limit{"speed_limit", "rad/s", initial = 2.0, range(0.01, 100), doc = "Largest joint speed."};
 
   void init() { reinit(); }
   void reinit() {
@@ -30,7 +29,7 @@ struct DampedLeastSquares {
     inverse_.damping = *damping;
     inverse_.threshold = *threshold;
   }
-  // Bumpless: joint speeds that are handed over stand until the first cycle; others are those of no motion.
+  // Bumpless: speeds that are handed over hold until the first cycle. Otherwise the speeds are 0.
   void on() {
     if (!qd_ref.is_handed_over() || !library::all_finite(qd_ref)) stop();
   }
@@ -43,7 +42,7 @@ struct DampedLeastSquares {
     library::Vec6 e = library::motion_between(library::frame_of(*xm), library::frame_of(*xd));
     for (double& part : e) part *= *gain;
     library::Jacobian jacobian;
-    double sum = 0;  // of squares: what is solved with must be finite too
+    double sum = 0;  // sum of squares: the matrix of the solution must be finite, too
     for (std::size_t i = 0; i < qd_ref.size(); ++i) {
       for (std::size_t r = 0; r < 3; ++r) {
         jacobian.linear[i][r] = jv(r, i);
@@ -58,7 +57,7 @@ struct DampedLeastSquares {
   void off() { stop(); }
 
  private:
-  static constexpr double kMost = 1e20;  // beyond it the solution would lose every digit
+  static constexpr double kMost = 1e20;  // above this the solution would have no correct digit
 
   void stop() {
     for (double& speed : qd_ref) speed = 0;

@@ -17,7 +17,7 @@ struct DampedLeastSquaresTest : ::testing::Test {
     ASSERT_TRUE(rig.init());
     ASSERT_TRUE(rig.on());
   }
-  /// The arm at `q`, wanted where it is.
+  /// Puts the arm at `q` and the target at the tool.
   void stand(const Puma560::Vector& q) {
     const Pose pose = pose_of(Puma560::forward(q, jacobian));
     rig.give_jacobian(jacobian, 6);

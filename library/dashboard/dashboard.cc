@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Output element of the cruise control (2000 paper, figure 15): what speedometer and odometer show.
+// Speedometer and odometer of the cruise control (2000 paper, figure 15).
 #include <cmath>
 
 #include "chimera/task/component.h"

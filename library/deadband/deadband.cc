@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes out small deviations, without a jump at the edges. README.md is the data sheet.
+// Removes small deviations, without a jump at the edges. README.md is the data sheet.
 #include "chimera/task/component.h"
 #include "library/signals/input.h"
 
@@ -7,10 +7,9 @@ using namespace chimera;
 
 struct Deadband {
   In<double[]>      x{"x", "U", "[n...<=64]", doc = "Any signal."};
-  InConst<double[]> width{"width", "U", "[n...<=64]", range(0, library::kNoLimit),
-                          doc = "How far x may be from the centre unseen."};
-  InConst<double[]> center{"center", "U", "[n...<=64]", initial = 0.0, doc = "The middle of the band."};
-  Out<double[]>     y{"y", "U", "[n...<=64]", doc = "The centre within the band, x moved towards it by width outside."};
+  InConst<double[]> width{"width", "U", "[n...<=64]", range(0, library::kNoLimit), doc = "Half width of the band."};
+  InConst<double[]> center{"center", "U", "[n...<=64]", initial = 0.0, doc = "Middle of the band."};
+  Out<double[]>     y{"y", "U", "[n...<=64]", doc = "x behind the deadband."};
 
   Outcome init() {
     for (std::size_t i = 0; i < width.size(); ++i)
@@ -38,4 +37,4 @@ struct Deadband {
     }
   }
 };
-CHIMERA_COMPONENT(Deadband, "deadband", "Takes out small deviations, without a jump at the edges.");
+CHIMERA_COMPONENT(Deadband, "deadband", "Removes small deviations, without a jump at the edges.");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The latest value from one thread to another; neither ever waits, and a value is never half old.
+// Passes the latest value from one thread to another. No thread waits, and no value is half old.
 #pragma once
 
 #include <array>
@@ -8,17 +8,18 @@
 
 namespace chimera::library {
 
-/// Three places: one the writer fills, one the reader looks at, one between them. One writer, one reader.
+/// Three places: the writer fills one, the reader reads one, the third is exchanged. One writer, one reader.
 template <class T>
 class Latest {
  public:
   /// Context: the writer's thread; wait-free.
   void put(const T& value) noexcept {
     places_[filled_] = value;
-    // SYNC: pairs with get(): the value is whole before it is offered, and the place taken back was left.
+    // SYNC: pairs with get(): the value is complete before the exchange, and the reader has left the place taken back.
     filled_ = between_.exchange(filled_ | kFresh, std::memory_order_acq_rel) & kPlace;
   }
-  /// The value put last; T{} before the first. Valid until the next get(). Context: the reader's thread; wait-free.
+  /// Returns the last value put, T{} before the first. Valid until the next get(). Context: the reader's thread;
+  /// wait-free.
   const T& get() noexcept {
     // SYNC: pairs with put().
     if ((between_.load(std::memory_order_relaxed) & kFresh) != 0)
@@ -29,7 +30,7 @@ class Latest {
  private:
   static constexpr std::uint32_t kPlace = 3, kFresh = 4;
   std::array<T, 3> places_{};
-  std::atomic<std::uint32_t> between_{2};  // the exchanges of put() and get() pair with each other
+  std::atomic<std::uint32_t> between_{2};  // exchanges of put() and get() pair with each other
   std::uint32_t filled_ = 0, seen_ = 1;
 };
 

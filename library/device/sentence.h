@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sentences of the components that speak to a device: each names the device and what to do.
+// Messages of components with a device. Each message names the device and the remedy.
 #pragma once
 
 #include <grp.h>
@@ -15,24 +15,24 @@
 
 namespace chimera::library {
 
-/// Why `path` could not be opened with error number `error`, and the remedy. Context: setup; may block.
+/// Text for error number `error` of opening `path`, with the remedy. Context: setup; may block.
 inline std::string open_refusal(const std::string& path, int error) {
   const std::string what = path + ": " + std::strerror(error) + ": ";
   if (error == ENOENT || error == ENODEV || error == ENXIO)
     return what + "plug the device in, or name another under `resources`";
-  if (error != EACCES && error != EPERM) return what + "see that it is the right device and nobody else holds it";
+  if (error != EACCES && error != EPERM) return what + "check the path, and end a process that has it open";
   struct stat about {};
   const group* owner = ::stat(path.c_str(), &about) == 0 ? ::getgrgid(about.st_gid) : nullptr;
   const std::string name = owner != nullptr && about.st_gid != 0 ? owner->gr_name : "dialout or input";
   return what + "add the user to the group " + name + " and log in again";
 }
 
-/// What a cycle says when its device is gone, written while there is time for it.
+/// Fault text for a lost device. init composes it, so that a cycle need not.
 class LostSentence {
  public:
   /// Context: setup; wait-free.
   void set(std::string_view device, const char* what) {
-    const std::size_t most = 60;  // the end of a long path says more than its start
+    const std::size_t most = 60;  // the end of a long path identifies the device better than its start
     const std::string_view tail = device.size() > most ? device.substr(device.size() - most) : device;
     std::snprintf(text_, sizeof text_, "%s%.*s %s: bring it back, then `clear` and `on`",
                   tail.size() < device.size() ? "..." : "", static_cast<int>(tail.size()), tail.data(), what);

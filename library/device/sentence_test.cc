@@ -11,7 +11,7 @@ TEST(OpenRefusal, NamesThePathTheReasonAndTheRemedy) {
   EXPECT_EQ(open_refusal("/dev/ttyUSB0", ENOENT),
             "/dev/ttyUSB0: No such file or directory: plug the device in, or name another under `resources`");
   EXPECT_EQ(open_refusal("/dev/ttyUSB0", EBUSY),
-            "/dev/ttyUSB0: Device or resource busy: see that it is the right device and nobody else holds it");
+            "/dev/ttyUSB0: Device or resource busy: check the path, and end a process that has it open");
   EXPECT_EQ(open_refusal("/nowhere", EACCES),
             "/nowhere: Permission denied: add the user to the group dialout or input and log in again");
 }

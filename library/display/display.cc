@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints values, beside the cycles: a terminal that stalls costs lines and no cycle. README.md is the data sheet.
+// Prints values in the background. A terminal that stalls costs lines but delays no cycle. README.md is the data sheet.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -15,13 +15,11 @@ namespace {
 constexpr std::size_t kRowsWaiting = 64;
 
 struct Display {
-  Many<In<Any[]>>     in{"in*", "U", "[n...<=64]", type = "T",
-                         doc = "What is shown: numbers or truth values of one unit."};
-  InConst<Text<32>>   title{"title", "1", initial = "", doc = "What every line begins with."};
+  Many<In<Any[]>>     in{"in*", "U", "[n...<=64]", type = "T", doc = "Numbers or truth values of one unit."};
+  InConst<Text<32>>   title{"title", "1", initial = "", doc = "Start of every line."};
   InConst<std::int32_t> digits{"digits", "1", initial = 6, range(1, 17), doc = "Significant digits."};
-  Out<std::int64_t>   lines{"lines", "1", initial = 0, doc = "Lines that were handed to the printer."};
-  Out<std::int64_t>   lost{"lost", "1", initial = 0,
-                           doc = "Lines that found no room; lines + lost is the number of cycles."};
+  Out<std::int64_t>   lines{"lines", "1", initial = 0, doc = "Lines printed or in the ring."};
+  Out<std::int64_t>   lost{"lost", "1", initial = 0, doc = "Lines dropped; lines + lost is the number of cycles."};
 
   Outcome init() {
     if (in.size() == 0) return fault("there is nothing to show: name at least one input");
@@ -56,7 +54,7 @@ struct Display {
     ring_.commit();
     *lines += 1;
   }
-  // At most what waited when it began: a cycle that is faster than the terminal must not keep it here.
+  // Prints only lines that wait at the start of the call, so that a fast cycle cannot keep background() here.
   void background() {
     for (std::size_t n = 0; n < kRowsWaiting; ++n) {
       const double* row = ring_.front();
@@ -72,12 +70,12 @@ struct Display {
 
  private:
   library::RowRing ring_;
-  // Fixed by init: the background reads no port.
+  // Copied by init, because background must not read ports.
   Text<32> title_;
   int digits_ = 6;
   Nanoseconds origin_;
 };
 
-CHIMERA_COMPONENT(Display, "display", "Prints values, beside the cycles.", rate = 2.0);
+CHIMERA_COMPONENT(Display, "display", "Prints values, without delaying a cycle.", rate = 2.0);
 
 }  // namespace

@@ -26,7 +26,7 @@ TEST_F(DisplayTest, PrintsALineForEachCycleBesideTheCycles) {
   start("q", 4);
   testing::internal::CaptureStdout();
   ASSERT_TRUE(rig.cycle(milliseconds(500)));
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");  // nothing in a cycle
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");  // a cycle does not print
   rig.set("in", 0.25, 0);
   rig.set("in", -1.57079632679, 1);
   ASSERT_TRUE(rig.cycle(milliseconds(500)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pulse where a truth value changes. README.md is the data sheet.
+// Gives a pulse when a truth value changes. README.md is the data sheet.
 #include "chimera/task/component.h"
 #include "library/signals/input.h"
 
@@ -8,11 +8,11 @@ using namespace chimera;
 namespace {
 
 struct EdgePulse {
-  In<bool[]> x{"x", "1", "[n...<=64]", doc = "What is looked at."};
-  InConst<Text<16>> of{"of", "1", initial = "rising", doc = "Which edges: rising, falling or both."};
+  In<bool[]> x{"x", "1", "[n...<=64]", doc = "Any truth value."};
+  InConst<Text<16>> of{"of", "1", initial = "rising", doc = "rising, falling or both."};
   InConst<double> duration{"duration", "s", initial = 0.0, range(0, 86400),
-                           doc = "Of the pulse; 0 for one cycle. An edge within makes it longer."};
-  Out<bool[]> y{"y", "1", "[n...<=64]", initial = false, doc = "True from an edge on for that long."};
+                           doc = "Duration of the pulse; 0: one cycle."};
+  Out<bool[]> y{"y", "1", "[n...<=64]", initial = false, doc = "The pulse."};
 
   Outcome init() {
     rises_ = *of == "rising" || *of == "both";
@@ -23,7 +23,7 @@ struct EdgePulse {
     return ok();
   }
   Outcome reinit() { return init(); }
-  // What changed while it was off is no edge.
+  // A change while the task was off is no edge.
   void on() {
     has_last_ = false;
     for (bool& out : y) out = false;

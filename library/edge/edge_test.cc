@@ -14,7 +14,7 @@ struct Pulses : Rig {
     extent("n", elements);
     set("of", Text<16>(of)), set("duration", duration);
   }
-  /// y in each cycle of 1 ms, x being the bits one after the other.
+  /// Runs a cycle of 1 ms for each bit of x and returns y of each cycle.
   std::string run(const std::string& bits) {
     std::string text;
     for (const char bit : bits) {

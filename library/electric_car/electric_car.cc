@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The car of the 2000 paper's direct-drive variant: one motor force, driving and braking.
+// Simulates the car of the 2000 paper's direct-drive variant: one motor drives and brakes.
 #include <algorithm>
 #include <cmath>
 
@@ -10,9 +10,11 @@ using namespace chimera;
 namespace {
 
 struct ElectricCar : library::RollingCar {
-  In<double> fm{"fm", "N", doc = "Force wanted of the motor; below 0 it brakes."};
-  InConst<double> force_max{"force_max", "N", initial = 5000.0, range(0, 50000), doc = "Of the motor, either way."};
-  InConst<double> power_max{"power_max", "W", initial = 80e3, range(0, 1e6), doc = "Of the motor, either way."};
+  In<double> fm{"fm", "N", doc = "Wanted motor force; below 0 brakes."};
+  InConst<double> force_max{"force_max", "N", initial = 5000.0, range(0, 50000),
+                            doc = "Limit of the motor, driving and braking."};
+  InConst<double> power_max{"power_max", "W", initial = 80e3, range(0, 1e6),
+                            doc = "Limit of the motor, driving and braking."};
 
   Outcome init() { return wrong_motor() == nullptr ? RollingCar::init() : fault(wrong_motor()); }
   Outcome reinit() { return wrong_motor() == nullptr ? RollingCar::reinit() : fault(wrong_motor()); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Position and velocity of an encoder: two tracks, or a count of a device. README.md is the data sheet.
+// Position and velocity of an encoder, from two tracks or a count. README.md is the data sheet.
 #include <cstdio>
 #include <cstring>
 
@@ -12,32 +12,31 @@ using namespace chimera;
 
 namespace {
 
-constexpr double kMostCount = 9007199254740992.0;  // 2^53: every double up to there is a count
+constexpr double kMostCount = 9007199254740992.0;  // 2^53: a double represents every count up to here exactly
 constexpr double kLongest = 86400;
 
 struct Encoder {
   Many<In<Any[]>, 3> in{"in*", "1", "[n...<=64]", type = "T",
-                        doc = "The tracks A and B, or a count; behind them the index, where there is one."};
-  InConst<double[]> span{"span", "U", "[n...<=64]", doc = "The way of so many counts; below 0 turns the direction."};
+                        doc = "Tracks A and B, or a count; then the optional index."};
+  InConst<double[]> span{"span", "U", "[n...<=64]", doc = "Way of `counts` counts; below 0 reverses the direction."};
   InConst<std::int64_t> counts{"counts", "1", initial = 1, range(1, kMostCount),
-                               doc = "Counts to a span; two tracks give four to a line."};
+                               doc = "Counts in a span; tracks give four to a line."};
   InConst<std::int64_t> wrap{"wrap", "1", initial = 0, range(0, kMostCount),
-                             doc = "Where a count begins anew: 65536 of 16 bits; 0: int32 at 2^32, else not."};
+                             doc = "Counts until a count repeats: 65536 of 16 bits; 0: 2^32 of int32, else none."};
   InConst<bool> is_absolute{"is_absolute", "1", initial = false,
-                            doc = "A count tells where it is when the task goes on; else the position goes on."};
+                            doc = "At on the position is that of the count; false: it continues."};
   InConst<Text<16>> zero_at{"zero_at", "1", initial = "first",
-                            doc = "The index that makes the position 0: the first since on, or every."};
+                            doc = "Index that sets the position to 0: first (since on) or every."};
   InConst<double> window{"window", "s", initial = 0.0, range(0, kLongest),
-                         doc = "The velocity is measured over at least this time; longer is finer and later."};
+                         doc = "Least time over which the velocity is measured."};
   InConst<double> standstill{"standstill", "s", initial = 0.1, range(1e-6, kLongest),
-                             doc = "So long without a count, the velocity is 0."};
-  Out<double[]> position{"position", "U", "[n...<=64]", initial = 0.0, doc = "Where it is."};
-  Out<double[]> velocity{"velocity", "U/s", "[n...<=64]", initial = 0.0, doc = "How fast it moves."};
+                             doc = "Time without a count after which the velocity is 0."};
+  Out<double[]> position{"position", "U", "[n...<=64]", initial = 0.0, doc = "Position."};
+  Out<double[]> velocity{"velocity", "U/s", "[n...<=64]", initial = 0.0, doc = "Velocity."};
   Out<std::int64_t[]> count{"count", "1", "[n...<=64]", initial = 0, doc = "The position in counts."};
   Out<std::int64_t[]> errors{"errors", "1", "[n...<=64]", initial = 0,
                              doc = "Cycles in which both tracks changed: too fast, or a broken wire."};
-  Out<bool[]> is_referenced{"is_referenced", "1", "[n...<=64]", initial = false,
-                            doc = "The index was met since the task went on."};
+  Out<bool[]> is_referenced{"is_referenced", "1", "[n...<=64]", initial = false, doc = "The index was seen since on."};
 
   Outcome init() {
     const Outcome inputs = judge_inputs();
@@ -59,7 +58,7 @@ struct Encoder {
     return ok();
   }
   Outcome reinit() { return init(); }
-  // Goes on from the count that stands; what turned while it was off is not known, so the reference is lost.
+  // Continues from the last count. The reference is lost, because turns while the task was off are not seen.
   void on() {
     for (std::size_t i = 0; i < count.size(); ++i) {
       axis_[i].wheel.begin(count[i]);
@@ -81,8 +80,8 @@ struct Encoder {
  private:
   struct Axis {
     library::CountedWheel wheel;
-    std::int64_t found = 0;  // the count of this cycle
-    std::int64_t zero = 0;   // the total at which the count is 0
+    std::int64_t found = 0;  // count of this cycle
+    std::int64_t zero = 0;   // total for which the count is 0
     bool was_index = false;
   };
 
@@ -103,7 +102,7 @@ struct Encoder {
     return ok();
   }
   bool truth(std::size_t k, std::size_t i) const { return in[k].bytes()[i] != std::byte{0}; }
-  /// Reads all before any is counted: a fault leaves no axis ahead of another.
+  /// Reads all counts before it uses one, so that a fault leaves all axes at the same cycle.
   Outcome read_counts() {
     const std::span<const std::byte> bytes = in[0].bytes();
     const std::uint32_t type = in[0].element_type();

@@ -10,7 +10,7 @@
 namespace chimera {
 namespace {
 
-/// One with two tracks and, when asked, an index: 100 counts to 1 rad.
+/// An encoder with two tracks and optional index: 100 counts to 1 rad.
 struct Tracks : Rig {
   explicit Tracks(bool has_index = false, std::uint32_t elements = 1) : Rig("encoder"), has_index_(has_index) {
     extent("n", elements), instances("in", has_index ? 3 : 2);
@@ -23,7 +23,7 @@ struct Tracks : Rig {
     ASSERT_TRUE(made) << made.text;
     ASSERT_TRUE(on());
   }
-  /// A cycle at which the wheel stands `steps` counts from where A and B are both false.
+  /// Runs a cycle with the wheel `steps` counts from the place where A and B are both false.
   void turn(std::int64_t steps, bool index = false) {
     const std::int64_t phase = steps & 3;
     set("in", phase == 1 || phase == 2, 0, 0), set("in", phase >= 2, 0, 1);
@@ -37,7 +37,7 @@ struct Tracks : Rig {
   bool has_index_;
 };
 
-/// One with a count of type T: 100 counts to 1 rad.
+/// An encoder with a count of type T: 100 counts to 1 rad.
 template <class T>
 struct Count : Rig {
   explicit Count(bool has_index = false) : Rig("encoder") {
@@ -51,7 +51,7 @@ struct Count : Rig {
     ASSERT_TRUE(made) << made.text;
     ASSERT_TRUE(on());
   }
-  /// The count after a cycle in which the device has told `value`.
+  /// Runs a cycle with the device count `value` and returns `count`.
   std::int64_t see(T value) {
     set("in", value);
     const RigAnswer answer = cycle();
@@ -67,7 +67,7 @@ TEST(Encoder, CountsFourToALineInBothDirections) {
   for (std::int64_t k = 0; k <= 250; ++k) rig.turn(k);
   EXPECT_EQ(rig.count(), 250);
   EXPECT_DOUBLE_EQ(rig.position(), 2.5);
-  EXPECT_DOUBLE_EQ(rig.velocity(), 10);  // a count a cycle
+  EXPECT_DOUBLE_EQ(rig.velocity(), 10);  // one count per cycle
   for (std::int64_t k = 250; k >= -30; --k) rig.turn(k);
   EXPECT_EQ(rig.count(), -30);
   EXPECT_DOUBLE_EQ(rig.velocity(), -10);
@@ -86,14 +86,14 @@ TEST(Encoder, ASpanBelowZeroTurnsTheDirection) {
 TEST(Encoder, CountsTheCyclesInWhichBothTracksChanged) {
   Tracks rig;
   rig.begin();
-  rig.turn(2);  // as it is found first: no step
+  rig.turn(2);  // place of the first cycle: no step
   EXPECT_EQ(rig.errors(), 0);
   rig.turn(4), rig.turn(6), rig.turn(7);
   EXPECT_EQ(rig.errors(), 2);
   EXPECT_EQ(rig.count(), 1);
 }
 
-// A wheel of n cycles a count: the velocity is exact, not 0 and 10 rad/s by turns.
+// A wheel that takes n cycles for a count: the velocity is exact and does not alternate between 0 and 10 rad/s.
 TEST(Encoder, MeasuresASlowWheelFromEdgeToEdge) {
   for (const int period : {2, 7, 60}) {
     Tracks rig;
@@ -119,7 +119,7 @@ TEST(Encoder, FallsAsOneOverTheTimeWithoutACountAndThenToZero) {
   EXPECT_EQ(rig.velocity(), 0);
 }
 
-// Turning back it passes the same edge: no way in between.
+// A wheel that turns back passes the same edge, so it has not moved.
 TEST(Encoder, StandsWhenItTremblesAboutAnEdge) {
   Tracks rig;
   rig.begin();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an encoder has turned, and how fast: from the two tracks A and B of a wheel, or from a count that wraps.
+// Counts and speed of an encoder wheel, from the two tracks A and B or from a count that wraps.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,15 @@
 
 namespace chimera::library {
 
-/// The steps of a Gray code, A before B, or of a count. Context: cycle; wait-free.
+/// Counts the steps of a Gray code, A before B, or of a count. Context: cycle; wait-free.
 class CountedWheel {
  public:
-  /// From now on it is at `total`, and what is seen next is no step.
+  /// Sets the total. The next input gives no step.
   void begin(std::int64_t total) noexcept {
     total_ = total, velocity_ = 0;
     has_last_ = has_edge_ = false;
   }
-  /// Both tracks. False when both have changed, so that nobody knows which way: no step is counted.
+  /// Reads both tracks. Returns false, without a step, if both have changed: the direction is then unknown.
   bool see(bool a, bool b, Nanoseconds now, Nanoseconds window, Nanoseconds standstill) noexcept {
     const std::uint64_t phase = a ? (b ? 2 : 1) : (b ? 3 : 0);
     const std::uint64_t moved = has_last_ ? (phase - last_) & 3 : 0;
@@ -24,7 +24,7 @@ class CountedWheel {
     last_ = phase, has_last_ = true;
     return moved != 2;
   }
-  /// A count that begins anew at `wrap`; 0: at 2^64.
+  /// Reads a count that wraps at `wrap`; 0 means 2^64.
   void see(std::int64_t count, std::uint64_t wrap, Nanoseconds now, Nanoseconds window,
            Nanoseconds standstill) noexcept {
     const auto found = static_cast<std::uint64_t>(count);
@@ -37,7 +37,7 @@ class CountedWheel {
   double velocity() const noexcept { return velocity_; }
 
  private:
-  /// An instant at which the wheel stood exactly between two counts.
+  /// The instant at which the wheel was exactly between two counts.
   struct Edge {
     std::int64_t place = 0;
     Nanoseconds at;
@@ -49,8 +49,8 @@ class CountedWheel {
     way %= turn;
     return way >= turn - turn / 2 ? way - turn : way < -(turn / 2) ? way + turn : way;
   }
-  // From edge to edge, so that a slow wheel is measured over the time it really took. A wheel that turns back passes
-  // the same edge again and has gone no way between, so that one that trembles about an edge stands.
+  // Measures from edge to edge, so that the interval of a slow wheel is exact. A wheel that turns back passes the same
+  // edge and has not moved: a wheel that trembles at an edge has speed 0.
   void step(std::int64_t way, Nanoseconds now, Nanoseconds window, Nanoseconds standstill) noexcept {
     if (way == 0) return wait(now, standstill);
     total_ = static_cast<std::int64_t>(static_cast<std::uint64_t>(total_) + static_cast<std::uint64_t>(way));
@@ -61,7 +61,7 @@ class CountedWheel {
     velocity_ = static_cast<double>(edge.place - base_.place) / to_seconds(edge.at - base_.at);
     base_ = edge;
   }
-  // Without an edge it has gone less than a count since the last.
+  // Without a new edge the wheel has moved less than one count since the last edge.
   void wait(Nanoseconds now, Nanoseconds standstill) noexcept {
     if (!has_edge_) return;
     const Nanoseconds elapsed = now - last_edge_;
@@ -78,7 +78,7 @@ class CountedWheel {
   std::int64_t total_ = 0;
   std::uint64_t last_ = 0;
   double velocity_ = 0;
-  Edge base_;  // where the velocity is measured from
+  Edge base_;  // start of the velocity measurement
   Nanoseconds last_edge_;
   bool has_last_ = false, has_edge_ = false;
 };

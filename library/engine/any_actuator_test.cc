@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds for everything that turns a force asked for into one that a car feels: engine, wheels and motor.
+// Properties of engine, wheels and motor, which all turn a wanted force into an actuator value.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ struct Actuator {
   const char* input;
   const char* output;
   const char* limit;
-  double too_little, too_much;  // for the limit, N
+  double too_little, too_much;  // limits that are refused, N
   const char* refusal;
 };
 

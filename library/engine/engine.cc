@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Output element of the cruise control (2000 paper, figure 15): how much gas to give.
+// Computes the throttle for a wanted force of the cruise control (2000 paper, figure 15).
 #include <algorithm>
 #include <cmath>
 
@@ -10,9 +10,9 @@ using namespace chimera;
 namespace {
 
 struct Engine {
-  In<double> fde{"fde", "N", doc = "Force wanted of the engine."};
+  In<double> fde{"fde", "N", doc = "Wanted engine force."};
   Out<double> gas{"gas", "1", initial = 0.0, safety, range(0, 1), doc = "Throttle, 0 closed to 1 open."};
-  InConst<double> full_gas{"full_gas", "N", initial = 2280.0, range(1, 1e5), doc = "Force of the engine at full gas."};
+  InConst<double> full_gas{"full_gas", "N", initial = 2280.0, range(1, 1e5), doc = "Engine force at full gas."};
 
   Outcome init() { return *full_gas >= 1 && *full_gas <= 1e5 ? ok() : fault("full_gas is 1 to 100000 N"); }
   Outcome reinit() { return init(); }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts its cycles until it fails on purpose, so that one can see what the others notice of it. README.md is the data
-// sheet.
+// Counts its cycles until it fails on purpose, to show how other tasks react. README.md is the data sheet.
 #include <limits>
 #include <stdexcept>
 
@@ -15,9 +14,9 @@ constexpr double kNeverSeconds = 1e9;
 struct Faulty {
   Out<double> y{"y", "1", initial = 0.0, safety, range(0, 1e12), doc = "Cycles since on."};
   InConst<double> throw_after{"throw_after", "s", initial = kNeverSeconds, range(0, 1e9),
-                              doc = "Throws an exception in every cycle from then on."};
+                              doc = "Time after which every cycle throws an exception."};
   InConst<double> nan_after{"nan_after", "s", initial = kNeverSeconds, range(0, 1e9),
-                            doc = "Puts NaN on its safety port in every cycle from then on."};
+                            doc = "Time after which every cycle writes NaN to y."};
 
   void on(Cycle c) {
     from_ = c.now();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frame in which values travel to a device and back (library/serial_frame/README.md):
+// The frame that carries values to and from a device (library/serial_frame/README.md):
 //
 //   A5 | length | payload, `length` bytes | CRC-16 of length and payload, low byte first
 //
-// The CRC is the one called CCITT-FALSE: polynomial 1021, start FFFF, nothing reflected.
+// The CRC is CCITT-FALSE: polynomial 1021, start FFFF, nothing reflected.
 #pragma once
 
 #include <array>
@@ -29,7 +29,7 @@ constexpr std::uint16_t crc16(std::span<const std::uint8_t> bytes) noexcept {
   return crc;
 }
 
-/// Puts a frame round the payload that stands at to[2]; its size. Context: cycle; wait-free.
+/// Completes the frame around a payload at to[2] and returns its size. Context: cycle; wait-free.
 inline std::size_t close_frame(std::uint8_t* to, std::size_t payload) noexcept {
   to[0] = kFrameStart;
   to[1] = static_cast<std::uint8_t>(payload);
@@ -39,7 +39,7 @@ inline std::size_t close_frame(std::uint8_t* to, std::size_t payload) noexcept {
   return payload + kFrameOverhead;
 }
 
-/// Whether these bytes begin with a whole frame of that payload. Context: cycle; wait-free.
+/// Returns true if `bytes` begin with a complete frame of that payload. Context: cycle; wait-free.
 inline bool is_frame(std::span<const std::uint8_t> bytes, std::size_t payload) noexcept {
   if (bytes.size() < payload + kFrameOverhead || bytes[0] != kFrameStart || bytes[1] != payload) return false;
   return crc16(bytes.subspan(1, payload + 1)) == bytes[payload + 2] + 256u * bytes[payload + 3];
@@ -48,17 +48,17 @@ inline bool is_frame(std::span<const std::uint8_t> bytes, std::size_t payload) n
 /// Finds frames of one length in a stream of bytes that may be cut, noisy or wrong.
 class FrameReader {
  public:
-  /// Forgets what it holds. Context: cycle; wait-free.
+  /// Drops all bytes. Context: cycle; wait-free.
   void reset(std::size_t payload) noexcept {
     payload_ = payload;
     held_ = 0;
   }
-  /// Where the next bytes are to be put, and taken() how many. Context: cycle; wait-free.
+  /// Buffer for the next bytes. The caller reports their number by taken(). Context: cycle; wait-free.
   std::span<std::uint8_t> room() noexcept { return std::span(bytes_).subspan(held_); }
   void taken(std::size_t count) noexcept { held_ += count; }
 
-  /// Copies the payload of each whole frame to `each(payload)`, in order. A start byte that begins no frame is passed
-  /// over, so a false one hides no true frame behind it. Context: cycle; wait-free, bounded by the room.
+  /// Calls `each(payload)` for each complete frame, in order. A start byte without a frame is skipped, so it hides no
+  /// frame after it. Context: cycle; wait-free, bounded by the buffer.
   template <class Each>
   void frames(Each each) noexcept {
     std::size_t at = 0;
@@ -80,7 +80,7 @@ class FrameReader {
     held_ -= at;
     std::memmove(bytes_.data(), bytes_.data() + at, held_);
   }
-  /// Frames whose CRC was wrong, and bytes that belonged to no frame. Context: cycle; wait-free.
+  /// Frames with a wrong CRC, and bytes outside frames. Context: cycle; wait-free.
   std::int64_t wrong() const noexcept { return wrong_; }
   std::int64_t noise() const noexcept { return noise_; }
 

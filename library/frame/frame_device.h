@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the components that exchange frames with a device have in common: ports, what is sent and what is not, and when
-// a device counts as lost. Who moves the bytes is theirs.
+// Common part of the components that exchange frames with a device: ports, checks of commands, detection of a lost
+// device. The component moves the bytes.
 #pragma once
 
 #include <array>
@@ -16,27 +16,23 @@
 namespace chimera::library {
 
 struct FrameDevice {
-  In<double[]> command{"command", "U", "[m<=16]", doc = "What is sent to the device in every cycle."};
-  Out<double[]> state{"state", "X", "[fields<=16]", initial = 0.0, doc = "What the device sent last."};
-  Out<double> age{"age", "s", initial = 0.0, doc = "Since the last good frame came; since on before the first."};
+  In<double[]> command{"command", "U", "[m<=16]", doc = "Values to send in every cycle."};
+  Out<double[]> state{"state", "X", "[fields<=16]", initial = 0.0, doc = "Last values of the device."};
+  Out<double> age{"age", "s", initial = 0.0, doc = "Time since the last good frame, or since on."};
   Out<bool> connected{"connected", initial = false, doc = "A good frame came within the timeout."};
   Out<std::int64_t> received{"received", "1", initial = 0, doc = "Good frames."};
   Out<std::int64_t> wrong{"wrong", "1", initial = 0, doc = "Frames with a wrong CRC or a value that is not finite."};
-  Out<bool> idled{"idled", initial = false, safe_state,
-                  doc = "The flag is up and a frame with `idle` has gone out since."};
-  Out<std::int64_t> unsent{"unsent", "1", initial = 0, doc = "Commands that were not finite, or found the line full."};
+  Out<bool> idled{"idled", initial = false, safe_state, doc = "The flag is up and a frame with `idle` was sent since."};
+  Out<std::int64_t> unsent{"unsent", "1", initial = 0, doc = "Commands not sent: not finite, or the line was full."};
   InConst<std::int32_t> fields{"fields", "1", initial = 1, range(1, 16), doc = "Values in a frame of the device."};
-  InConst<Text<8>> form{"form", initial = "float32", one_of = "float32 int16",
-                        doc = "How a value stands in a frame."};
-  InConst<double> command_resolution{"command_resolution", "U", initial = 1.0,
-                                     doc = "Command that is a 1 in the frame."};
-  InConst<double> state_resolution{"state_resolution", "X", initial = 1.0, doc = "State that is a 1 in the frame."};
+  InConst<Text<8>> form{"form", initial = "float32", one_of = "float32 int16", doc = "Form of a value in a frame."};
+  InConst<double> command_resolution{"command_resolution", "U", initial = 1.0, doc = "Command for a 1 in the frame."};
+  InConst<double> state_resolution{"state_resolution", "X", initial = 1.0, doc = "State for a 1 in the frame."};
   InConst<double> limit{"limit", "U", initial = 1e6, range(0, 1e9), at_least = "idle",
-                        doc = "Commands are held within +- limit."};
-  InConst<double> idle{"idle", "U", initial = 0.0,
-                       doc = "What is sent at off and in place of commands that mean nothing."};
+                        doc = "Commands are cut at +- limit."};
+  InConst<double> idle{"idle", "U", initial = 0.0, doc = "Command at off, after the timeout and while the flag is up."};
   InConst<double> timeout{"timeout", "s", initial = 0.1, range(0.001, 3600),
-                          doc = "Silence after which the device is lost."};
+                          doc = "Silence after which the device counts as lost."};
 
  protected:
   /// Checks the constants. Context: setup; wait-free.
@@ -61,7 +57,7 @@ struct FrameDevice {
     *connected = *idled = false;
     *age = 0;
   }
-  /// The frame for this cycle behind to[2 + number_bytes]; its payload, 0: there is nothing to send.
+  /// Writes the payload of this cycle at to[2 + number_bytes] and returns its size; 0 if nothing is to be sent.
   std::size_t put_command(std::uint8_t* to, bool is_idle) {
     std::uint8_t* at = to + 2 + number_bytes_;
     for (const double value : command) {
@@ -75,11 +71,11 @@ struct FrameDevice {
     }
     return static_cast<std::size_t>(at - to) - 2;
   }
-  /// There is a device: it counts as silent from now on only.
+  /// The device exists: its silence begins now.
   void hears(Nanoseconds now) { heard_ = now; }
-  /// For cycle, after what was sent: whether a whole frame with the idle command has gone out in it.
+  /// For cycle, after sending. `is_idle_out`: a complete frame with the idle command went out in this cycle.
   void tell_idled(Cycle c, bool is_idle_out) { *idled = c.illegal() && (*idled || is_idle_out); }
-  /// Takes the values of a good frame.
+  /// Reads the values of a good frame.
   void take_state(std::span<const std::uint8_t> frame, Nanoseconds now) {
     std::array<double, 16> values{};
     for (std::size_t i = 0; i < state.size(); ++i) {
@@ -93,7 +89,7 @@ struct FrameDevice {
     *connected = true;
     heard_ = now;
   }
-  /// Whether the device is lost from now on: the cycle that finds it still publishes, the next one is the fault.
+  /// Decides whether the device is lost. The present cycle still publishes, the next one is the fault.
   bool is_lost(Cycle c, bool is_open) {
     *age = to_seconds(c.now() - heard_);
     if (!is_open) lost_ = &gone_;
@@ -101,7 +97,7 @@ struct FrameDevice {
     if (lost_ != nullptr) *connected = false;
     return lost_ != nullptr;
   }
-  /// The sentence of a device that was found lost; null while it is not.
+  /// Fault text of a lost device; null while the device is not lost.
   const char* lost() const { return lost_ == nullptr ? nullptr : lost_->text(); }
 
  private:

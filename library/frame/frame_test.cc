@@ -36,7 +36,7 @@ struct FrameReaderTest : ::testing::Test {
 };
 
 TEST(Crc16, IsCcittFalse) {
-  const std::string check = "123456789";  // the check value that catalogues of CRCs give
+  const std::string check = "123456789";  // check value in catalogues of CRCs
   EXPECT_EQ(crc16({reinterpret_cast<const std::uint8_t*>(check.data()), check.size()}), 0x29B1);
   EXPECT_EQ(crc16({}), 0xFFFF);
 }
@@ -62,7 +62,7 @@ TEST_F(FrameReaderTest, FindsFramesHoweverTheyAreCut) {
 
 TEST_F(FrameReaderTest, AFalseStartHidesNoFrame) {
   reader.reset(4);
-  Bytes bytes = {0xA5, 0x04, 0x11};  // looks like the start of a frame and is none
+  Bytes bytes = {0xA5, 0x04, 0x11};  // start of a frame that never completes
   const Bytes frame = framed({1, 2, 3, 4});
   bytes.insert(bytes.end(), frame.begin(), frame.end());
   feed(bytes);
@@ -93,7 +93,7 @@ TEST_F(FrameReaderTest, TrueFramesAreFoundInNoise) {
     feed(framed({static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(i >> 8), 77}));
     ++sent;
   }
-  feed(Bytes(20, 0));  // nothing is left waiting behind a false start
+  feed(Bytes(20, 0));  // no byte waits after a false start
   std::size_t true_ones = 0;
   for (const Bytes& payload : got) true_ones += payload[2] == 77 ? 1 : 0;
   EXPECT_EQ(true_ones, sent);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers as they stand in a frame: one behind the other, low byte first.
+// Numbers in a frame: one after the other, low byte first.
 #pragma once
 
 #include <bit>
@@ -25,7 +25,7 @@ inline std::uint32_t get_bytes(const std::uint8_t* from, std::size_t count) noex
   return bits;
 }
 
-/// The nearest whole number of an int16; `x` is finite. Context: cycle; wait-free.
+/// Rounds to the nearest int16 and cuts at its limits. `x` is finite. Context: cycle; wait-free.
 inline std::int16_t whole(double x) noexcept {
   if (x >= 32767) return 32767;
   if (x <= -32768) return -32768;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forward kinematics and Jacobian (1994 paper, figures 8 and 9), for any robot that tells how it is built.
+// Tool pose and Jacobian of any serial arm (1994 paper, figures 8 and 9).
 #include "library/kinematics/dh_ports.h"
 
 using namespace chimera;

@@ -5,9 +5,9 @@
 using namespace chimera;
 
 struct Gain {
-  In<double>      x{"x", "U", doc = "what is multiplied"};
-  InConst<double> k{"k", "X/U", initial = 1.0, doc = "the factor"};
-  Out<double>     y{"y", "X", doc = "k x"};
+  In<double>      x{"x", "U", doc = "Any signal."};
+  InConst<double> k{"k", "X/U", initial = 1.0, doc = "Factor."};
+  Out<double>     y{"y", "X", doc = "Product."};
   void on()    { *y = *k * *x; }
   void cycle() { *y = *k * *x; }
 };

@@ -14,7 +14,7 @@ TEST(Gain, MultipliesByItsConstant) {
   rig.set("x", 4.0);
   ASSERT_TRUE(rig.init());
   ASSERT_TRUE(rig.on());
-  EXPECT_DOUBLE_EQ(rig.get<double>("y"), -10.0);  // from on already: no step in the first cycle
+  EXPECT_DOUBLE_EQ(rig.get<double>("y"), -10.0);  // computed by on: no step in the first cycle
   rig.set("x", 2.0);
   ASSERT_TRUE(rig.cycle());
   EXPECT_DOUBLE_EQ(rig.get<double>("y"), -5.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Generalized forward kinematics: where the tool is, for any robot that tells how it is built.
+// Generalized forward kinematics: tool pose of any serial arm.
 #include "library/kinematics/dh_ports.h"
 
 using namespace chimera;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Generalized inverse kinematics: joint positions for a tool pose, for any robot that tells how it is built.
+// Generalized inverse kinematics: joint positions for a tool pose of any serial arm.
 #include "library/kinematics/dh_ports.h"
 #include "library/signals/input.h"
 
@@ -9,22 +9,19 @@ namespace {
 
 struct Ginvkin : library::DhPorts {
   In<Pose> xr{"xr", frame = "base", doc = "Reference tool pose."};
-  In<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint",
-                 doc = "Measured joint positions: where the search begins at on, unless q_ref is handed over."};
+  In<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint", doc = "Measured joint positions."};
   Out<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", initial = 0.0, frame = "joint",
                       doc = "Joint positions for xr, near the last ones."};
-  Out<double> residual{"residual", "1", initial = 0.0,
-                       doc = "What is missing where the search ends: the larger of metres and radians; large "
-                             "when xr is out of reach."};
-  Out<bool> is_reachable{"is_reachable", "1", initial = true,
-                         doc = "The residual is within tolerance; false: xr is out of reach, or beyond a joint limit."};
-  InConst<double> tolerance{"tolerance", "1", initial = 1e-6, range(1e-9, 0.1), doc = "Metres and radians."};
+  Out<double> residual{"residual", "1", initial = 0.0, doc = "Remaining error: the larger of metres and radians."};
+  Out<bool> is_reachable{"is_reachable", "1", initial = true, doc = "The residual is within tolerance."};
+  InConst<double> tolerance{"tolerance", "1", initial = 1e-6, range(1e-9, 0.1),
+                            doc = "Largest residual of a reachable pose."};
   InConst<double[]> q_min{"q_min", "rad", "[ndof<=10]", initial = -1e6, frame = "joint",
                           doc = "Lower joint limits; -1e6 for none."};
   InConst<double[]> q_max{"q_max", "rad", "[ndof<=10]", initial = 1e6, at_least = "q_min", frame = "joint",
                           doc = "Upper joint limits; 1e6 for none."};
   InConst<double> speed_limit{"speed_limit", "rad/s", initial = 1e6, range(0.01, 1e6),
-                              doc = "Of the fastest joint of q_ref, the others keep their share; 1e6 for none."};
+                              doc = "Largest joint speed of q_ref; 1e6 for none."};
 
   Outcome init() {
     read_chain();
@@ -41,8 +38,8 @@ struct Ginvkin : library::DhPorts {
     cut();
     return outcome;
   }
-  // Bumpless: a command that is handed over goes on; the drives are still behind it. From beyond a joint limit it comes
-  // back no faster than it goes anywhere. Else the arm is where it is.
+  // Bumpless: continues from a command that is handed over, because the drives lag behind it; else starts at the
+  // measured positions. From beyond a joint limit the command comes back within the speed limit.
   Outcome on() {
     if (q_ref.is_handed_over() && library::all_finite(q_ref)) return ok();
     for (std::size_t i = 0; i < q.size(); ++i) {
@@ -64,7 +61,7 @@ struct Ginvkin : library::DhPorts {
   }
 
  private:
-  /// All the way, or as far as the fastest joint may go.
+  /// Moves to `goal`, or towards it until the fastest joint has moved by `farthest`.
   void move_to(const std::array<double, library::kMostJoints>& goal, double farthest) {
     double way = 0;
     for (std::size_t i = 0; i < q_ref.size(); ++i) way = std::max(way, std::abs(goal[i] - q_ref[i]));

@@ -12,7 +12,7 @@ struct GinvkinTest : ::testing::Test {
     rig.build_puma();
     stand(kBent);
   }
-  /// ON with the arm at `q` and wanted where it is.
+  /// Switches on with the arm at `q` and the target at the tool.
   void stand(const Puma560::Vector& q) {
     rig.give("q", q);
     want(Puma560::forward(q));
@@ -42,7 +42,7 @@ TEST_F(GinvkinTest, SpeedLimitBoundsTheFastestJointAndTheOthersKeepTheirShare) {
   Puma560::Vector goal = kBent;
   for (std::size_t i = 0; i < 6; ++i) goal[i] += offset[i];
   want(Puma560::forward(goal));
-  ASSERT_TRUE(rig.cycle());  // of 1 ms
+  ASSERT_TRUE(rig.cycle());  // cycle of 1 ms
   EXPECT_LT(rig.get<double>("residual"), 1e-6) << "of the search, not of where it is";
   const Puma560::Vector first = rig.six("q_ref");
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(first[i] - kBent[i], offset[i] / 0.02 * 0.0005, 1e-8) << i;
@@ -148,7 +148,7 @@ TEST_F(GinvkinTest, JointsToSpareDoWhatALimitKeepsAnotherFrom) {
   EXPECT_EQ(four.get<double>("q_ref", 1), 0.4);
 }
 
-// The drives are behind the command: to go on from the measurement would be a step back by their lag.
+// The drives lag behind the command: starting at the measurement would step back by that lag.
 TEST_F(GinvkinTest, GoesOnFromTheCommandThatIsHandedOverAndElseFromTheMeasurement) {
   Puma560::Vector ahead = kBent;
   for (double& angle : ahead) angle += 0.05;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The join connector of the 1994 paper (figure 3): several producers of one quantity, combined by a weighted mean.
-// README.md is the data sheet.
+// The join connector of the 1994 paper (figure 3): weighted mean of several producers of one quantity. README.md is the
+// data sheet.
 #include "chimera/task/component.h"
 
 using namespace chimera;
 
 struct JoinMean {
-  Many<In<double>>      in{"in*", "U", doc = "the values to join"};
-  Many<InConst<double>> weight{"weight*", "1", initial = 1.0, range(0, 1e6), doc = "how much each value counts"};
-  Out<double>           out{"out", "U", doc = "the weighted mean of the values that are valid"};
+  Many<In<double>>      in{"in*", "U", doc = "Values to average."};
+  Many<InConst<double>> weight{"weight*", "1", initial = 1.0, range(0, 1e6), doc = "Weight of each input."};
+  Out<double>           out{"out", "U", doc = "Weighted mean of the valid inputs."};
 
   Outcome init() const {
     if (in.size() == 0) return fault("there is nothing to join: name at least one input");
@@ -24,7 +24,7 @@ struct JoinMean {
       sum += w * *in[i];
       weights += w;
     }
-    if (weights > 0) *out = sum / weights;  // else the last mean stands
+    if (weights > 0) *out = sum / weights;  // otherwise the last mean holds
   }
 };
 CHIMERA_COMPONENT(JoinMean, "join_mean", "Joins several producers of one quantity by their weighted mean.",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joins several producers of one quantity: the first that is alive counts. README.md is the data sheet.
+// Selects the first live producer of one quantity. README.md is the data sheet.
 #include <algorithm>
 
 #include "chimera/task/component.h"
@@ -8,13 +8,12 @@
 using namespace chimera;
 
 struct JoinPriority {
-  Many<In<double[]>> in{"in*", "U", "[n...<=64]", doc = "The producers, the most important first."};
+  Many<In<double[]>> in{"in*", "U", "[n...<=64]", doc = "Producers, most important first."};
   InConst<double>    max_age{"max_age", "s", initial = 0.1, range(0, 86400),
-                             doc = "A value older than this does not count; 0: no age is too old."};
+                             doc = "Largest age of a value that counts; 0: any."};
   Out<double[]>      out{"out", "U", "[n...<=64]",
-                         doc = "The values of the first that counts; the last ones stand while none does."};
-  Out<std::int32_t>  chosen{"chosen", "1", initial = -1, range(-1, 15),
-                            doc = "Its number, from 0; -1 while none counts."};
+                         doc = "Values of the chosen input; hold without one."};
+  Out<std::int32_t>  chosen{"chosen", "1", initial = -1, range(-1, 15), doc = "Number of the chosen input; -1: none."};
 
   Outcome init() const {
     if (in.size() == 0) return fault("there is nothing to join: name at least one input");
@@ -35,5 +34,5 @@ struct JoinPriority {
   }
 };
 CHIMERA_COMPONENT(JoinPriority, "join_priority",
-                  "Joins several producers of one quantity: the first that is alive counts.",
+                  "Joins several producers of one quantity: the first live one counts.",
                   source = "1994 paper, figure 3");

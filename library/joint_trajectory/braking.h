@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a motion to rest in the least time that limits of acceleration and jerk allow: acceleration goes to a constant
-// deceleration, stays there, and goes to 0 (Biagiotti and Melchiorri, Trajectory Planning for Automatic Machines and
-// Robots, 2008, section 3.4).
+// Brakes a motion to rest in the least time within limits of acceleration and jerk: the acceleration goes to a constant
+// deceleration, holds, and goes to 0 (Biagiotti and Melchiorri, Trajectory Planning for Automatic Machines and Robots,
+// 2008, section 3.4).
 #pragma once
 
 #include <algorithm>
@@ -12,11 +12,11 @@
 
 namespace chimera::library {
 
-/// One joint from a motion to rest. Velocity does not jump, and with a limit of jerk acceleration does not either; an
-/// acceleration beyond its limit at the beginning only falls. Context: cycle; wait-free.
+/// One joint from a motion to rest. Velocity has no jump; with a limit of jerk acceleration has none either. An
+/// acceleration that starts beyond its limit only falls. Context: cycle; wait-free.
 class Braking {
  public:
-  /// At rest where it is.
+  /// At rest at position 0.
   Braking() noexcept = default;
   Braking(const Motion& from, const MotionLimits& limits) noexcept {
     const double j = limits.jerk, a = from.acceleration;
@@ -39,11 +39,11 @@ class Braking {
     phases_[2] = {phases_[1].at(times_[1]), has_jerk ? sign * j : 0};
   }
 
-  /// s until it is at rest.
+  /// Time to rest, in s.
   double duration() const noexcept { return times_[0] + times_[1] + times_[2]; }
-  /// Where it comes to rest.
+  /// Position at rest.
   double rest() const noexcept { return phases_[2].at(times_[2]).position; }
-  /// The motion at time t (s), 0 or more: at rest after the duration.
+  /// Motion at time t (s), t >= 0. It is at rest after the duration.
   Motion at(double t) const noexcept {
     if (!(t < duration())) return {rest(), 0, 0};
     std::size_t i = 0;
@@ -54,7 +54,7 @@ class Braking {
  private:
   static constexpr double kInfinite = 1e300;
 
-  /// Constant jerk from `start` on.
+  /// Constant jerk after `start`.
   struct Phase {
     Motion start;
     double jerk = 0;
@@ -66,7 +66,7 @@ class Braking {
     }
   };
 
-  // Requires: v and a so turned that it would still move forwards with a brought to 0.
+  // Requires: signs of v and a such that the joint still moves forward after a has come to 0.
   void plan(double v, double a, const MotionLimits& limits) noexcept {
     const double j = limits.jerk;
     const double peak = math::sqrt(std::max(j * v + a * a / 2, 0.0));

@@ -26,7 +26,7 @@ TEST(Braking, WithoutALimitOfJerkItIsTheParabola) {
   EXPECT_DOUBLE_EQ(stop.at(0.5).acceleration, 2);
 }
 
-// Closed form: v = 1, a = 0, j = 4, limit 1: 0.25 s to the deceleration, 0.75 s there, 0.25 s back.
+// Closed form for v = 1, a = 0, j = 4, limit 1: 0.25 s to the deceleration, 0.75 s at it, 0.25 s back.
 TEST(Braking, WithALimitOfJerkItHasThreePhases) {
   const Braking stop({0, 1, 0}, {1, 1, 4});
   EXPECT_DOUBLE_EQ(stop.duration(), 1.25);
@@ -35,8 +35,8 @@ TEST(Braking, WithALimitOfJerkItHasThreePhases) {
   EXPECT_DOUBLE_EQ(stop.rest(), 0.625);
 }
 
-// Any motion within the limits: no jump of position, velocity or acceleration, within the limits all the time, and at
-// rest at the end.
+// Any motion within the limits: position, velocity and acceleration have no jump, the limits hold, and the motion ends
+// at rest.
 TEST(Braking, KeepsItsLimitsAndDoesNotJump) {
   std::mt19937 dice(5);
   std::uniform_real_distribution<double> share(-1, 1), size(0.1, 10);

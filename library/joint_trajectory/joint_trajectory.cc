@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The joint position trajectory generator of figure 4 (1994 paper): from rest, or from the motion of a predecessor, to
-// rest, then hold. README.md is the data sheet.
+// The joint trajectory generator of figure 4 (1994 paper): from rest, or from the motion of a predecessor, to rest;
+// then it holds. README.md is the data sheet.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -23,19 +23,19 @@ struct JointTrajectory {
   InConst<std::int32_t> ndof{"ndof", "1", range(1, 10), doc = "Joints."};
   InConst<double[]> start_pose{"start_pose", "rad", "[ndof<=10]", frame = "joint",
                                doc = "Where the first motion starts."};
-  InConst<double[]> goal{"goal", "rad", "[ndof<=10]", frame = "joint", doc = "Where it ends."};
+  InConst<double[]> goal{"goal", "rad", "[ndof<=10]", frame = "joint", doc = "Where each motion ends."};
   InConst<double> duration{"duration", "s", initial = 0.0, range(0, 3600),
-                           doc = "From rest to rest; with limits the least time it takes."};
+                           doc = "Time from rest to rest; with limits the least time."};
   InConst<Text<16>> profile{"profile", "1", initial = "quintic", one_of = "quintic trapezoid jerk",
-                            doc = "How speed and acceleration go."};
+                            doc = "Shape of the motion."};
   InConst<double[]> velocity_max{"velocity_max", "rad/s", "[ndof<=10]", range(0, 1e6), frame = "joint", initial = 1.0,
-                                 doc = "Limit of trapezoid and jerk."};
+                                 doc = "Limit for trapezoid and jerk."};
   InConst<double[]> acceleration_max{"acceleration_max", "rad/s2", "[ndof<=10]", range(0, 1e6), frame = "joint",
-                                     initial = 2.0, doc = "Limit of trapezoid and jerk."};
+                                     initial = 2.0, doc = "Limit for trapezoid and jerk."};
   InConst<double[]> jerk_max{"jerk_max", "rad/s3", "[ndof<=10]", range(0, 1e9), frame = "joint", initial = 20.0,
-                             doc = "Limit of jerk."};
+                             doc = "Limit for jerk."};
   InConst<bool> is_synchronised{"is_synchronised", "1", initial = true,
-                                doc = "With limits: all joints arrive with the slowest."};
+                                doc = "With limits all joints arrive with the slowest."};
 
   Outcome init() {
     is_quintic_ = *profile == "quintic";
@@ -56,8 +56,8 @@ struct JointTrajectory {
   }
   Outcome reinit() { return init(); }
 
-  // A reference that stands already, of an earlier run or of a predecessor, is where the motion begins: no jump. It
-  // begins at rest unless a predecessor hands it over in motion.
+  // Starts at the last reference, if there is one, so that the reference does not jump. It starts at rest unless a
+  // predecessor hands over a motion.
   void on() {
     elapsed_ = 0;
     for (std::size_t i = 0; i < q_ref.size(); ++i) {
@@ -78,7 +78,7 @@ struct JointTrajectory {
     elapsed_ += c.dt();
     publish();
   }
-  // At rest where it is: who holds the arm holds it there.
+  // Holds the last position at rest, because the controller of the arm still follows it.
   void off() {
     for (std::size_t i = 0; i < q_ref.size(); ++i) qd_ref[i] = qdd_ref[i] = 0;
   }
@@ -119,9 +119,9 @@ struct JointTrajectory {
   }
 
   library::Quintic path_[kMostJoints];
-  library::Braking braking_[kMostJoints];  // to rest, where a motion with limits begins
+  library::Braking braking_[kMostJoints];  // to rest, before a motion with limits
   library::SevenSegments limited_[kMostJoints];
-  double starts_at_[kMostJoints] = {};  // s, where those begin
+  double starts_at_[kMostJoints] = {};  // s, start of that motion
   bool is_quintic_ = true, has_jerk_ = false;
   double elapsed_ = 0;
 };

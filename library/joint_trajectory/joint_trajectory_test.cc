@@ -62,7 +62,7 @@ TEST_F(JointTrajectoryTest, StartsAgainFromTheReferenceThatStands) {
   EXPECT_EQ(rig.get<double>("q_ref", 0), stands);
 }
 
-// A predecessor in the middle of a motion: the reference goes on with its velocity and acceleration, in each profile.
+// A predecessor in motion: each profile continues with its velocity and acceleration.
 TEST_F(JointTrajectoryTest, GoesOnFromTheMotionThatIsHandedOver) {
   for (const char* profile : {"quintic", "jerk", "trapezoid"}) {
     SCOPED_TRACE(profile);
@@ -110,8 +110,8 @@ TEST_F(JointTrajectoryTest, RefusesADurationOfNothingAndAGoalThatIsNotFinite) {
   EXPECT_EQ(rig.init().text, "start_pose and goal must be finite");
 }
 
-// Ten joints, random targets and limits: within every limit at every sample, all at the goal in the same cycle, and
-// exactly there.
+// Ten joints with random targets and limits: every sample is within the limits, and all joints reach the goal exactly
+// and in the same cycle.
 TEST(JointTrajectory, KeepsItsLimitsAndArrivesTogether) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> place(-3, 3), limit(0.5, 5);

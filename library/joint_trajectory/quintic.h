@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The quintic to rest: the lowest polynomial with a given velocity and acceleration at its beginning, both 0 at its end
-// (Craig, Introduction to Robotics, 3rd ed., section 7.3).
+// The quintic to rest: the polynomial of least degree with given velocity and acceleration at its start and none at its
+// end (Craig, Introduction to Robotics, 3rd ed., section 7.3).
 #pragma once
 
 namespace chimera::library {
@@ -12,17 +12,17 @@ struct Motion {
   double acceleration = 0;
 };
 
-/// s(u) = 10 u^3 - 15 u^4 + 6 u^5 between two positions in `duration` seconds.
-/// Peaks: velocity 1.875 d/T halfway, acceleration 10/sqrt(3) d/T2. Where it begins in motion, v T (u - 6 u^3 + 8 u^4 -
-/// 3 u^5) + a T^2 / 2 u^2 (1 - u)^3 is added. Requires: duration > 0. Context: cycle; wait-free.
+/// s(u) = 10 u^3 - 15 u^4 + 6 u^5 between two positions in `duration` seconds. Peaks: velocity 1.875 d/T halfway,
+/// acceleration 10/sqrt(3) d/T2. A start in motion adds v T (u - 6 u^3 + 8 u^4 - 3 u^5) + a T^2 / 2 u^2 (1 - u)^3.
+/// Requires: duration > 0. Context: cycle; wait-free.
 struct Quintic {
   double from = 0;
   double to = 0;
   double duration = 1;
-  double velocity = 0;      ///< at the beginning
-  double acceleration = 0;  ///< likewise
+  double velocity = 0;      ///< at the start
+  double acceleration = 0;  ///< at the start
 
-  /// The motion at time t (s): that of the beginning before 0, at rest in `to` after the duration.
+  /// Motion at time t (s): that of the start before 0, at rest in `to` after the duration.
   Motion at(double t) const noexcept {
     if (!(t > 0)) return {from, velocity, acceleration};
     if (t >= duration) return {to, 0, 0};
@@ -33,7 +33,7 @@ struct Quintic {
     return velocity == 0 && acceleration == 0 ? motion : with_beginning(motion, u);
   }
 
-  // Not private: it stays an aggregate.
+  // Public, so that Quintic remains an aggregate.
   Motion with_beginning(const Motion& motion, double u) const noexcept {
     const double v = velocity, a = acceleration, d = duration;
     return {motion.position + u * v * d * (1 + u * u * (u * (8 - 3 * u) - 6)) +

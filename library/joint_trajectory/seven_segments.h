@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// From rest to rest in the least time that limits of velocity, acceleration and jerk allow: seven segments of constant
-// jerk, fewer where a limit is not reached; without a limit of jerk the trapezoid of velocity
-// (Biagiotti and Melchiorri, Trajectory Planning for Automatic Machines and Robots, 2008, sections 3.2 and 3.4).
+// From rest to rest in the least time within limits of velocity, acceleration and jerk: at most seven segments of
+// constant jerk. Without a limit of jerk the velocity is a trapezoid (Biagiotti and Melchiorri, Trajectory Planning for
+// Automatic Machines and Robots, 2008, sections 3.2 and 3.4).
 #pragma once
 
 #include "chimera/base/math.h"
@@ -24,21 +24,21 @@ class SevenSegments {
     const double way = math::fabs(to - from);
     if (!(way > 0)) return;
     plan(way, limits);
-    // The peaks again from the way: it is met exactly, whatever was rounded in the times.
+    // Computes the peaks from the way again, so that rounding of the times does not change the way.
     const double velocity = way / (ramp_ + cruise_);
     peak_acceleration_ = math::copysign(velocity / (ramp_ - jerk_time_), to - from);
   }
 
   /// Least time from rest to rest (s); 0 for no way.
   double least_duration() const noexcept { return 2 * ramp_ + cruise_; }
-  /// Takes so long instead: time runs slower, so velocity, acceleration and jerk fall with the first, second and third
-  /// power. Shorter than the least it does not become.
+  /// Takes `duration` if that is longer than the least time. Time then runs slower: velocity, acceleration and jerk
+  /// fall with its first, second and third power.
   void stretch(double duration) noexcept {
     if (duration > least_duration() && least_duration() > 0) slower_ = duration / least_duration();
   }
   double duration() const noexcept { return least_duration() * slower_; }
 
-  /// The motion at time t (s): at rest in `from` before 0, at rest exactly in `to` after the duration.
+  /// Motion at time t (s): at rest in `from` before 0, at rest exactly in `to` after the duration.
   Motion at(double t) const noexcept {
     if (t >= duration()) return {to_, 0, 0};
     if (!(t > 0)) return {from_, 0, 0};
@@ -50,7 +50,7 @@ class SevenSegments {
     } else if (left > ramp_) {
       const double velocity = peak_acceleration_ * (ramp_ - jerk_time_);
       motion = {from_ + velocity * (ramp_ / 2 + (own - ramp_)), velocity, 0};
-    } else {  // the mirror image of the way up
+    } else {  // mirror image of the acceleration
       motion = ramp(left);
       motion = {to_ - motion.position, motion.velocity, -motion.acceleration};
     }
@@ -62,13 +62,13 @@ class SevenSegments {
     const double v = limits.velocity, a = limits.acceleration, j = limits.jerk;
     jerk_time_ = a / j;
     ramp_ = jerk_time_ + v / a;
-    if (v / a < jerk_time_) {  // the acceleration is never reached
+    if (v / a < jerk_time_) {  // acceleration limit not reached
       jerk_time_ = math::sqrt(v / j);
       ramp_ = 2 * jerk_time_;
     }
     cruise_ = way / v - ramp_;
     if (cruise_ >= 0) return;
-    cruise_ = 0;  // the velocity is never reached
+    cruise_ = 0;  // velocity limit not reached
     jerk_time_ = a / j;
     ramp_ = jerk_time_ / 2 + math::sqrt(jerk_time_ * jerk_time_ / 4 + way / a);
     if (ramp_ >= 2 * jerk_time_) return;
@@ -77,7 +77,7 @@ class SevenSegments {
   }
   static double cube_root(double x) noexcept { return math::exp(math::log(x) / 3); }
 
-  // The way up after t <= ramp_, from rest in 0.
+  // Accelerating part at t <= ramp_, from rest at 0.
   Motion ramp(double t) const noexcept {
     const double a = peak_acceleration_, tj = jerk_time_;
     if (t < tj) {
@@ -95,8 +95,8 @@ class SevenSegments {
   }
 
   double from_ = 0, to_ = 0;
-  double jerk_time_ = 0;  // s, of constant jerk
-  double ramp_ = 0;       // s, from rest to the velocity of the cruise
+  double jerk_time_ = 0;  // s, constant jerk
+  double ramp_ = 0;       // s, from rest to the cruising velocity
   double cruise_ = 0;     // s
   double peak_acceleration_ = 0;
   double slower_ = 1;

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-// Biagiotti and Melchiorri 2008, examples 3.9 and 3.10: q 0 to 10, a_max 10, j_max 30; v_max 5 reaches both limits,
-// v_max 10 reaches neither the velocity.
+// Biagiotti and Melchiorri 2008, examples 3.9 and 3.10: q 0 to 10, a_max 10, j_max 30. With v_max 5 both limits are
+// reached; with v_max 10 the velocity limit is not.
 TEST(SevenSegments, HasTheTimesOfThePublishedExamples) {
   const SevenSegments both(0, 10, {5, 10, 30});
   EXPECT_NEAR(both.least_duration(), 2 * (1.0 / 3 + 0.5) + 10.0 / 5 - (1.0 / 3 + 0.5), 1e-12);
@@ -24,7 +24,7 @@ TEST(SevenSegments, HasTheTimesOfThePublishedExamples) {
   EXPECT_NEAR(no_cruise.at(ta).velocity, 10 * (ta - tj), 1e-9);
 }
 
-// sqrt(d / a) up and down; d / v + v / a with a cruise.
+// Without a cruise sqrt(d / a) up and down; with a cruise d / v + v / a.
 TEST(SevenSegments, WithoutALimitOfJerkIsTheTrapezoid) {
   EXPECT_DOUBLE_EQ(SevenSegments(0, 4, {100, 1, kNone}).least_duration(), 4);
   const SevenSegments cruise(0, 4, {1, 2, kNone});
@@ -39,8 +39,8 @@ struct Excess {
   double velocity = 0, acceleration = 0, jerk = 0, seam = 0;
 };
 
-// The most of each derivative over its limit, the last as differences of the acceleration; and how far velocity and
-// acceleration are from being the derivatives of what stands before them.
+// Largest ratio of each derivative to its limit; the jerk comes from differences of the acceleration. Also the largest
+// deviation of velocity and acceleration from the differences of position and velocity.
 Excess watch(const SevenSegments& motion, const MotionLimits& limits, int samples) {
   Excess excess;
   const double h = motion.duration() / samples;
@@ -79,8 +79,8 @@ TEST(SevenSegments, KeepsWithinEveryLimitAtEverySampleAndEndsExactly) {
   }
 }
 
-// Each motion is at some limit the whole time, so none could be faster: velocity while it cruises, acceleration or jerk
-// while it does not.
+// Every motion is at one limit all the time, so that no motion can be faster: velocity while it cruises, otherwise
+// acceleration or jerk.
 TEST(SevenSegments, IsAlwaysAtSomeLimit) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> place(-3, 3), power(-1, 1);
@@ -96,7 +96,7 @@ TEST(SevenSegments, IsAlwaysAtSomeLimit) {
                             std::abs(now.acceleration) > 0.9999 * limits.acceleration || jerk > 0.9999 * limits.jerk;
       below += at_limit ? 0 : 1;
     }
-    ASSERT_LE(below, 7) << "seed 7, motion " << n;  // the samples that hold a seam
+    ASSERT_LE(below, 7) << "seed 7, motion " << n;  // samples at the ends of segments
   }
 }
 
@@ -108,7 +108,7 @@ TEST(SevenSegments, StretchedTakesExactlySoLongAndGoesTheSameWay) {
     EXPECT_NEAR(same.at(2 * t).position, motion.at(t).position, 1e-12);
     EXPECT_NEAR(same.at(2 * t).velocity, motion.at(t).velocity / 2, 1e-12);
   }
-  same.stretch(0.1);  // shorter than the least: left alone
+  same.stretch(0.1);  // shorter than the least time: no effect
   EXPECT_DOUBLE_EQ(same.duration(), 2 * motion.duration());
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The constants by which a robot tells generic kinematics how it is built (2000 paper, section 3.2), in the same
-// words everywhere:
+// Constants by which a robot describes its geometry to generic kinematics (2000 paper, section 3.2). All components use
+// these names:
 //
 //   ndof   int32                 joints
 //   dh     DhLink[ndof<=10]      one row a joint, base to wrist, standard Denavit-Hartenberg
@@ -9,8 +9,8 @@
 //
 //   T(q) = base  prod_i  Rz(q_i + theta_i) Tz(d_i) Tx(a_i) Rx(alpha_i)  tool
 //
-// Every serial chain of turning joints can be written so (library/kinematics/dh_of_axes.h does), with base and tool
-// taking what rows alone cannot say. So this is the one form, for the Puma's table, a module store and a URDF file.
+// Every serial chain of turning joints has this form (library/kinematics/dh_of_axes.h computes it); base and tool hold
+// what rows cannot express. The form therefore serves the Puma's table, a module store and a URDF file.
 #pragma once
 
 #include <tuple>
@@ -29,7 +29,7 @@ struct DhLink {
   double theta;  ///< rad, added to the joint's angle
 };
 
-/// A pose that changes nothing.
+/// The identity.
 inline constexpr Pose kIdentityPose{{0, 0, 0}, {1, 0, 0, 0}};
 
 }  // namespace chimera::library

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which torques a motion of any serial arm takes: the recursive Newton-Euler equations (Luh, Walker and Paul 1980) in
-// the frames of library/kinematics/dh.h.
+// Torques for a motion of any serial arm: the recursive Newton-Euler equations (Luh, Walker and Paul 1980) in the
+// frames of library/kinematics/dh.h.
 #pragma once
 
 #include <array>
@@ -13,10 +13,11 @@
 
 namespace chimera::library {
 
-/// What the link after a joint weighs, in the link's Denavit-Hartenberg frame, and what the joint's drive adds.
+/// Mass properties of the link after a joint, in the link's Denavit-Hartenberg frame, and properties of the joint's
+/// drive.
 struct LinkMass {
   double mass;        ///< kg
-  double centre[3];   ///< m, of the mass
+  double centre[3];   ///< m, centre of mass
   double inertia[6];  ///< kg.m2 about the centre: xx yy zz xy xz yz
   double rotor;       ///< kg.m2, of the drive, seen from the joint
   double friction;    ///< N.m.s/rad, viscous, seen from the joint
@@ -26,8 +27,8 @@ struct LinkMass {
 class ArmDynamics {
  public:
   ArmDynamics() = default;
-  /// `links`: one a joint of `chain`. `gravity` (m/s2): along the axes of the base. A `payload` (kg) is a point at the
-  /// tool. Context: setup.
+  /// `links` has one element for each joint of `chain`. `gravity` (m/s2) is along the axes of the base. A `payload`
+  /// (kg) is a point mass at the tool. Context: setup.
   ArmDynamics(const DhChain& chain, std::span<const LinkMass> links, const Vec3& gravity, double payload) noexcept
       : joints_(chain.ndof) {
     const Vec3 seen = frame_of(chain.base).inverse_rotate(gravity);
@@ -36,12 +37,11 @@ class ArmDynamics {
     if (payload > 0) add(payload, frame_of(chain.tool).origin, links_[joints_ - 1].of);
   }
 
-  /// The torques (N.m) that move the joints with the accelerations `qdd` (rad/s2) at `q` and `qd`: inertia, centrifugal
-  /// and Coriolis torques, weight, rotors and viscous friction. All of as many numbers as joints.
-  /// Context: cycle; wait-free.
+  /// Computes the torques (N.m) for the accelerations `qdd` (rad/s2) at `q` and `qd`: inertia, centrifugal and Coriolis
+  /// torques, weight, rotors and viscous friction. All spans have one number for each joint. Context: cycle; wait-free.
   void torque(std::span<const double> q, std::span<const double> qd, std::span<const double> qdd,
               std::span<double> tau) const noexcept {
-    std::array<Frame, kMostJoints> frames;  // each in the one before
+    std::array<Frame, kMostJoints> frames;  // each in the previous frame
     std::array<Load, kMostJoints> loads;
     Motion motion{{}, {}, upward_};
     for (std::size_t i = 0; i < joints_; ++i) {
@@ -50,7 +50,7 @@ class ArmDynamics {
       loads[i] = load(links_[i].of, motion);
     }
     Load carried{};
-    for (std::size_t i = joints_; i-- > 0;) {  // moments about the joint, in the frame before it
+    for (std::size_t i = joints_; i-- > 0;) {  // moments about the joint, in the previous frame
       carried.force = carried.force + loads[i].force;
       carried.moment = carried.moment + loads[i].moment;
       const Vec3 force = frames[i].rotate(carried.force);
@@ -65,13 +65,13 @@ class ArmDynamics {
     LinkMass of;
   };
   struct Motion {
-    Vec3 turn, turn_rate, acceleration;  // of a frame, along its own axes; acceleration of its origin
+    Vec3 turn, turn_rate, acceleration;  // along the axes of the frame; acceleration of its origin
   };
   struct Load {
     Vec3 force, moment;  // about the origin of the frame
   };
 
-  /// The motion of the next frame: it turns about the z axis of this one, its origin turns with it.
+  /// Motion of the next frame. It turns about the z axis of this frame, and its origin turns with it.
   static Motion behind(const Frame& next, const Motion& here, double speed, double speed_rate) noexcept {
     const Vec3 axis{0, 0, 1};
     const Vec3 turn = here.turn + speed * axis;
@@ -79,7 +79,7 @@ class ArmDynamics {
     const Vec3 moved = here.acceleration + carried_round(turn, turn_rate, next.origin);
     return {next.inverse_rotate(turn), next.inverse_rotate(turn_rate), next.inverse_rotate(moved)};
   }
-  /// The acceleration of a point that turns with a body.
+  /// Acceleration of a point that is fixed to a turning body.
   static Vec3 carried_round(const Vec3& turn, const Vec3& turn_rate, const Vec3& point) noexcept {
     return cross(turn_rate, point) + cross(turn, cross(turn, point));
   }
@@ -94,7 +94,7 @@ class ArmDynamics {
     const auto [xx, yy, zz, xy, xz, yz] = inertia;
     return {xx * v[0] + xy * v[1] + xz * v[2], xy * v[0] + yy * v[1] + yz * v[2], xz * v[0] + yz * v[1] + zz * v[2]};
   }
-  /// A point of `mass` at `place` becomes part of `link` (parallel axes).
+  /// Adds a point mass at `place` to `link` (parallel axes).
   static void add(double mass, const Vec3& place, LinkMass& link) noexcept {
     const double whole = link.mass + mass, reduced = link.mass * mass / whole;
     const Vec3 apart = place - Vec3{link.centre[0], link.centre[1], link.centre[2]};
@@ -111,7 +111,7 @@ class ArmDynamics {
 
   std::size_t joints_ = 0;
   std::array<Link, kMostJoints> links_{};
-  Vec3 upward_{0, 0, 0};  // that the base moves upward has the effect of weight
+  Vec3 upward_{0, 0, 0};  // weight as an upward acceleration of the base
 };
 
 }  // namespace chimera::library

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Denavit-Hartenberg rows of a robot that is known by the axes of its joints: what a URDF or an MJCF file says.
+// Denavit-Hartenberg rows from the axes of the joints, which a URDF or an MJCF file gives.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ inline Frame frame_of(const DhLink& link, double angle) noexcept {
   return {{link.a * c, link.a * s, link.d}, {c, s, 0}, {-s * ca, c * ca, sa}, {s * sa, -c * sa, ca}};
 }
 
-/// The axis of a joint: a point on it (m) and its direction, with the robot at zero, in the base frame.
+/// Axis of a joint in the base frame, with the robot at zero: a point on it (m) and its direction.
 struct JointAxis {
   Vec3 point, direction;
 };
@@ -40,18 +40,19 @@ inline Frame tool_frame(const DhChain& chain, std::span<const double> q) noexcep
 
 namespace dh_of_axes_steps {
 
-// Directions closer than this are the same, lines closer than this (m) meet: what a file with six digits means.
+// Directions closer than this count as parallel, lines closer than this (m) as meeting: the accuracy of a file with six
+// digits.
 inline constexpr double kSame = 1e-7;
 
 inline Vec3 unit(const Vec3& v) noexcept { return (1 / length(v)) * v; }
 
-/// The angle from `a` to `b`, both at right angles to the unit vector `about`.
+/// Angle from `a` to `b`. Both are perpendicular to the unit vector `about`.
 inline double angle(const Vec3& a, const Vec3& b, const Vec3& about) noexcept {
   const double s = dot(cross(a, b), about), c = dot(a, b);
   return std::abs(s) < kSame * kSame ? (c < 0 ? std::atan2(0.0, -1.0) : 0) : std::atan2(s, c);
 }
 
-/// The base itself where the first axis is its z axis, else a frame on the first axis nearest to the base.
+/// The base if its z axis is the first axis; otherwise the frame on the first axis that is nearest to the base.
 inline Frame first_frame(const JointAxis& axis) noexcept {
   const Vec3 z = unit(axis.direction), foot = axis.point - dot(axis.point, z) * z;
   const Vec3 across = std::abs(z[0]) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -59,7 +60,7 @@ inline Frame first_frame(const JointAxis& axis) noexcept {
   return {foot, x, cross(z, x), z};
 }
 
-/// From the frame on one axis to the frame on the next, at zero.
+/// Frame on the next axis, from the frame on the present one, at zero.
 inline Frame next_frame(const Frame& from, const JointAxis& axis) noexcept {
   const Vec3 z = unit(axis.direction), between = axis.point - from.origin, normal = cross(from.z, z);
   const double sine = length(normal);
@@ -80,7 +81,7 @@ inline Frame next_frame(const Frame& from, const JointAxis& axis) noexcept {
   return {origin, x, cross(z, x), z};
 }
 
-/// The row that leads from one frame to another whose x axis meets the first z axis at a right angle.
+/// The row from one frame to another. The x axis of `to` must meet the z axis of `from` at a right angle.
 inline DhLink row(const Frame& from, const Frame& to) noexcept {
   const Vec3 between = to.origin - from.origin;
   return {dot(between, to.x), angle(from.z, to.z, to.x), dot(between, from.z), angle(from.x, to.x, from.z)};
@@ -88,8 +89,8 @@ inline DhLink row(const Frame& from, const Frame& to) noexcept {
 
 }  // namespace dh_of_axes_steps
 
-/// The constants of a robot with these axes whose tool frame at zero is `tool`. As many axes as 1 to kMostJoints;
-/// directions need not have length 1 but not 0. Context: setup.
+/// Constants of a robot with these axes and with the tool frame `tool` at zero. There are 1 to kMostJoints axes. A
+/// direction need not have length 1, but must not be 0. Context: setup.
 inline DhChain dh_of_axes(std::span<const JointAxis> axes, const Frame& tool) noexcept {
   using namespace dh_of_axes_steps;
   DhChain chain;
@@ -101,7 +102,7 @@ inline DhChain dh_of_axes(std::span<const JointAxis> axes, const Frame& tool) no
     chain.dh[i - 1] = row(frame, next);
     frame = next;
   }
-  // The last row takes the tool as far as one row can.
+  // The last row comes as near to the tool as a row can.
   const Frame seen = frame.relative(tool);
   const double beside = seen.origin[0] * seen.x[1] - seen.origin[1] * seen.x[0];
   if (std::abs(seen.x[2]) < kSame && std::abs(beside) < kSame) chain.dh[axes.size() - 1] = row(frame, tool);

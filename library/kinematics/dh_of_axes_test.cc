@@ -20,7 +20,7 @@ void expect_near(const Frame& found, const Frame& expected, double within) {
   }
 }
 
-// Turns `point` about an axis: the chain without any Denavit and Hartenberg.
+// Turns `point` about an axis, without Denavit and Hartenberg.
 Vec3 rotate(const JointAxis& axis, double angle, const Vec3& v) {
   const Vec3 k = (1 / length(axis.direction)) * axis.direction;
   return std::cos(angle) * v + std::sin(angle) * cross(k, v) + (1 - std::cos(angle)) * dot(k, v) * k;
@@ -58,7 +58,7 @@ TEST(DhOfAxes, FindsThePumasOwnTable) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(found.base.position[i], 0);
   EXPECT_EQ(found.base.orientation[0], 1);
   EXPECT_EQ(found.tool.orientation[0], 1);
-  // The offset of the third link may stand in any row of two parallel joints: it comes first here or there.
+  // Two parallel joints may share the offset of the third link in either row; the first row has it here.
   EXPECT_NEAR(found.dh[1].a, .4318, 1e-12);
   EXPECT_NEAR(found.dh[1].d + found.dh[2].d, .15005, 1e-12);
   EXPECT_NEAR(found.dh[2].a, .0203, 1e-12);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The in-consts by which generic kinematics learns how the robot is built.
+// In-consts from which generic kinematics reads the geometry of the robot.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace chimera::library {
 
-/// Ports that a component derives from; it calls read_chain() in init and reinit.
+/// Base of a component with these ports. The component calls read_chain() in init and reinit.
 struct DhPorts {
   InConst<std::int32_t> ndof{"ndof", "1", range(1, 10), doc = "Joints."};
   InConst<DhLink[]> dh{"dh", "1", "[ndof<=10]", doc = "Denavit-Hartenberg rows, base to tip."};
@@ -22,7 +22,7 @@ struct DhPorts {
  protected:
   SerialArm arm_;
 
-  /// Refuses constants that are no arm. Context: setup.
+  /// Throws for constants that describe no arm. Context: setup.
   DhChain read_chain() {
     DhChain chain;
     chain.ndof = dh.size();
@@ -39,8 +39,8 @@ struct DhPorts {
   }
 
  public:
-  /// True when all numbers are finite and the orientation is a unit quaternion within 1e-3: what rounding and slow
-  /// integration leave. Context: cycle; wait-free.
+  /// Returns true if all numbers are finite and the orientation is a unit quaternion within 1e-3, which allows for
+  /// rounding and slow integration. Context: cycle; wait-free.
   static bool is_pose(const Pose& pose) noexcept {
     double sum = 0, square = 0;
     for (double x : pose.position) sum += x;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors and homogeneous transforms in plain numbers: what kinematics and cameras compute with.
+// Vectors and homogeneous transforms for kinematics and cameras.
 #pragma once
 
 #include <array>
@@ -27,19 +27,19 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) noexcept {
 }
 inline double length(const Vec3& a) noexcept { return std::sqrt(dot(a, a)); }
 
-/// A homogeneous transform: x, y and z are right-handed unit vectors, given like `origin` (m) in the parent frame.
+/// A homogeneous transform. x, y, z (right-handed unit vectors) and `origin` (m) are in the parent frame.
 struct Frame {
   Vec3 origin{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
 
-  /// `inner`, given in this frame, expressed in the parent frame.
+  /// Expresses `inner`, a frame in this frame, in the parent frame.
   Frame operator*(const Frame& inner) const noexcept {
     return {origin + rotate(inner.origin), rotate(inner.x), rotate(inner.y), rotate(inner.z)};
   }
-  /// R v: a direction given in this frame, expressed in the parent frame.
+  /// R v: expresses a direction of this frame in the parent frame.
   Vec3 rotate(const Vec3& v) const noexcept { return v[0] * x + v[1] * y + v[2] * z; }
-  /// R^T v: a direction given in the parent frame, expressed in this frame.
+  /// R^T v: expresses a direction of the parent frame in this frame.
   Vec3 inverse_rotate(const Vec3& v) const noexcept { return {dot(x, v), dot(y, v), dot(z, v)}; }
-  /// `other`, given in the same parent frame, expressed in this frame.
+  /// Expresses `other`, a frame in the parent frame, in this frame.
   Frame relative(const Frame& other) const noexcept {
     return {inverse_rotate(other.origin - origin), inverse_rotate(other.x), inverse_rotate(other.y),
             inverse_rotate(other.z)};
@@ -50,7 +50,7 @@ struct Frame {
 inline Pose pose_of(const Frame& f) noexcept {
   const double w = 1 + f.x[0] + f.y[1] + f.z[2], x = 1 + f.x[0] - f.y[1] - f.z[2];
   const double y = 1 - f.x[0] + f.y[1] - f.z[2], z = 1 - f.x[0] - f.y[1] + f.z[2];
-  std::array<double, 4> q;  // the largest of four times the squares first: no cancellation
+  std::array<double, 4> q;  // computed from the largest of the four squares, which avoids cancellation
   if (w >= x && w >= y && w >= z) q = {w, f.y[2] - f.z[1], f.z[0] - f.x[2], f.x[1] - f.y[0]};
   else if (x >= y && x >= z) q = {f.y[2] - f.z[1], x, f.y[0] + f.x[1], f.z[0] + f.x[2]};
   else if (y >= z) q = {f.z[0] - f.x[2], f.y[0] + f.x[1], y, f.z[1] + f.y[2]};
@@ -59,7 +59,7 @@ inline Pose pose_of(const Frame& f) noexcept {
   return {{f.origin[0], f.origin[1], f.origin[2]}, {q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm}};
 }
 
-/// The frame of a pose; its quaternion is taken as a unit one.
+/// Frame of a pose. The quaternion must be a unit one.
 inline Frame frame_of(const Pose& pose) noexcept {
   const auto [w, x, y, z] = pose.orientation;
   return {{pose.position[0], pose.position[1], pose.position[2]},
@@ -68,10 +68,10 @@ inline Frame frame_of(const Pose& pose) noexcept {
           {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
 }
 
-/// The angle of the turn from one orientation to another (rad, 0 to pi), both unit quaternions.
+/// Angle of the turn between two orientations (rad, 0 to pi). Both are unit quaternions.
 inline double angle_between(const double (&a)[4], const double (&b)[4]) noexcept {
   const double c = std::abs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]);
-  double square = 0;  // of a - b or a + b, whichever is shorter: exact for small angles, where c is not
+  double square = 0;  // of the shorter of a - b and a + b: exact for small angles, where c is not
   const double sign = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] < 0 ? -1 : 1;
   for (std::size_t i = 0; i < 4; ++i) square += (a[i] - sign * b[i]) * (a[i] - sign * b[i]);
   return 2 * std::atan2(std::sqrt(square * (1 - square / 4)), c);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inverse solvers against a reference that nobody here wrote: where they say the tool is, Orocos KDL finds it, or
-// they say that it is not there.
+// Compares the inverse solvers with an independent implementation, Orocos KDL: KDL finds the tool where a solver says,
+// or the solver reports that the pose is out of reach.
 #include <gtest/gtest.h>
 
 #include "library/kinematics/puma560.h"
@@ -14,7 +14,7 @@ constexpr double kAgreed = 1e-9;  // m and rad
 struct InverseAgainstKdl : ::testing::Test {
   RandomArms random;
 
-  // Others with `--gtest_shuffle --gtest_repeat=10`.
+  // `--gtest_shuffle --gtest_repeat=10` gives other poses.
   void SetUp() override {
     const unsigned seed = 2026 + static_cast<unsigned>(::testing::UnitTest::GetInstance()->random_seed());
     random.random.seed(seed);
@@ -32,7 +32,7 @@ struct InverseAgainstKdl : ::testing::Test {
     return kdl.tool_frame(unused);
   }
   static std::span<const double, 6> six(const Joints& q) { return std::span<const double, 6>(q.data(), 6); }
-  /// Within the limits; each tenth with the wrist stretched, the next nearly so.
+  /// Joint positions within the limits. The wrist is stretched in each tenth, and nearly stretched in the next.
   Joints within_limits(std::size_t pose) {
     Joints q{};
     for (std::size_t i = 0; i < 6; ++i) q[i] = within(Puma560::kLow[i], Puma560::kHigh[i]);
@@ -91,7 +91,7 @@ TEST_F(InverseAgainstKdl, TheNearestSolutionIsWithinTheLimitsAndNeverMissing) {
       ASSERT_GE(chosen[i], Puma560::kLow[i] - 1e-8);
       ASSERT_LE(chosen[i], Puma560::kHigh[i] + 1e-8);
       if (p % 10 < 2) continue;
-      ASSERT_LE(std::abs(chosen[i] - near[i]), off + 1e-6) << p;  // q itself would have done
+      ASSERT_LE(std::abs(chosen[i] - near[i]), off + 1e-6) << p;  // q itself would be a solution
     }
   }
   EXPECT_LT(farthest, kAgreed);
@@ -111,7 +111,7 @@ TEST_F(InverseAgainstKdl, OutOfReachThereIsNoClosedForm) {
   }
 }
 
-/// What a search of up to `calls` cycles comes to.
+/// Result of a search of up to `calls` cycles.
 struct Searched {
   bool is_solved = false;
   double residual = 0;
@@ -131,7 +131,7 @@ Searched search(const DhChain& chain, const Frame& wanted, const Joints& begin, 
   return found;
 }
 
-// The whole promise of the generic search: the pose is there, within the limits, or it says by how much it is not.
+// The generic search reaches the pose within the limits, or reports the remaining error.
 TEST_F(InverseAgainstKdl, TheSearchIsThereOrSaysHowFarItIsNot) {
   std::size_t solved = 0, searched = 0, refused = 0, far = 0;
   double farthest = 0, dishonest = 0;
@@ -152,7 +152,7 @@ TEST_F(InverseAgainstKdl, TheSearchIsThereOrSaysHowFarItIsNot) {
       const Searched found = search(chain, wanted, begin, limits, is_far ? 1 : 10);
       const double missing = difference(forward(kdl, found.q), wanted);
       if (found.is_solved) farthest = std::max(farthest, missing);
-      if (found.residual < 0.1) {  // which counts a turn as its angle; of the axes, one at least goes 0.8 of it
+      if (found.residual < 0.1) {  // the residual counts a turn as its angle; one axis moves at least 0.8 of that
         dishonest = std::max({dishonest, missing - found.residual, 0.8 * found.residual - missing});
       }
       for (std::size_t i = 0; i < chain.ndof; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Against a reference that nobody here wrote: Orocos KDL.
+// Compares kinematics with an independent implementation, Orocos KDL.
 #include <gtest/gtest.h>
 
 #include "library/kinematics/testing/kdl_proof.h"
@@ -50,7 +50,7 @@ TEST(AgainstKdl, ThePumaInClosedForm) {
   EXPECT_LT(farthest, 1e-12);
 }
 
-// What `./dev test --stress kinematics` does for as long as it is given.
+// `./dev test --stress kinematics` runs these checks for a given time.
 TEST(AgainstKdl, TheSeedsOfTheCampaign) {
   KdlTally tally;
   for (unsigned seed = 1; seed <= 300; ++seed) ASSERT_EQ(judge_kinematics(seed, tally), "");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kinematics against Orocos KDL over many seeds: kinematics_stress [--seconds N] [--arms N] [--from SEED]
+// Compares kinematics with Orocos KDL over many seeds: kinematics_stress [--seconds N] [--arms N] [--from SEED]
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>

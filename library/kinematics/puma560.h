@@ -16,7 +16,7 @@
 
 namespace chimera::library {
 
-/// Constants, limits and both directions of its kinematics.
+/// Constants, limits, forward and inverse kinematics.
 struct Puma560 {
   static constexpr std::size_t kJoints = 6;
   static constexpr double kPi = std::numbers::pi;
@@ -37,7 +37,7 @@ struct Puma560 {
     Jacobian unused;
     return forward(q, unused);
   }
-  /// The same, and the Jacobian there.
+  /// Base to flange, and the Jacobian at `q`.
   static Frame forward(std::span<const double, kJoints> q, Jacobian& jacobian) noexcept {
     const double c1 = std::cos(q[0]), s1 = std::sin(q[0]), c2 = std::cos(q[1]), s2 = std::sin(q[1]);
     const double c23 = std::cos(q[1] + q[2]), s23 = std::sin(q[1] + q[2]);
@@ -59,9 +59,8 @@ struct Puma560 {
   }
 
   /// All joint positions that bring the flange to `wanted`, up to eight: arm left or right, elbow up or down, wrist
-  /// turned over or not. Where the arm is singular two and two are the same. Where the wrist is stretched
-  /// or folded back (q5 = 0 or pi) only the sum or difference of q4 and q6 is determined: q4 is that of `near`, within
-  /// its limits.
+  /// turned or not. At a singular pose pairs of solutions coincide. If the wrist is stretched or folded back (q5 = 0 or
+  /// pi), only the sum or difference of q4 and q6 is determined; q4 is then that of `near`, within its limits.
   struct Solutions {
     std::array<Vector, 8> q{};
     std::size_t count = 0;
@@ -79,8 +78,9 @@ struct Puma560 {
     return found;
   }
 
-  /// The solution within the joint limits that is nearest to `near` (the joint that moves most counts), angles turned
-  /// by whole turns towards it. False, and nothing written, when there is none. Context: cycle; wait-free.
+  /// Finds the solution within the joint limits that is nearest to `near`, by the joint that moves most. Angles are
+  /// turned towards `near` by whole turns. Returns false and writes nothing if there is none. Context: cycle;
+  /// wait-free.
   static bool nearest(const Frame& wanted, std::span<const double, kJoints> near,
                       std::span<double, kJoints> q) noexcept {
     Solutions all = inverse(wanted, near);
@@ -96,11 +96,12 @@ struct Puma560 {
   }
 
  private:
-  static constexpr double kRounding = 1e-12;   // so that a stretched arm is still within reach
-  // What rounding makes of a q5 of 0 (rad): more where the elbow is nearly stretched too, and its angle uncertain.
+  static constexpr double kRounding = 1e-12;   // keeps a stretched arm within reach
+  // Rounding error of a q5 of 0 (rad). It is larger if the elbow is nearly stretched, too, because its angle is then
+  // uncertain.
   static constexpr double kStretched = 4e-10, kDoublyStretched = 1e-7;
 
-  /// Frame 3: the axes that the wrist turns in.
+  /// Frame 3, in whose axes the wrist turns.
   static Frame forearm_frame(double c1, double s1, double c23, double s23) noexcept {
     return {{0, 0, 0}, {c1 * c23, s1 * c23, s23}, {-s1, c1, 0}, {-c1 * s23, -s1 * s23, c23}};
   }
@@ -129,13 +130,13 @@ struct Puma560 {
       const bool is_told = s5 > stretched;
       const double q4 = is_told ? std::atan2(-sign * z[1], -sign * z[0]) : std::clamp(near[3], kLow[3], kHigh[3]);
       const double c4 = std::cos(q4), s4 = std::sin(q4);
-      // What is left of x and y across the axis of joint 5: right for whatever q4 rounding has made.
+      // Remainder of x and y across the axis of joint 5. It is right for any rounding of q4.
       const double q6 = std::atan2(c4 * x[1] - s4 * x[0], c4 * y[1] - s4 * y[0]);
       found.q[found.count++] = {arm[0], arm[1], arm[2], q4, std::atan2(sign * s5, z[2]), q6};
     }
   }
-  /// Turns each angle by whole turns to where it is within its limits and nearest; how far the farthest joint then is,
-  /// infinity when one cannot be within its limits.
+  /// Turns each angle by whole turns to the nearest value within its limits. Returns the distance of the farthest
+  /// joint, or infinity if a joint cannot be within its limits.
   static double settle(Vector& q, const Vector& near) noexcept {
     double farthest = 0;
     for (std::size_t i = 0; i < kJoints; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Forward kinematics, Jacobian and damped inverse of any serial arm, from the constants of library/kinematics/dh.h.
-// Plain sums over at most ten joints: no allocation, no loop without a bound.
+// Sums over at most ten joints: no allocation, no unbounded loop.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace chimera::library {
 
-/// How the tool moves with each joint, along the axes of the base: linear in m/rad, angular in rad/rad.
+/// Tool motion by joint motion, along the axes of the base: linear in m/rad, angular in rad/rad.
 struct Jacobian {
   std::array<Vec3, kMostJoints> linear{}, angular{};
 };
@@ -21,7 +21,7 @@ struct Jacobian {
 /// Six numbers of a motion: linear, then angular.
 using Vec6 = std::array<double, 6>;
 
-/// A chain made ready to compute with: what does not depend on the joints is computed once.
+/// A chain prepared for computation: terms that do not depend on the joints are computed once.
 class SerialArm {
  public:
   SerialArm() = default;
@@ -35,13 +35,13 @@ class SerialArm {
   }
   std::size_t joints() const noexcept { return joints_; }
 
-  /// Base to tool with the joints at `q` (rad, as many as joints()). Context: cycle; wait-free.
+  /// Tool frame in the base with the joints at `q` (rad, joints() numbers). Context: cycle; wait-free.
   Frame tool_frame(std::span<const double> q) const noexcept {
     Frame frame = base_;
     for (std::size_t i = 0; i < joints_; ++i) frame = rows_[i].next(frame, q[i]);
     return frame * tool_;
   }
-  /// Base to tool, and the Jacobian there. Context: cycle; wait-free.
+  /// Tool frame in the base, and the Jacobian there. Context: cycle; wait-free.
   Frame tool_frame(std::span<const double> q, Jacobian& jacobian) const noexcept {
     Frame frame = base_;
     std::array<Vec3, kMostJoints> at;
@@ -61,7 +61,7 @@ class SerialArm {
   struct Row {
     double a, d, theta, cos_alpha, sin_alpha;
 
-    /// The frame behind the joint of a frame before it: frame Rz(angle + theta) Tz(d) Tx(a) Rx(alpha).
+    /// Frame after the joint: f Rz(angle + theta) Tz(d) Tx(a) Rx(alpha).
     Frame next(const Frame& f, double angle) const noexcept {
       const double c = std::cos(angle + theta), s = std::sin(angle + theta);
       const Vec3 x = c * f.x + s * f.y, across = c * f.y - s * f.x;
@@ -75,7 +75,7 @@ class SerialArm {
   Frame base_, tool_;
 };
 
-/// The turn from `from` to `to` as a vector: its direction the axis, its length the angle (rad, at most pi).
+/// Turn from `from` to `to` as a vector: its direction is the axis, its length the angle (rad, at most pi).
 inline Vec3 turn_between(const Frame& from, const Frame& to) noexcept {
   const Vec3 twice_sine = cross(from.x, to.x) + cross(from.y, to.y) + cross(from.z, to.z);
   const double cosine = (dot(from.x, to.x) + dot(from.y, to.y) + dot(from.z, to.z) - 1) / 2;
@@ -88,22 +88,21 @@ inline Vec3 turn_between(const Frame& from, const Frame& to) noexcept {
   return angle * from.rotate({half.orientation[1], half.orientation[2], half.orientation[3]});
 }
 
-/// What is missing from `is` to `wanted`: m and rad.
+/// Remaining motion from `is` to `wanted`: m and rad.
 inline Vec6 motion_between(const Frame& is, const Frame& wanted) noexcept {
   const Vec3 way = wanted.origin - is.origin, turn = turn_between(is, wanted);
   return {way[0], way[1], way[2], turn[0], turn[1], turn[2]};
 }
 
 /// The least-squares inverse of a Jacobian that stays bounded near singular poses (Nakamura and Hanafusa 1986; Wampler
-/// 1986): dq = J^T (J J^T + k I)^-1 e, with k = damping^2 (1 - w/threshold)^2 where the manipulability
-/// w = sqrt(det J J^T) falls below the threshold, and otherwise only what rounding needs. Angles count as
-/// metres do.
+/// 1986): dq = J^T (J J^T + k I)^-1 e. k = damping^2 (1 - w/threshold)^2 if the manipulability w = sqrt(det J J^T) is
+/// below the threshold; otherwise k only covers rounding. A radian counts as a metre.
 class DampedInverse {
  public:
-  double damping = 0.05;    ///< how large the singular values are that are cut
-  double threshold = 0.02;  ///< of the manipulability
+  double damping = 0.05;    ///< singular values below this are damped
+  double threshold = 0.02;  ///< manipulability below which damping begins
 
-  /// Joint motion for the tool motion `e`; ndof numbers in `dq`. Context: cycle; wait-free.
+  /// Computes the joint motion for the tool motion `e`; `dq` gets ndof numbers. Context: cycle; wait-free.
   void solve(const Jacobian& jacobian, std::size_t ndof, const Vec6& e, std::span<double> dq) noexcept {
     Matrix m = square(jacobian, ndof, 0);
     manipulability_ = factor(m) ? product_of_diagonal(m) : 0;
@@ -139,7 +138,7 @@ class DampedInverse {
     }
     return m;
   }
-  /// Cholesky in place, lower half. False when the matrix is not positive; it is then of no use.
+  /// Cholesky factor in place, lower half. Returns false if the matrix is not positive definite; it is then invalid.
   static bool factor(Matrix& m) noexcept {
     for (std::size_t r = 0; r < 6; ++r) {
       for (std::size_t c = 0; c <= r; ++c) {
@@ -172,7 +171,7 @@ class DampedInverse {
   double manipulability_ = 0;
 };
 
-/// How far each joint may turn (rad); by itself as far as it likes.
+/// Joint limits (rad); infinite by default.
 struct JointLimits {
   std::array<double, kMostJoints> low, high;
   JointLimits() noexcept {
@@ -182,18 +181,18 @@ struct JointLimits {
   double cut(std::size_t joint, double angle) const noexcept { return std::clamp(angle, low[joint], high[joint]); }
 };
 
-/// Joint positions for a tool pose, from those nearby: Newton's method with a DampedInverse. A joint that would leave
-/// its limits stays there, and the others do what they can without it.
+/// Finds joint positions for a tool pose from nearby ones: Newton's method with a DampedInverse. A joint that would
+/// leave its limits holds, and the search continues with the others.
 class PoseSearch {
  public:
   JointLimits limits;
 
-  static constexpr int kMostSteps = 20;        ///< the bound of solve()
-  static constexpr double kLongestStep = 0.2;  ///< rad, of any joint in a step
+  static constexpr int kMostSteps = 20;        ///< bound of the steps of solve()
+  static constexpr double kLongestStep = 0.2;  ///< rad, largest step of a joint
   static constexpr double kNearEnough = 1e-9;  ///< m and rad
 
-  /// Moves `q`, which is within the limits, so that the tool comes to `wanted`. True when it is within `tolerance` (m
-  /// and rad); else `q` is as near as it came. Context: cycle; wait-free.
+  /// Moves `q` so that the tool comes to `wanted`. `q` must be within the limits. Returns true if the error is within
+  /// `tolerance` (m and rad); otherwise `q` is the nearest found. Context: cycle; wait-free.
   bool solve(const SerialArm& arm, const Frame& wanted, std::span<double> q, double tolerance) noexcept {
     std::array<double, kMostJoints> dq;
     Jacobian jacobian;
@@ -211,13 +210,13 @@ class PoseSearch {
     residual_ = size_of(motion_between(arm.tool_frame(q), wanted));
     return residual_ <= tolerance;
   }
-  /// What was missing at the end of the last solve(): the larger of metres and radians.
+  /// Error at the end of the last solve(): the larger of metres and radians.
   double residual() const noexcept { return residual_; }
-  /// Steps that the last solve() took, 0 to kMostSteps.
+  /// Number of steps of the last solve(), 0 to kMostSteps.
   int steps() const noexcept { return steps_; }
 
  private:
-  /// Takes the joints out of the Jacobian that stand at a limit and would go on. False when there is none.
+  /// Removes joints from the Jacobian that stand at a limit and would leave it. Returns false if there is none.
   bool hold(std::span<const double> q, const std::array<double, kMostJoints>& dq, Jacobian& jacobian) const noexcept {
     bool has_held = false;
     for (std::size_t i = 0; i < q.size(); ++i) {

@@ -170,7 +170,7 @@ TEST(Puma560, ThePosesOfAnArmThatIsNotSingularHaveEightDifferentSolutions) {
   RandomJoints joints;
   for (int trial = 0; trial < 2000; ++trial) {
     Puma560::Vector q = joints.next();
-    q[1] = -0.2, q[2] = -2.4;  // the wrist beside and above the shoulder: both elbows and both arms reach it
+    q[1] = -0.2, q[2] = -2.4;  // wrist beside and above the shoulder: both elbows and both arms reach it
     if (std::abs(q[4]) < 0.1) continue;
     const Puma560::Solutions all = Puma560::inverse(Puma560::forward(q), q);
     ASSERT_EQ(all.count, 8u);
@@ -194,7 +194,7 @@ TEST(Puma560, SingularPosesAreReachedToo) {
     const double size = trial % 2 == 0 ? 0 : 1;
     if ((trial / 2) % 3 != 1) q[4] = size * little(joints.random);                                          // wrist
     if ((trial / 2) % 3 != 0) q[2] = -std::atan2(Puma560::d4, Puma560::a3) + size * little(joints.random);  // elbow
-    for (double& angle : q) angle *= 0.8;  // how q4 and q6 share a turn is lost: away from their limits
+    for (double& angle : q) angle *= 0.8;  // away from the limits, because the ratio of q4 to q6 is lost
     q[2] /= 0.8;
     const Frame wanted = Puma560::forward(q);
     Puma560::Vector found;

@@ -10,9 +10,9 @@ using namespace chimera;
 struct Limit {
   In<double[]>      x{"x", "U", "[n...<=64]", doc = "Any signal."};
   InConst<double[]> low{"low", "U", "[n...<=64]", range(-library::kNoLimit, library::kNoLimit),
-                        doc = "Least value of y; one for all elements, or one each."};
+                        doc = "Least value of y."};
   InConst<double[]> high{"high", "U", "[n...<=64]", range(-library::kNoLimit, library::kNoLimit), at_least = "low",
-                         doc = "Greatest value of y; likewise."};
+                         doc = "Greatest value of y."};
   Out<double[]>     y{"y", "U", "[n...<=64]", doc = "x, cut at both limits."};
 
   Outcome init() {

@@ -19,7 +19,7 @@ TEST(Limit, CutsEachElementAtItsOwnLimits) {
   }
   ASSERT_TRUE(rig.init());
   ASSERT_TRUE(rig.on());
-  EXPECT_EQ(rig.get<double>("y", 0), -1);  // from on already
+  EXPECT_EQ(rig.get<double>("y", 0), -1);  // computed by on
   rig.set("x", 7.0, 2);
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(rig.get<double>("y", 0), -1);
@@ -46,7 +46,7 @@ TEST(Limit, RefusesLimitsInTheWrongOrderAndNaN) {
   EXPECT_TRUE(rig.init());
 }
 
-// The rule of every signal component (library/signals/input.h), here in full.
+// Full test of the rule for inputs of signal components (library/signals/input.h).
 TEST(Limit, AnInputThatIsNotFiniteIsAFaultThatLeavesTheOutputAndIsRecovered) {
   SignalRig rig("limit", 2);
   for (std::size_t i = 0; i < 2; ++i) rig.set("low", -1.0, i), rig.set("high", 1.0, i), rig.set("x", 0.5, i);

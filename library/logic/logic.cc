@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One truth value of several. README.md is the data sheet.
+// Combines truth values to one. README.md is the data sheet.
 #include "chimera/task/component.h"
 
 using namespace chimera;
@@ -7,11 +7,11 @@ using namespace chimera;
 namespace {
 
 struct Logic {
-  Many<In<bool[]>> in{"in*", "1", "[n...<=64]", doc = "What is combined; every element of a list counts."};
+  Many<In<bool[]>> in{"in*", "1", "[n...<=64]", doc = "Truth values to combine."};
   Many<InConst<bool>> inverted{"inverted*", "1", initial = false,
-                               doc = "Whether the contrary of that input counts; one for each input, or none."};
+                               doc = "Negates an input; one for each input, or none."};
   InConst<Text<16>> function{"function", "1", doc = "and, or, xor, nand, nor, xnor, not or latch."};
-  Out<bool> out{"out", "1", initial = false, doc = "The result."};
+  Out<bool> out{"out", "1", initial = false, doc = "Result."};
 
   Outcome init() {
     if (in.size() == 0) return fault("there is nothing to combine: name at least one input");
@@ -49,7 +49,7 @@ struct Logic {
       if (!port.valid()) return false;
     return true;
   }
-  /// Whether any element of an input is true.
+  /// True if any element of input `k` is true.
   bool any(std::size_t k) const {
     bool found = false;
     for (const bool element : in[k]) found |= element != is_inverted(k);

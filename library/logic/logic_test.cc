@@ -19,7 +19,7 @@ struct Combined : Rig {
     EXPECT_TRUE(cycle()) << bits;
     return get<bool>("out");
   }
-  /// The answers for 000, 001, 010 ... of three inputs.
+  /// Results for 000, 001, 010 ... of three inputs.
   std::string table() {
     EXPECT_TRUE(init());
     std::string text;

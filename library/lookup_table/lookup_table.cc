@@ -12,10 +12,9 @@ namespace {
 
 struct LookupTable {
   In<double[]> x{"x", "U", "[n...<=64]", doc = "Any signal."};
-  InConst<double[]> at{"at", "U", "[points<=256]", doc = "The points of the curve: x, each above the one before."};
-  InConst<double[]> value{"value", "X", "[points<=256]", doc = "The points of the curve: y at each of them."};
-  InConst<Text<16>> outside{"outside", "1", initial = "hold",
-                            doc = "Before the first and behind the last point: hold, extend or fault."};
+  InConst<double[]> at{"at", "U", "[points<=256]", doc = "x of the points, increasing."};
+  InConst<double[]> value{"value", "X", "[points<=256]", doc = "y of the points."};
+  InConst<Text<16>> outside{"outside", "1", initial = "hold", doc = "Outside the points: hold, extend or fault."};
   Out<double[]> y{"y", "X", "[n...<=64]", doc = "The curve at x."};
 
   Outcome init() {
@@ -72,10 +71,10 @@ struct LookupTable {
   double curve(double x_now) const {
     const double *first = at.begin(), *last = at.end() - 1;
     if (outside_ == Outside::kHold) x_now = std::clamp(x_now, *first, *last);
-    // The piece whose end is the first inner point above x; the last piece where none is.
+    // The segment whose end is the first inner point above x, otherwise the last segment.
     const double* end = std::upper_bound(first + 1, last, x_now);
     const double *y_end = value.begin() + (end - first), x0 = end[-1], y0 = y_end[-1];
-    // As a mean of both ends, so that each point gives its value to the last bit.
+    // Weighted mean of both ends, so that the curve is exact at the points.
     const double share = (x_now - x0) / (*end - x0);
     return y0 * (1 - share) + *y_end * share;
   }

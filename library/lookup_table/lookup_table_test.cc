@@ -31,7 +31,7 @@ TEST(LookupTable, IsItsPointsAndStraightBetweenThem) {
   EXPECT_DOUBLE_EQ(rig.step(5.15), 50.4);
 }
 
-// Against the sum of hinges: another form of the same curve.
+// Compares with the sum of hinge functions, another form of the same curve.
 TEST(LookupTable, IsTheSumOfItsHingesEverywhere) {
   Table rig;
   std::vector<double> at, value;

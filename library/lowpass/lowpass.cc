@@ -13,10 +13,9 @@ constexpr std::int32_t kMostOrder = 8;
 struct Lowpass {
   In<double[]>          x{"x", "U", "[n...<=64]", doc = "Any signal."};
   InConst<double>       cutoff{"cutoff", "Hz", range(0, 1e6),
-                               doc = "Where the gain is 1/sqrt(2); above 0, below half the rate."};
-  InConst<std::int32_t> order{"order", "1", initial = 2, range(1, kMostOrder),
-                              doc = "Falls by order times 20 dB a decade."};
-  Out<double[]>         y{"y", "U", "[n...<=64]", doc = "What of x is slower than the cutoff."};
+                               doc = "Frequency of gain 1/sqrt(2); above 0, below half the rate."};
+  InConst<std::int32_t> order{"order", "1", initial = 2, range(1, kMostOrder), doc = "Order of the filter."};
+  Out<double[]>         y{"y", "U", "[n...<=64]", doc = "x below the cutoff."};
 
   Outcome init() {
     if (!(*cutoff > 0) || !math::is_finite(*cutoff)) return fault("cutoff must be above 0 Hz");
@@ -40,7 +39,7 @@ struct Lowpass {
     const Outcome input = library::judge(x, "x");
     if (!library::is_ok(input)) return input;
     if (!is_settled_) settle();
-    if (c.dt() != last_dt_) {  // the first cycle, or one behind dropped releases
+    if (c.dt() != last_dt_) {  // the first cycle, or the first after dropped releases
       last_dt_ = c.dt();
       g_ = library::prewarped(*cutoff, last_dt_);
     }
@@ -55,7 +54,7 @@ struct Lowpass {
   bool error() { return true; }
 
  private:
-  // As if the input had always been what it is: no transient of its own.
+  // Sets the state for a constant input, so that there is no transient.
   void settle() {
     for (std::size_t i = 0; i < y.size(); ++i) {
       first_[i].settle(x[i]);

@@ -40,7 +40,7 @@ TEST_F(LowpassTest, IsThePrintedExampleOfOrderSix) {
   const double analog = std::tan(0.15 * math::kPi) / std::pow(1 / (0.17783 * 0.17783) - 1, 1.0 / 12);
   start(std::atan(analog) / math::kPi * 1000, 6);
   constexpr double a[3][2] = {{-1.2686, 0.7051}, {-1.0106, 0.3583}, {-0.9044, 0.2155}};
-  double w1[3] = {}, w2[3] = {};  // direct form II, a section each
+  double w1[3] = {}, w2[3] = {};  // direct form II, one section each
   for (int k = 0; k < 80; ++k) {
     double v = k == 0 ? 0.0007378 : 0;
     for (int s = 0; s < 3; ++s) {
@@ -48,7 +48,7 @@ TEST_F(LowpassTest, IsThePrintedExampleOfOrderSix) {
       v = w + 2 * w1[s] + w2[s];
       w2[s] = w1[s], w1[s] = w;
     }
-    ASSERT_NEAR(rig.step(k == 0 ? 1 : 0), v, 2e-4) << k;  // the print has four digits; the peak is 0.15
+    ASSERT_NEAR(rig.step(k == 0 ? 1 : 0), v, 2e-4) << k;  // the book prints four digits; the peak is 0.15
   }
 }
 
@@ -61,7 +61,7 @@ TEST_F(LowpassTest, StartsWithoutATransientAndEndsWhereTheStepWent) {
   EXPECT_NEAR(y, -1, 1e-9);
 }
 
-// A ramp comes out delayed by sqrt(2)/(2 pi f) in the steady state, whatever the steps of time are.
+// In the steady state a ramp is delayed by sqrt(2)/(2 pi f) for any sequence of time steps.
 TEST_F(LowpassTest, TakesLongerStepsWhenReleasesWereDropped) {
   start(5, 2);
   double t = 0, y = 0;
@@ -70,9 +70,9 @@ TEST_F(LowpassTest, TakesLongerStepsWhenReleasesWereDropped) {
     t += ms * 1e-3;
     y = rig.step(t, milliseconds(ms));
   }
-  const double g = std::tan(math::kPi * 5e-3) / math::kPi / 5e-3;  // prewarping stretches the delay a little
+  const double g = std::tan(math::kPi * 5e-3) / math::kPi / 5e-3;  // prewarping changes the delay slightly
   EXPECT_NEAR(t - y, std::numbers::sqrt2 / (2 * math::kPi * 5) / g, 2e-4);
-  for (int i = 0; i < 10; ++i) EXPECT_TRUE(std::isfinite(rig.step(t, milliseconds(5000))));  // far beyond half the rate
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(std::isfinite(rig.step(t, milliseconds(5000))));  // far above half the rate
 }
 
 TEST_F(LowpassTest, RefusesWrongConstants) {
@@ -86,7 +86,7 @@ TEST_F(LowpassTest, RefusesWrongConstants) {
     rig.set("order", order);
     EXPECT_EQ(rig.init().text, "order must be 1 to 8");
   }
-  start(500, 2);  // the rig knows no period before the first cycle
+  start(500, 2);  // before the first cycle the rig has no period
   rig.step(0);
   EXPECT_EQ(rig.on().text, "cutoff must be below half the rate of the task");
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Modbus device: what it measures as outputs, what it is told as inputs. README.md is the data sheet.
+// Reads and writes registers and coils of a Modbus device. README.md is the data sheet.
 //
 //   cycle                                     background (may wait for the device)
 //   told_.put(command)     -------------->    told_.get(), written, then read
@@ -19,7 +19,7 @@ using namespace chimera::library;
 
 namespace {
 
-constexpr int kCallsBetweenTries = 20;  // of background, 10 ms each: a device that is gone is called 5 times a second
+constexpr int kCallsBetweenTries = 20;  // calls of background, 10 ms each: five connection attempts a second
 
 struct ModbusIo {
   Many<Out<double>, kMostPoints> input{"input*", "X", initial = 0.0,
@@ -28,24 +28,26 @@ struct ModbusIo {
                                           doc = "Discrete inputs, from first_contact on."};
   Many<In<double>, kMostPoints> holding{"holding*", "U", doc = "Written to holding registers, from first_holding on."};
   Many<In<bool>, kMostPoints> coil{"coil*", "1", doc = "Written to coils, from first_coil on."};
-  Out<double> age{"age", "s", initial = 0.0, doc = "Since the last exchange was seen; since on before the first."};
+  Out<double> age{"age", "s", initial = 0.0, doc = "Time since the last exchange, or since on."};
   Out<bool> connected{"connected", initial = false, doc = "An exchange succeeded within the timeout."};
   Out<bool> idled{"idled", initial = false, safe_state,
-                  doc = "The flag is up, and `idle` and fallen coils have been written since."};
-  Out<std::int64_t> unsent{"unsent", "1", initial = 0, doc = "Cycles with an input that is not finite: not passed on."};
+                  doc = "The flag is up, and `idle` and false coils were written since."};
+  Out<std::int64_t> unsent{"unsent", "1", initial = 0, doc = "Cycles whose inputs were not finite and not sent."};
   InConst<std::int32_t> first_input{"first_input", "1", initial = 0, range(0, 65535), doc = "Address of input[0]."};
-  InConst<std::int32_t> first_contact{"first_contact", "1", initial = 0, range(0, 65535), doc = "Of contact[0]."};
-  InConst<std::int32_t> first_holding{"first_holding", "1", initial = 0, range(0, 65535), doc = "Of holding[0]."};
-  InConst<std::int32_t> first_coil{"first_coil", "1", initial = 0, range(0, 65535), doc = "Of coil[0]."};
-  InConst<double> input_resolution{"input_resolution", "X", initial = 1.0, doc = "Input that is a 1 in the register."};
-  InConst<double> holding_resolution{"holding_resolution", "U", initial = 1.0,
-                                     doc = "Value that is a 1 in the register."};
-  InConst<bool> is_signed{"is_signed", initial = true, doc = "Registers are -32768 to 32767, else 0 to 65535."};
-  InConst<double> idle{"idle", "U", initial = 0.0, doc = "Written at off in place of each holding; coils fall."};
+  InConst<std::int32_t> first_contact{"first_contact", "1", initial = 0, range(0, 65535),
+                                      doc = "Address of contact[0]."};
+  InConst<std::int32_t> first_holding{"first_holding", "1", initial = 0, range(0, 65535),
+                                      doc = "Address of holding[0]."};
+  InConst<std::int32_t> first_coil{"first_coil", "1", initial = 0, range(0, 65535), doc = "Address of coil[0]."};
+  InConst<double> input_resolution{"input_resolution", "X", initial = 1.0, doc = "Input for a 1 in the register."};
+  InConst<double> holding_resolution{"holding_resolution", "U", initial = 1.0, doc = "Value for a 1 in the register."};
+  InConst<bool> is_signed{"is_signed", initial = true, doc = "Registers are -32768 to 32767; false: 0 to 65535."};
+  InConst<double> idle{"idle", "U", initial = 0.0, doc = "Value of each holding at off; coils are false."};
   InConst<double> timeout{"timeout", "s", initial = 1.0, range(0.05, 3600),
-                          doc = "Silence after which the device is lost."};
+                          doc = "Silence after which the device counts as lost."};
   InConst<std::int32_t> unit{"unit", "1", initial = 1, range(0, 255), doc = "Unit (slave) number of the device."};
-  InConst<std::int32_t> baud{"baud", "1", initial = 19200, range(1200, 115200), doc = "Of rtu; 8 bits, even parity."};
+  InConst<std::int32_t> baud{"baud", "1", initial = 19200, range(1200, 115200),
+                             doc = "Bits a second of rtu; 8 bits, even parity."};
   Resource device{"device", doc = "tcp:ADDRESS:PORT or rtu:PATH."};
 
   void init(Cycle c) {
@@ -109,18 +111,18 @@ struct ModbusIo {
   }
 
  private:
-  // A serial line has to rest for 3.5 characters, or what comes belongs to the request that was cut. The second request
-  // leaves the device time to answer the first.
+  // A serial line must rest for 3.5 characters, or the device takes the next bytes as a part of the cut request. The
+  // second request comes later, so that the device can answer the first.
   void hand_over_line(Cycle c) {
     const int descriptor = line_.open_second();
-    if (descriptor < 0) c.note("takes no second connection: nothing tells it to idle when this process dies");
+    if (descriptor < 0) c.note("takes no second connection: it gets no `idle` when this process dies");
     const Nanoseconds rest = line_.is_tcp() ? Nanoseconds{} : Nanoseconds{38'500'000'000 / *baud};
     c.safe_frame(0, descriptor, rest);
     c.safe_frame(1, descriptor, rest + (holding.size() == 0 ? Nanoseconds{} : milliseconds(50)));
   }
   void tell_lost_second(Cycle c) {
     has_lost_second_.store(false, std::memory_order_relaxed);
-    c.note("was connected anew: nothing tells it to idle when this process dies, until `kill` and `spawn`");
+    c.note("was connected again: it gets no `idle` when this process dies, until `kill` and `spawn`");
   }
   void put_safe_frames(Cycle c) {
     std::array<std::uint16_t, kMostPoints> values;
@@ -170,7 +172,7 @@ struct ModbusIo {
     command.number = ++told_number_;
     told_.put(command);
   }
-  // The result of an exchange, or of the try to connect before it.
+  // Stores the result of an exchange or of a connection attempt.
   void brought(int error) {
     is_good_.store(error == 0, std::memory_order_relaxed);
     error_.store(error, std::memory_order_relaxed);
@@ -181,20 +183,20 @@ struct ModbusIo {
 
   Latest<ModbusCommand> told_;
   Latest<ModbusReading> brought_;
-  // Relaxed, pair with nothing: by background, told by the cycle in a fault.
+  // Relaxed, because they order no other data: background writes, cycle reports them in a fault.
   std::atomic<bool> is_good_{false};
   std::atomic<int> error_{0};
-  std::atomic<bool> has_lost_second_{false};  // by background, told by the cycle in a note
-  // Of background, after init.
+  std::atomic<bool> has_lost_second_{false};  // background writes, cycle gives a note
+  // Used by background after init.
   ModbusLine line_;
   ModbusReading reading_;
   int calls_ = 0;
-  // Of cycle.
+  // Used by cycle.
   LostSentence lost_;
   Nanoseconds heard_;
   std::uint64_t seen_ = 0;
-  std::uint64_t told_number_ = 0;  // of the last command
-  std::uint64_t idle_from_ = 0;    // of the first command since the flag is up; 0: it is down
+  std::uint64_t told_number_ = 0;  // number of the last command
+  std::uint64_t idle_from_ = 0;    // number of the first command after the flag rose; 0: the flag is down
   bool is_lost_ = false;
 };
 

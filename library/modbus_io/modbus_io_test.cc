@@ -20,13 +20,13 @@
 namespace chimera {
 namespace {
 
-/// The memory of a device: 16 of each, shared with its process.
+/// Memory of a device: 16 points of each kind, shared with its process.
 struct Points {
   std::uint8_t coils[16], contacts[16];
   std::uint16_t holdings[16], inputs[16];
 };
 
-/// A device in a process of its own, which libmodbus serves.
+/// A device in its own process, served by libmodbus.
 class Device {
  public:
   Device() {
@@ -75,12 +75,12 @@ class Device {
   }
   void end() {
     if (process_ <= 0) return;
-    ::kill(process_, SIGKILL);  // still ours: not reaped yet
+    ::kill(process_, SIGKILL);  // the process is not reaped yet, so the number is still valid
     ::waitpid(process_, nullptr, 0);
     process_ = -1;
   }
-  // A device that is there and says nothing.
-  void stop() { ::kill(process_, SIGSTOP); }  // still ours: not reaped yet
+  // Stops the device: it keeps its connections and does not answer.
+  void stop() { ::kill(process_, SIGSTOP); }  // the process is not reaped yet, so the number is still valid
 
   Points* points;
 
@@ -122,11 +122,11 @@ struct ModbusIoTest : ::testing::Test {
       rig.set("coil", false, 0, i);
     }
     RigAnswer made = rig.init();
-    for (int i = 0; i < 20 && !made; ++i) made = rig.init();  // a device that is held up for 0.2 s does not answer
+    for (int i = 0; i < 20 && !made; ++i) made = rig.init();  // a device that is delayed by 0.2 s does not answer
     ASSERT_TRUE(made) << made.text;
     ASSERT_TRUE(rig.on());
   }
-  /// Until one succeeded: one that was held up is connected anew, each 20th time.
+  /// Repeats until an exchange succeeds. Each 20th call connects again.
   void exchange() {
     for (int i = 0; i < 400; ++i) {
       ASSERT_TRUE(rig.background());
@@ -149,7 +149,7 @@ struct ModbusIoTest : ::testing::Test {
     rig.set("holding", -0.1, 0, 1);
     rig.set("coil", true, 0, 1);
     ASSERT_TRUE(rig.cycle());
-    EXPECT_EQ(device.points->holdings[0], 0);  // no cycle speaks to a device
+    EXPECT_EQ(device.points->holdings[0], 0);  // a cycle does not access the device
     exchange();
     ASSERT_TRUE(rig.cycle());
     EXPECT_EQ(input(0), 125);
@@ -204,7 +204,7 @@ TEST_F(ModbusIoTest, SaysThatIdleHasBeenWrittenSinceTheFlagIsUp) {
   EXPECT_FALSE(rig.get<bool>("idled"));
 }
 
-/// What the guard does when the process is dead.
+/// Writes the safe frames as the guard does after the death of the process.
 void write_safe_frames(Rig& rig) {
   for (const std::uint32_t index : {0u, 1u}) {
     const auto& frame = rig.safe_frame(index);
@@ -242,7 +242,7 @@ TEST_F(ModbusIoTest, TheSafeFramesWriteIdleOverASecondConnection) {
   const std::string bytes(reinterpret_cast<const char*>(rig.safe_frame(0).bytes), rig.safe_frame(0).size);
   ASSERT_EQ(rig.safe_frame(0).descriptor, rig.safe_frame(1).descriptor);
   ASSERT_EQ(::write(second, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
-  ASSERT_TRUE(rig.kill());  // the first connection ends: this device serves one at a time
+  ASSERT_TRUE(rig.kill());  // ends the first connection: this device serves one at a time
   for (int i = 0; i < 2000 && device.points->holdings[1] != 5; ++i) ::usleep(1000);
   EXPECT_EQ(device.points->holdings[0], 5);
   EXPECT_EQ(device.points->holdings[1], 5);
@@ -301,7 +301,7 @@ TEST_F(ModbusIoTest, ADeviceThatSaysNothingDelaysNoCycle) {
   ASSERT_TRUE(rig.cycle());
   device.stop();
   const std::clock_t before = std::clock();
-  ASSERT_TRUE(rig.background());  // waits 0.2 s, beside the cycles
+  ASSERT_TRUE(rig.background());  // waits 0.2 s outside the cycle
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(rig.cycle(milliseconds(10)));
   ASSERT_TRUE(rig.cycle(milliseconds(10)));
   EXPECT_FALSE(connected());

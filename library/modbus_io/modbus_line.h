@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One Modbus device as its client sees it, behind a face without libmodbus. Every call may wait for the device; none is
-// made in a cycle.
+// One Modbus device, behind an interface without libmodbus. Every call may wait for the device, so no cycle makes one.
 #pragma once
 
 #include <array>
@@ -11,9 +10,9 @@ struct _modbus;
 
 namespace chimera::library {
 
-inline constexpr std::size_t kMostPoints = 12;  // of each kind: a component has 64 ports
+inline constexpr std::size_t kMostPoints = 12;  // of each kind, because a component has at most 64 ports
 
-/// Where a device is and what of it is used.
+/// Address of a device, and the points to exchange.
 struct ModbusPlan {
   std::string device;  // "tcp:ADDRESS:PORT" or "rtu:PATH"
   int unit = 1;
@@ -27,8 +26,8 @@ struct ModbusPlan {
 struct ModbusReading {
   std::array<std::uint16_t, kMostPoints> inputs{};
   std::array<std::uint8_t, kMostPoints> contacts{};
-  std::uint64_t exchange = 0;  // number of the exchange that brought it; 0: none yet
-  std::uint64_t command = 0;   // number of the command that was written before it; 0: none
+  std::uint64_t exchange = 0;  // number of the exchange that read it; 0: none yet
+  std::uint64_t command = 0;   // number of the command written before it; 0: none
 };
 
 struct ModbusCommand {
@@ -44,23 +43,23 @@ class ModbusLine {
   ModbusLine& operator=(const ModbusLine&) = delete;
   ~ModbusLine() { close(); }
 
-  /// Throws std::runtime_error for a plan that names no device. Does not connect.
+  /// Throws std::runtime_error if the plan names no device. Does not connect.
   void plan(const ModbusPlan& plan);
-  /// 0, or the error number. Waits 0.2 s at most. Gives up a second connection: a device that serves one at a time
-  /// would wait for it to speak.
+  /// Returns 0 or an error number. Waits at most 0.2 s. Closes a second connection, because a device that serves one
+  /// connection at a time would wait for its requests.
   int connect() noexcept;
-  /// Writes, then reads, four requests at most; 0, or the error number of the first that failed, 0.2 s each; then
-  /// the line is to be connected again.
+  /// Writes, then reads: at most four requests of at most 0.2 s each. Returns 0 or the error number of the first that
+  /// failed; the line must then be connected again.
   int exchange(const ModbusCommand& command, ModbusReading& reading) noexcept;
-  /// A second connection to a device behind TCP, for whoever writes when this process is dead: the first one may end in
-  /// the middle of a request. Of a serial line the same line. -1: the device takes no second one. Good until connect().
-  /// Waits 0.2 s at most.
+  /// Opens a second TCP connection, over which the guard writes after the death of this process; the first connection
+  /// may end within a request. A serial line returns itself. Returns -1 if the device refuses. Valid until connect().
+  /// Waits at most 0.2 s.
   int open_second() noexcept;
   bool has_second() const noexcept { return second_ != nullptr; }
   void close() noexcept;
   bool is_tcp() const noexcept { return plan_.device.starts_with("tcp:"); }
 
-  /// What libmodbus says of an error number.
+  /// Text of libmodbus for an error number.
   static const char* text_of(int error) noexcept;
 
  private:

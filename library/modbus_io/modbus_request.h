@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Requests that write, as bytes on the line: for whoever writes them when the process of libmodbus is dead.
+// Write requests as bytes, for the guard, which sends them after the death of the process.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@
 
 namespace chimera::library {
 
-/// One request in `bytes`. Big-endian, as Modbus wants it, but for the check of a serial line.
+/// One request in `bytes`. Modbus is big-endian, except for the check of a serial line.
 class ModbusRequest {
  public:
-  /// `first`, and as many behind it as there are values, get these values. Context: any; wait-free.
+  /// Writes `values` to the points from `first` on. Context: any; wait-free.
   static ModbusRequest registers(bool is_tcp, int unit, int first, std::span<const std::uint16_t> values) noexcept {
     ModbusRequest made(is_tcp, unit, 0x10, first, values.size(), 2 * values.size());
     for (const std::uint16_t value : values) made.put16(value);
@@ -61,7 +61,7 @@ class ModbusRequest {
     put(static_cast<std::uint8_t>(word & 0xFF));
   }
 
-  std::uint8_t bytes_[64];  // of at most 16 registers
+  std::uint8_t bytes_[64];  // for at most 16 registers
   std::size_t size_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Output element of the direct-drive variant (2000 paper, section 6): one force that drives and brakes.
+// One force that drives and brakes: the direct-drive variant of the 2000 paper, section 6.
 #include <algorithm>
 #include <cmath>
 
@@ -10,9 +10,10 @@ using namespace chimera;
 namespace {
 
 struct Motor {
-  In<double> fd{"fd", "N", doc = "Force wanted; below 0 to brake."};
-  Out<double> fm{"fm", "N", initial = 0.0, safety, range(-50000, 50000), doc = "Force of the motor at the wheels."};
-  InConst<double> force_max{"force_max", "N", initial = 5000.0, range(0, 50000), doc = "Of the motor, either way."};
+  In<double> fd{"fd", "N", doc = "Wanted force; below 0 brakes."};
+  Out<double> fm{"fm", "N", initial = 0.0, safety, range(-50000, 50000), doc = "Motor force at the wheels."};
+  InConst<double> force_max{"force_max", "N", initial = 5000.0, range(0, 50000),
+                            doc = "Limit of the motor, driving and braking."};
 
   Outcome init() { return *force_max >= 0 && *force_max <= 50000 ? ok() : fault("force_max is 0 to 50000 N"); }
   Outcome reinit() { return init(); }

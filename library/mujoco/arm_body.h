@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every interface of a simulated arm has: where the arm is, and how it stops.
+// Common part of all interfaces of a simulated arm: publishing the state, and stopping.
 #pragma once
 
 #include <algorithm>
@@ -12,19 +12,17 @@
 
 namespace chimera::library {
 
-/// The ports and methods of an arm that a component derives from. `Arm` has position(), velocity(), resume(), brake()
-/// and fault(). What derives from it adds the in-var of the command and cycle(), and init() and reinit() with where
-/// the arm comes from.
+/// Base of a component that moves an arm. `Arm` has position(), velocity(), resume(), brake() and fault(). The
+/// component adds the in-var of the command, cycle(), and init() and reinit(), which load the arm.
 template <class Arm>
 struct ArmBody {
   Out<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint", doc = "Measured joint positions."};
   Out<double[]> qd{"qd", "rad/s", "[ndof<=10]", frame = "joint", doc = "Measured joint velocities."};
-  Out<bool> held{"held", initial = false, safe_state,
-                 doc = "The arm stands and holds itself, because the flag is up or it is off."};
+  Out<bool> held{"held", initial = false, safe_state, doc = "The arm stands: the flag is up, or it is off."};
 
-  // A simulated arm that takes the place of another goes on where that one is, whatever its own start_pose says: at the
-  // speed that is handed over, else at rest, for an arm that goes off brakes. One that stands where its out-vars say is
-  // in its own place: it goes on from its present state.
+  // An arm that replaces another continues from the published place of that arm, not from its start_pose. It starts at
+  // the speed that is handed over; otherwise at rest, because an arm that goes off brakes. An arm whose place is the
+  // published one continues from its present state.
   Outcome on() {
     if (q.inherited() != kNever && !std::ranges::equal(q, arm_.position())) {
       for (double& speed : qd)
@@ -38,7 +36,7 @@ struct ArmBody {
     arm_.brake();
     publish(true);
   }
-  // The arm refused a step and stands as before it: with the brakes on it is in a sound state again.
+  // The arm refused a step and kept its state. The brakes make that state safe.
   bool error() {
     off();
     return false;
@@ -46,11 +44,11 @@ struct ArmBody {
   bool clear() { return true; }
 
  protected:
-  /// For init and reinit: throws what `result` refuses.
+  /// For init and reinit: throws the error of `result`.
   static void check(const Result<void>& result) {
     if (!result) throw std::runtime_error(std::string(result.error().message.view()));
   }
-  /// For cycle: what becomes of a step that has `moved` the arm, or has not, with a command or by itself.
+  /// For cycle, after a step. `moved`: the step succeeded. `holds_itself`: the arm had no command.
   Outcome after(bool moved, bool holds_itself) {
     if (!moved) return fault(arm_.fault());
     publish(holds_itself);
@@ -60,7 +58,7 @@ struct ArmBody {
   Arm arm_;
 
  private:
-  static constexpr double kStanding = 0.01;  // rad/s: slower than that a joint stands
+  static constexpr double kStanding = 0.01;  // rad/s; a slower joint counts as standing
 
   void publish(bool holds_itself) {
     std::ranges::copy(arm_.position(), q.begin());

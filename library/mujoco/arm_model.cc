@@ -18,7 +18,7 @@ const char* joint_name(const mjModel* m, int joint) {
   return name != nullptr ? name : "without a name";
 }
 
-/// Joints from the world to `body`, in this order.
+/// Joints from the world to `body`, in that order.
 std::vector<int> joints_to(const mjModel* m, int body) {
   std::vector<int> joints;
   for (int b = body; b > 0; b = m->body_parentid[b]) {
@@ -46,7 +46,7 @@ Frame frame_at(const double* p, const double* r) {
   return {{p[0], p[1], p[2]}, {r[0], r[3], r[6]}, {r[1], r[4], r[7]}, {r[2], r[5], r[8]}};
 }
 
-/// The body that carries the tip, and the tip's frame at zero.
+/// The body that carries the tip, and the frame of the tip at zero.
 struct Tip {
   int body = 0;
   Frame frame;
@@ -66,7 +66,7 @@ Result<Tip> find_tip(const mjModel* m, const mjData* d, const char* name) {
   return refusal("there is no body and no site '%s'", name);
 }
 
-/// What the motors on a joint can give together, either way.
+/// Sum of the torque limits of the motors on a joint.
 double torque_limit(const mjModel* m, int joint) {
   double sum = 0;
   for (int i = 0; i < m->nu; ++i) {
@@ -119,7 +119,7 @@ Result<ArmModel> find_arm(const mjModel_* m, mjData_* d, const char* tip_name) {
     if (m->jnt_type[j] != mjJNT_HINGE)
       return refusal("joint '%s' is no hinge: an arm has hinges only", joint_name(m, j));
     describe_joint(m, j, i, arm);
-    // In MJCF the compiler refuses it; in URDF it would take the joint for one without limits.
+    // MuJoCo's compiler refuses such limits in MJCF; in URDF it would ignore them.
     if (m->jnt_range[2 * j] > m->jnt_range[2 * j + 1]) {
       return refusal("the lower limit of joint '%s' is above its upper one", joint_name(m, j));
     }

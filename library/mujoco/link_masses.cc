@@ -7,7 +7,7 @@
 namespace chimera::library {
 namespace {
 
-/// The last joint of the arm between the world and `body`; ndof when there is none.
+/// The last joint of the arm between the world and `body`; ndof if there is none.
 std::size_t joint_before(const mjModel* m, const ArmModel& arm, int body) {
   for (int b = body; b > 0; b = m->body_parentid[b]) {
     for (int dof = m->body_dofadr[b] + m->body_dofnum[b]; dof-- > m->body_dofadr[b];) {
@@ -22,13 +22,13 @@ std::size_t joint_before(const mjModel* m, const ArmModel& arm, int body) {
 /// Sums about the origin of a frame, along its axes.
 struct Sums {
   double mass = 0;
-  Vec3 moment{0, 0, 0};             // of mass
+  Vec3 moment{0, 0, 0};             // first moment of mass
   std::array<double, 6> inertia{};  // xx yy zz xy xz yz
 };
 
 constexpr std::size_t kRow[] = {0, 1, 2, 0, 0, 1}, kColumn[] = {0, 1, 2, 1, 2, 2};
 
-/// A mass at `place` adds this to the inertia about the origin, with opposite sign what it takes when moved away.
+/// Adds the inertia of a point mass at `place` about the origin. A negative mass subtracts it.
 void add_point(double mass, const Vec3& place, std::array<double, 6>& inertia) {
   for (std::size_t e = 0; e < 6; ++e) {
     inertia[e] -= mass * place[kRow[e]] * place[kColumn[e]];

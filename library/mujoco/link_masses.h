@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the links of an arm weigh, as its MuJoCo model says: so that a controller that knows the arm need not be told.
+// Mass properties of the links of an arm, from its MuJoCo model, for controllers that use the dynamics.
 #pragma once
 
 #include <array>
@@ -9,9 +9,9 @@
 
 namespace chimera::library {
 
-/// One a joint of `arm`, in its Denavit-Hartenberg frame; the rest is 0. A link is all that its joint moves and the
-/// next does not, at zero: what turns or slides on it counts as fixed there. Dry friction is not in it.
-/// Context: setup; moves `state` to zero.
+/// One element for each joint of `arm`, in its Denavit-Hartenberg frame; the rest is 0. A link is everything that its
+/// joint moves and the next joint does not, at zero. Parts that move on a link count as fixed there. Dry friction is
+/// left out. Context: setup; moves `state` to zero.
 std::array<LinkMass, kMostJoints> link_masses(const mjModel_* model, mjData_* state, const ArmModel& arm);
 
 }  // namespace chimera::library

@@ -12,7 +12,7 @@ Joints random_joints(std::mt19937& random, double most) {
   return made;
 }
 
-// The model says it all: rows and masses read from it give the torques that MuJoCo says it takes.
+// Rows and masses read from the model give the torques that MuJoCo computes.
 TEST(LinkMasses, OfAModelGiveMujocosInverseDynamics) {
   std::mt19937 random(560);
   double farthest = 0, largest = 0;

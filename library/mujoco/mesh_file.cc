@@ -27,8 +27,8 @@ std::string fault_of_stl(const std::string& bytes) {
   return "is a damaged STL";
 }
 
-/// Whether the vertex number before the first '/' of each word is one that there is; OBJ counts from 1, and backwards
-/// below 0.
+/// Checks that each word begins with a valid vertex number, up to the first '/'. OBJ counts from 1; negative numbers
+/// count from the end.
 bool has_its_vertices(std::istringstream& words, long vertices) {
   for (std::string word; words >> word;) {
     char* end = nullptr;

@@ -31,7 +31,7 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, fault);
 }
 
-/// A checkout may be called otherwise than the package in it: package.xml has the name.
+/// The folder of a checkout may have another name than its package; package.xml states the name.
 bool is_package(const fs::path& folder, std::string_view package) {
   if (folder.filename() == package) return true;
   std::ifstream manifest(folder / "package.xml");

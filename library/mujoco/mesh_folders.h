@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the files lie that a URDF file names as ROS does: "package://ur_description/meshes/base.stl".
+// Finds the files that a URDF file names as in ROS: "package://ur_description/meshes/base.stl".
 #pragma once
 
 #include <string>
@@ -8,25 +8,25 @@
 
 namespace chimera::library {
 
-/// The folders in which the meshes of one URDF file are looked for.
+/// The search folders for the meshes of one URDF file.
 class MeshFolders {
  public:
-  /// `urdf` is the path of the file; `mesh_folder` what its <compiler meshdir> says. Reads the environment:
-  /// CHIMERA_PACKAGE_PATH and ROS_PACKAGE_PATH, lists of folders that are packages or hold some, and AMENT_PREFIX_PATH,
-  /// whose folders hold them in `share`. Context: setup.
+  /// `urdf` is the path of the file, `mesh_folder` the value of its <compiler meshdir>. Reads the environment:
+  /// CHIMERA_PACKAGE_PATH and ROS_PACKAGE_PATH list packages or folders of packages; AMENT_PREFIX_PATH lists folders
+  /// with packages in `share`. Context: setup.
   explicit MeshFolders(const std::string& urdf, std::string_view mesh_folder = {});
 
-  /// The path of the file that the URDF calls `name`; empty, with `why`, when there is none. What begins with
-  /// package:// is looked for in the folders above the URDF file that are the package, or hold it, then in those of the
-  /// environment; file:// and plain paths are taken as they are, relative ones from the folder of the URDF. Last comes
-  /// a file of that name beside the URDF. Context: setup; may block.
+  /// Returns the path of the file that the URDF file calls `name`; empty, with `why`, if there is none. The search for
+  /// package:// visits the folders above the URDF file that are the package or contain it, then those of the
+  /// environment. file:// and plain paths are used directly, relative ones from the folder of the URDF file. The last
+  /// place is a file of that name beside the URDF file. Context: setup; may block.
   std::string find(std::string_view name, std::string& why) const;
 
  private:
   std::string in_package(std::string_view package, std::string_view rest) const;
 
   std::string here_;
-  std::vector<std::string> meshes_here_;  // folders for the bare name
+  std::vector<std::string> meshes_here_;  // folders that may hold a file of the bare name
   std::vector<std::string> holders_;      // folders that may be a package or hold one
 };
 

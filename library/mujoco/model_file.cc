@@ -16,7 +16,7 @@ namespace {
 
 constexpr char kMain[] = "model.xml";
 
-/// Files that MuJoCo finds in memory.
+/// Files in memory that MuJoCo can open.
 class MemoryFiles {
  public:
   MemoryFiles() { mj_defaultVFS(files_.get()); }
@@ -34,7 +34,7 @@ class MemoryFiles {
   std::unique_ptr<mjVFS> files_ = std::make_unique<mjVFS>();
 };
 
-/// One line of what MuJoCo says in several.
+/// Joins the lines of a MuJoCo message.
 std::string one_line(const char* text) {
   std::string line;
   for (; *text != '\0'; ++text) {
@@ -59,7 +59,7 @@ mjModel* load_with(const UrdfMeshes& urdf, std::string& why) {
   return load(kMain, &files.all(), why);
 }
 
-/// Whether MuJoCo can make a body of this mesh: some that are well formed have no volume, or are inside out.
+/// Returns true if MuJoCo accepts the mesh as a body. Some well-formed meshes have no volume or are inside out.
 bool is_body(const UrdfMesh& mesh, std::string& why) {
   const std::string scale = mesh.scale.empty() ? "" : " scale='" + mesh.scale + "'";
   MemoryFiles files;
@@ -71,7 +71,7 @@ bool is_body(const UrdfMesh& mesh, std::string& why) {
   return model != nullptr;
 }
 
-/// Leaves out what MuJoCo refuses by itself; false when there is no such mesh.
+/// Leaves out each mesh that MuJoCo refuses. Returns false if there is none.
 bool leave_out_refused(UrdfMeshes& urdf) {
   bool any = false;
   for (std::size_t i = 0; i < urdf.meshes().size(); ++i) {

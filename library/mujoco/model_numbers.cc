@@ -21,13 +21,13 @@ namespace {
 constexpr int kMostNested = 8;
 constexpr std::size_t kLongest = std::size_t{16} << 20;  // bytes of a file
 
-/// What an attribute holds: so many numbers, or as many as there are (0).
+/// Number of values of an attribute; 0: any number.
 struct Numbers {
-  std::string_view element, attribute;  // an empty element stands for any
+  std::string_view element, attribute;  // an empty element means every element
   std::size_t count;
 };
 
-// MuJoCo and urdfdom know other attributes of numbers as well; these two lists are what a robot is made of.
+// MuJoCo and urdfdom know more attributes with numbers. These two lists cover robots.
 constexpr Numbers kUrdf[] = {
     {"origin", "xyz", 3},        {"origin", "rpy", 3},         {"axis", "xyz", 3},          {"mass", "value", 1},
     {"inertia", "ixx", 1},       {"inertia", "ixy", 1},        {"inertia", "ixz", 1},       {"inertia", "iyy", 1},
@@ -40,7 +40,7 @@ constexpr Numbers kUrdf[] = {
     {"cylinder", "radius", 1},   {"cylinder", "length", 1},    {"capsule", "radius", 1},    {"capsule", "length", 1},
     {"mesh", "scale", 3},        {"color", "rgba", 4}};
 
-// In MJCF an attribute means the same wherever it stands. A muscle has a scale and a force of its own.
+// In MJCF an attribute has the same meaning in every element, except scale and force of a muscle.
 constexpr Numbers kMjcf[] = {
     {"", "pos", 3},         {"", "quat", 4},        {"", "axis", 3},      {"", "euler", 3},      {"", "axisangle", 4},
     {"", "xyaxes", 6},      {"", "zaxis", 3},       {"", "fromto", 6},    {"", "gravity", 3},    {"", "wind", 3},
@@ -55,7 +55,7 @@ constexpr std::string_view kWhole[] = {
     "mpr_iterations", "offwidth", "offheight",  "shadowsize",      "offsamples",     "numslices", "numstacks",
     "numquads",   "nrow",       "ncol",        "dim"};
 
-// What holds a name or a word; in <rgba> and <scale> of <visual> they are numbers, too.
+// Attributes with a name or a word. In <rgba> and <scale> of <visual> they have numbers.
 constexpr std::string_view kNames[] = {
     "name",   "class",     "childclass", "model",    "file",    "meshdir",    "texturedir", "material",   "texture",
     "mesh",   "hfield",    "target",     "joint",    "joint1",  "joint2",     "body",       "body1",      "body2",
@@ -83,7 +83,7 @@ std::string_view without_sign(std::string_view word) {
   return word.starts_with('+') || word.starts_with('-') ? word.substr(1) : word;
 }
 
-/// nan, inf, infinity, in any letters: what strtod takes and no robot has. Entities are a way to write them, too.
+/// True for nan, inf and infinity in any letters, which strtod accepts. XML entities may hide them, too.
 bool is_no_number(std::string_view word) {
   std::string small(without_sign(word));
   std::ranges::transform(small, small.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

@@ -16,7 +16,7 @@
 namespace chimera::library {
 namespace {
 
-// Every number that a test makes a bad one stands behind an @.
+// A test replaces the numbers after an @ by bad ones.
 constexpr char kUrdf[] = R"(<?xml version="1.0"?>
 <!-- nan="nan" <axis xyz="nan"/> -->
 <robot name="nan">
@@ -60,7 +60,7 @@ struct ModelNumbers : ::testing::Test {
     SimulatedArm arm;
     return static_cast<bool>(arm.load(path.c_str()));
   }
-  /// The text with `word` in the place of the number behind the `which`th @; "" when there are fewer.
+  /// Replaces the number after @ number `which` by `word`; "" if there are fewer.
   static std::string with(const std::string& marked, std::size_t which, const std::string& word) {
     std::string text;
     std::size_t seen = 0;
@@ -102,7 +102,7 @@ TEST_F(ModelNumbers, WhatIsNoFiniteNumberIsRefusedWhereverItStands) {
   EXPECT_EQ(files, 294u);
 }
 
-// Ours or MuJoCo's own refusal: none of these files becomes an arm.
+// Either check_model_numbers or MuJoCo refuses each of these files.
 TEST_F(ModelNumbers, GarbageAndWhatIsLeftOutMakesNoArm) {
   std::size_t files = 0;
   for (const std::string marked : {kUrdf, kMjcf}) {
@@ -147,7 +147,7 @@ TEST_F(ModelNumbers, WhatIsNoXmlIsLeftToMujoco) {
     EXPECT_EQ(refusal(text), "sound") << text;
 }
 
-// What MuJoCo knows and this takes for a name or a word: everything else of the schema is held to be numbers.
+// Every attribute of MuJoCo's schema is either in a list here or holds numbers.
 TEST_F(ModelNumbers, EveryAttributeOfTheSchemaIsKnownForWhatItHolds) {
   std::vector<char> schema(200000);
   ASSERT_GT(mj_printSchema(nullptr, schema.data(), static_cast<int>(schema.size()), 0, 0), 0);

@@ -10,14 +10,14 @@
 namespace chimera::library {
 namespace {
 
-// In static thread storage: the first touch from a real-time thread must not allocate.
+// In static thread storage, because the first access from a real-time thread must not allocate.
 struct Landing {
   std::jmp_buf* place;
   char text[120];
 };
 __attribute__((tls_model("initial-exec"))) thread_local Landing landing{};
 
-// MuJoCo is C: it has nothing to unwind, and a handler that returned would let it go on with a broken state.
+// MuJoCo is C, so there is nothing to unwind. If the handler returned, MuJoCo would continue with a broken state.
 [[noreturn]] void on_error(const char* text) {
   if (landing.place == nullptr) {
     std::fprintf(stderr, "mujoco: %s\n", text);
@@ -27,7 +27,7 @@ __attribute__((tls_model("initial-exec"))) thread_local Landing landing{};
   std::longjmp(*landing.place, 1);
 }
 
-// Warnings are also counted in the state; guarded() reads the counts.
+// The state counts warnings, too, and guarded() reads these counts.
 void on_warning(const char*) {}
 
 int bad_numbers(const mjData* state) noexcept {
@@ -56,7 +56,7 @@ void install_mujoco_handlers() noexcept {
 
 bool guarded(void (*part)(const mjModel*, mjData*), const mjModel* model, mjData* state) noexcept {
   landing.text[0] = '\0';
-  // A reset clears the counts and then adds its own, so from zero each is seen.
+  // A reset clears the counts and then adds its own, so each warning shows if the counts start at 0.
   for (int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC, mjWARN_BADCTRL}) state->warning[kind].number = 0;
   return returns(part, model, state) && bad_numbers(state) == 0;
 }

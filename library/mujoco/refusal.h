@@ -7,11 +7,11 @@
 
 namespace chimera::library {
 
-/// An error with such a text, as printf makes it. Context: setup.
+/// Makes an Error with a text in printf form. Context: setup.
 template <class... Values>
 Error refusal(const char* format, Values... values) {
   Error error;
-  char text[1024];  // the message keeps what it has room for
+  char text[1024];  // the message cuts a longer text
   std::snprintf(text, sizeof text, format, values...);
   error.message = FixedString<400>(text);
   return error;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the three simulated robot interfaces have in common: everything but the command.
+// Common part of the three simulated robot interfaces: everything except the command.
 #pragma once
 
 #include <algorithm>
@@ -9,13 +9,13 @@
 
 namespace chimera::library {
 
-/// The ports and methods of an arm that a component derives from. It adds the in-var of the command and cycle(), and
-/// init() and reinit() with where the arm comes from.
+/// Base of a component that moves a simulated arm. The component adds the in-var of the command, cycle(), and init()
+/// and reinit(), which load the arm.
 struct RobotBody : ArmBody<SimulatedArm> {
   InConst<double[]> start_pose{"start_pose", "rad", "[ndof<=10]", initial = 0.0, frame = "joint",
                                doc = "Where the arm stands at init, within the joint limits."};
   InConst<double[]> torque_limit{"torque_limit", "N.m", "[ndof<=10]", initial = 0.0, range(0, 1e6), frame = "joint",
-                                 doc = "Cuts the torque of the drives; 0 for what the model says."};
+                                 doc = "Cuts the torque of the drives; 0: the limit of the model."};
   OutConst<std::int32_t> ndof{"ndof", "1", doc = "Joints from the base to the tip."};
   OutConst<DhLink[]> dh{"dh", "1", "[ndof<=10]", doc = "Denavit-Hartenberg rows, base to tip."};
   OutConst<Pose> base{"base", "1", frame = "base", doc = "Frame 0."};
@@ -23,17 +23,17 @@ struct RobotBody : ArmBody<SimulatedArm> {
   OutConst<double[]> q_min{"q_min", "rad", "[ndof<=10]", frame = "joint", doc = "Lower joint limits; -1e6 for none."};
   OutConst<double[]> q_max{"q_max", "rad", "[ndof<=10]", frame = "joint", doc = "Upper joint limits; 1e6 for none."};
   OutConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", frame = "joint",
-                             doc = "What the drives can give, either way; 1e6 where nobody states a limit."};
+                             doc = "Largest torque of the drives; 1e6 without a limit."};
 
  protected:
-  /// For init: `load` reads the arm and answers a Result<void>. Throws what it, or place(), refuses.
+  /// For init: `load` reads the arm and returns a Result<void>. Throws its error, or that of place().
   template <class Load>
   void start(Load load) {
     check(load());
     tell();
     check(arm_.place({start_pose.begin(), arm_.joints()}));
   }
-  /// For reinit: other limits or drives, at rest in the same place.
+  /// For reinit: changes limits or drives and keeps the place, at rest.
   template <class Load>
   void restart(Load load) {
     ArmVector here;
@@ -43,7 +43,7 @@ struct RobotBody : ArmBody<SimulatedArm> {
     tell();
     check(arm_.place({here.data(), joints}));
   }
-  /// What whoever named the file should know of it.
+  /// Gives the user a note about the model file, if there is one.
   void tell_note(Cycle c) const {
     if (!arm_.note().empty()) c.note(arm_.note().c_str());
   }
@@ -67,7 +67,7 @@ struct RobotBody : ArmBody<SimulatedArm> {
   }
 };
 
-/// An arm from a file that the user names.
+/// An arm from a file of the user.
 struct RobotFace : RobotBody {
   InConst<Text<64>> tip{"tip", "1", initial = "",
                         doc = "Body or site that is the tool; empty: the link behind the most joints."};

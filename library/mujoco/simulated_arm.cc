@@ -18,10 +18,10 @@
 namespace chimera::library {
 namespace {
 
-// Euler's method, implicit in the viscous friction as MuJoCo does it, is stable for any friction; RK4 costs four times
+// Euler's method, implicit in the viscous friction as MuJoCo does it, is stable for any friction. RK4 costs four times
 // as much.
 constexpr double kLongestSubStep = 0.5e-3;
-constexpr double kHoldRate = 20;  // 1/s: how fast what moves is damped while the configuration is illegal
+constexpr double kHoldRate = 20;  // 1/s, damping of the motion while the configuration is illegal
 
 bool within(double value, double low, double high) { return value >= low && value <= high; }
 

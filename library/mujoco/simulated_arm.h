@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An arm of up to ten hinges from a MuJoCo model, with drives: what the simulated robot interfaces move.
-// All vectors are joint space, base to tip.
+// An arm of up to ten hinges from a MuJoCo model, with drives. The simulated robot interfaces move it. All vectors are
+// in joint space, base to tip.
 #pragma once
 
 #include <memory>
@@ -17,13 +17,13 @@ struct mjVFS_;
 
 namespace chimera::library {
 
-/// What a command of an arm is.
+/// Kind of a command.
 enum class ArmInterface { kPosition, kVelocity, kTorque };
 
-/// The drives behind the position and the velocity interface. They know the arm: torque = M(q) a + c(q, qd) + g(q) with
-/// a = 2 w (v - qd) within the acceleration limit. v is the velocity command, or w/2 (q_r - q) within the speed limit
-/// and within what can be braked on the way: a small error of a joint decays as that of a critically damped spring of
-/// angular frequency w, whatever the arm, and a large one without overshoot as long as the torque suffices.
+/// The drives behind the position and velocity interfaces. They use the dynamics of the arm: torque = M(q) a + c(q, qd)
+/// + g(q) with a = 2 w (v - qd) within the acceleration limit. v is the velocity command, or w/2 (q_r - q) within the
+/// speed limit and within the speed that can be braked on the way. A small joint error decays as in a critically damped
+/// spring of angular frequency w, and a large one without overshoot if the torque suffices.
 struct ArmDrives {
   double bandwidth = 100;  ///< w, rad/s, 1 to 200
   double speed_limit = 3;  ///< rad/s, of the position interface
@@ -33,39 +33,39 @@ struct ArmDrives {
 /// One simulated arm. Not copyable: owns the MuJoCo model and its state.
 class SimulatedArm {
  public:
-  /// Reads an MJCF or URDF file, or one of `files`, and stands at zero. Motors of the model are not used but for their
-  /// limits. A collision mesh of a URDF file that cannot be used is left out: note() says so
+  /// Reads an MJCF or URDF file, or one of `files`, and sets all joints to zero. Only the limits of the model's motors
+  /// are used. A collision mesh of a URDF file that cannot be used is left out, with a note()
   /// (library/mujoco/urdf_meshes.h). Refuses a missing or ill-formed file and what find_arm() refuses. Context: setup;
   /// may block.
   Result<void> load(const char* path, const char* tip = "", const mjVFS_* files = nullptr);
 
-  /// Stands at rest in `q` (rad, one a joint). Refuses another number of joints, a position outside the joint limits or
-  /// not finite. Context: setup.
+  /// Sets the arm to rest at `q` (rad, one for each joint). Refuses another number of joints, a position outside the
+  /// joint limits or not finite. Context: setup.
   Result<void> place(std::span<const double> q);
 
-  /// Goes on from `q` (rad) at `qd` (rad/s), one of each a joint. False, with fault() saying why and the state as
-  /// before: another number of joints, what is not finite, or a position farther than kOvershoot outside the joint
-  /// limits, which a moving arm may pass a little. Context: cycle boundary; wait-free.
+  /// Continues from `q` (rad) at `qd` (rad/s), one of each for each joint. Returns false and keeps the state, with the
+  /// reason in fault(), for another number of joints, a number that is not finite, or a position more than kOvershoot
+  /// outside the joint limits. A moving arm may pass its limits a little. Context: cycle boundary; wait-free.
   bool resume(std::span<const double> q, std::span<const double> qd);
 
-  /// The drives from now on. Context: setup.
+  /// Sets the drives. Context: setup.
   void set_drives(const ArmDrives& drives) noexcept { drives_ = drives; }
-  /// Cuts the torque at `limit` (N.m) where that is above 0. Context: setup.
+  /// Cuts the torque at `limit` (N.m) if that is above 0. Context: setup.
   void limit_torque(std::span<const double> limit) noexcept;
-  /// Damping while the configuration is illegal (N.m.s/rad); by itself 20/s times the inertia at each joint at zero.
+  /// Damping while the configuration is illegal (N.m.s/rad). Default: 20/s times the inertia at each joint at zero.
   void set_hold_damping(std::span<const double> damping) noexcept;
 
-  /// Moves on by `dt` seconds in equal sub-steps of at most 0.5 ms. `command` is rad, rad/s or N.m; a position is cut
-  /// at the joint limits, a velocity slows down before them, a torque is cut at the limits of the drives.
-  /// False, with fault() saying why and the state as before: command not finite or of another size, dt not positive, or
-  /// a state that blew up. Context: cycle; wait-free; O(dt).
+  /// Advances by `dt` seconds in equal sub-steps of at most 0.5 ms. `command` is rad, rad/s or N.m: a position is cut
+  /// at the joint limits, a velocity falls before them, a torque is cut at the limits of the drives. Returns false and
+  /// keeps the state, with the reason in fault(), for a command not finite or of another size, a dt not positive, or a
+  /// simulation that diverged. Context: cycle; wait-free; O(dt).
   bool step(ArmInterface interface, std::span<const double> command, double dt);
 
-  /// Like step() without any command: the drives carry the weight and damp what moves, so the arm comes to rest near
-  /// where it is. For the time of an illegal configuration. Context: cycle; wait-free; O(dt).
+  /// Advances without a command, while the configuration is illegal: the drives carry the weight and damp the motion,
+  /// so the arm comes to rest nearby. Returns as step(). Context: cycle; wait-free; O(dt).
   bool step_locally_stable(double dt);
 
-  /// Brakes on: the joints stand still at once. Context: cycle; wait-free.
+  /// Brakes: the joints stand still at once. Context: cycle; wait-free.
   void brake();
 
   std::size_t joints() const noexcept { return arm_.ndof; }
@@ -75,12 +75,12 @@ class SimulatedArm {
   /// Limits and kinematic constants. Context: cycle; wait-free.
   const ArmModel& arm() const noexcept { return arm_; }
 
-  /// What whoever named the file should know of it, in one line; empty: nothing. Context: setup.
+  /// A note for the user about the model file, in one line; empty without one. Context: setup.
   const std::string& note() const noexcept { return note_; }
-  /// Why the last call that answered false did; empty before. Context: any.
+  /// Reason for the last false return; empty before. Context: any.
   const char* fault() const noexcept { return fault_.c_str(); }
 
-  /// The model and its state, for what one robot has and others have not. Context: setup.
+  /// The model and its state, for properties of one robot only. Context: setup.
   mjModel_* model() const noexcept { return model_.get(); }
   mjData_* state() const noexcept { return state_.get(); }
 

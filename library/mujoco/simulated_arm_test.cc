@@ -15,7 +15,7 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-// Two links of a metre in a vertical plane; a gripper that slides, and a ball that lies about.
+// Two links of a metre in a vertical plane, a sliding gripper and a free ball.
 constexpr char kTwoLinks[] = R"(<mujoco><compiler angle="radian"/><worldbody>
   <body name="ball" pos="3 0 1"><freejoint/><geom size=".1"/></body>
   <body name="upper"><joint name="shoulder" axis="0 1 0" limited="true" range="-2 2"/>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Goes through the tags of a URDF file, reads its collision meshes and leaves its pictures out.
+// Scans the tags of a URDF file, reads its collision meshes and leaves out its visual ones.
 #include "library/mujoco/urdf_meshes.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ std::string_view value_of(const XmlTag& tag, std::string_view attribute) {
   return {};
 }
 
-/// Without the five entities that XML has by itself.
+/// Replaces the five predefined XML entities.
 std::string plain(std::string_view value) {
   constexpr std::pair<std::string_view, char> kEntities[] = {
       {"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A URDF file as ROS packages have them, made ready for MuJoCo: meshes come out of the folders they lie in, and a mesh
-// that cannot be used is left out. Pictures (<visual>) with a mesh always are: nothing here draws, they weigh nothing.
+// Prepares the URDF file of a ROS package for MuJoCo: finds its meshes and leaves out those that cannot be used.
+// <visual> elements with a mesh are always left out, because they are not drawn and have no mass.
 #pragma once
 
 #include <cstddef>
@@ -16,29 +16,29 @@ namespace chimera::library {
 
 /// A collision mesh of the file.
 struct UrdfMesh {
-  std::string called;  ///< as the file has it, "package://arm/meshes/base.stl"
-  std::string scale;   ///< "" when it is not said
-  std::string as;      ///< what it is called for MuJoCo: "mesh_0.stl"
-  std::string bytes;   ///< what stands in the file; empty when it is left out
-  std::string why;     ///< it is left out; empty: it is used
+  std::string called;  ///< name in the file, "package://arm/meshes/base.stl"
+  std::string scale;   ///< "" without a scale
+  std::string as;      ///< name for MuJoCo: "mesh_0.stl"
+  std::string bytes;   ///< contents of the file; empty if the mesh is left out
+  std::string why;     ///< reason for leaving it out; empty if it is used
 };
 
-/// The text of one file. A mesh never weighs anything: a link with a mesh and no <inertial> gets one of nothing, so
-/// masses are the same with its meshes and without. Lines keep their numbers.
+/// The text of one file. A mesh has no mass: a link with a mesh and without <inertial> gets a massless one, so masses
+/// are the same with and without meshes. Line numbers do not change.
 class UrdfMeshes {
  public:
-  /// False for a text without a mesh, and for one that is no URDF: both go to MuJoCo as they are. Context: setup.
+  /// Returns false for a text without a mesh, or which is no URDF. MuJoCo reads both unchanged. Context: setup.
   static bool are_in(std::string_view text);
 
-  /// Looks for each mesh and reads it; `path` is where `text` comes from. Context: setup; may block.
+  /// Finds and reads each mesh. `path` is the file of `text`. Context: setup; may block.
   UrdfMeshes(std::string text, const std::string& path);
 
   const std::vector<UrdfMesh>& meshes() const noexcept { return meshes_; }
-  /// Mesh `i` is left out for this reason.
+  /// Leaves out mesh `i` for the reason `why`.
   void leave_out(std::size_t i, std::string why);
-  /// The text for MuJoCo, with the meshes that are used by their names `as`.
+  /// The text for MuJoCo, with used meshes under their names `as`.
   std::string text() const;
-  /// One line on what is left out; empty when nothing is.
+  /// One line about meshes that are left out; empty without any.
   std::string note() const;
 
  private:
@@ -46,13 +46,13 @@ class UrdfMeshes {
   struct Range {
     std::size_t begin = 0, end = 0;
   };
-  struct Part {  // a <collision> or <visual>, and the mesh in it
+  struct Part {  // a <collision> or <visual> element, and its mesh
     Range whole;
     std::size_t mesh = kPicture;
-    Range name;  // of the file
+    Range name;  // position of the file name
   };
   struct Link {
-    std::size_t inside = 0;  // behind its start tag
+    std::size_t inside = 0;  // after its start tag
     bool has_inertial = false, has_mesh = false;
   };
 
@@ -63,9 +63,9 @@ class UrdfMeshes {
   std::string source_;
   std::vector<UrdfMesh> meshes_;
   std::vector<Part> parts_;
-  std::vector<std::size_t> weightless_;  // where an <inertial> is put
+  std::vector<std::size_t> weightless_;  // places that need an <inertial>
   std::string mesh_folder_;
-  // While it reads.
+  // Used while reading.
   Link link_;
   Part part_;
   bool is_in_part_ = false, is_picture_ = false, has_name_ = false;

@@ -15,7 +15,7 @@
 namespace chimera::library {
 namespace {
 
-/// Everything of the model and of a fall under torques that a mesh must not change, to the bit.
+/// All numbers of the model, and of a fall under torques, that a mesh must not change by a bit.
 std::vector<double> numbers_of(SimulatedArm& arm) {
   const mjModel* m = arm.model();
   std::vector<double> all;
@@ -60,7 +60,7 @@ struct UrdfMeshesTest : ::testing::Test {
     EXPECT_LT(arm.note().size(), 160u) << arm.note();
     return arm.note();
   }
-  /// The reason for leaving out the mesh of the upper arm when it is called or looks like this.
+  /// Reason for leaving out the mesh of the upper arm with this name or these bytes.
   std::string reason(const std::string& called, const std::string& bytes = "") const {
     if (!bytes.empty()) files.put(files.package / "meshes" / "upper.stl", bytes);
     const std::string said = note(files.robot(files.mesh(called), ""));
@@ -107,7 +107,7 @@ TEST_F(UrdfMeshesTest, SaysWhyAMeshIsLeftOut) {
   EXPECT_EQ(reason(kBase, many), "upper.stl: is a damaged STL");
 }
 
-// What is well formed and yet no body is found by asking MuJoCo for each mesh alone.
+// MuJoCo alone decides whether a well-formed mesh is a body, so each mesh is tried by itself.
 TEST_F(UrdfMeshesTest, AMeshThatMujocoRefusesIsLeftOutAndTheOthersStay) {
   std::string bad = stl_box(0.05F);
   const float nan = std::numeric_limits<float>::quiet_NaN();

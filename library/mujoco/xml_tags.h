@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tags of an XML text, one after the other: enough to look at attributes before a parser that says less.
+// Reads the tags of an XML text one by one, to check attributes before a parser with less precise errors.
 #pragma once
 
 #include <cstddef>
@@ -9,29 +9,29 @@
 
 namespace chimera::library {
 
-/// A tag. Views into the text that was read; values as they are written, entities and all.
+/// A tag. The views refer to the text; values are unchanged, with entities.
 struct XmlTag {
   std::string_view element;
   std::vector<std::pair<std::string_view, std::string_view>> attributes;
   std::size_t line = 1;
-  std::size_t begin = 0, end = 0;  ///< of the tag in the text
+  std::size_t begin = 0, end = 0;  ///< position of the tag in the text
   bool is_end = false;             ///< </element>
   bool is_empty = false;           ///< <element/>
 };
 
-/// Goes through a text. Comments, declarations and CDATA sections are passed over; at what is no XML it ends, because
-/// whoever parses the text says why. Context: setup.
+/// Reads the tags of a text. Skips comments, declarations and CDATA sections. Ends at a syntax error, which the parser
+/// reports. Context: setup.
 class XmlTags {
  public:
   explicit XmlTags(std::string_view text) : text_(text), rest_(text) {}
 
-  /// The next start tag. False at the end.
+  /// Reads the next start tag. Returns false at the end.
   bool next(XmlTag& tag) {
     while (next_of_all(tag))
       if (!tag.is_end) return true;
     return false;
   }
-  /// The next start or end tag. False at the end.
+  /// Reads the next start or end tag. Returns false at the end.
   bool next_of_all(XmlTag& tag) {
     for (;;) {
       if (!skip_past("<")) return false;

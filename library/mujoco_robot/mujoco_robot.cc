@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot interface of the position kind with any simulated arm behind it.
+// Robot interface with position commands, for any simulated arm.
 #include "library/mujoco/robot_face.h"
 
 using namespace chimera;
@@ -7,14 +7,12 @@ using namespace chimera;
 namespace {
 
 struct MujocoRobot : library::RobotFace {
-  In<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", frame = "joint",
-                     doc = "Position that the drives go to; cut at the joint limits."};
+  In<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", frame = "joint", doc = "Wanted position; cut at the joint limits."};
   InConst<double> bandwidth{"bandwidth", "rad/s", initial = 100.0, range(1, 200),
-                            doc = "Angular frequency at which an error of a joint decays."};
-  InConst<double> speed_limit{"speed_limit", "rad/s", initial = 3.0, range(0.01, 100),
-                              doc = "The fastest that the drives move a joint."};
+                            doc = "Angular frequency at which a joint error decays."};
+  InConst<double> speed_limit{"speed_limit", "rad/s", initial = 3.0, range(0.01, 100), doc = "Largest joint speed."};
   InConst<double> acceleration_limit{"acceleration_limit", "rad/s2", initial = 20.0, range(0.1, 1000),
-                                     doc = "The most that the drives accelerate a joint."};
+                                     doc = "Largest joint acceleration."};
 
   void init(Cycle c) {
     set_drives();

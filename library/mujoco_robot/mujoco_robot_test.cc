@@ -13,7 +13,7 @@
 namespace chimera {
 namespace {
 
-// A robot of two joints that a user names; the same for the three interfaces.
+// A robot of two joints from a file of the user, for all three interfaces.
 struct RobotTest : ::testing::Test {
   std::string path = testing::TempDir() + "robot_" + std::to_string(::getpid()) + ".xml";
   RobotTest() {
@@ -73,7 +73,7 @@ TEST_F(RobotTest, FallsWithoutTorque) {
 TEST_F(RobotTest, ARobotThatTakesTorquesTellsWhatItsLinksWeigh) {
   Rig rig("mujoco_robot_torque");
   start(rig, "tau");
-  const auto link = rig.get<library::LinkMass>("links", 1);  // a ball of water behind an axis that points along y
+  const auto link = rig.get<library::LinkMass>("links", 1);  // a sphere of water beside an axis along y
   EXPECT_NEAR(link.mass, 1000 * 4.0 / 3 * M_PI * 0.05 * 0.05 * 0.05, 1e-9);
   EXPECT_NEAR(library::length({link.centre[0], link.centre[1], link.centre[2]}), 0.5, 1e-9);
 }

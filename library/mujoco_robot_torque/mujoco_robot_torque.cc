@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot interface of the torque kind with any simulated arm behind it.
+// Robot interface with torque commands, for any simulated arm.
 #include "library/mujoco/link_masses.h"
 #include "library/mujoco/robot_face.h"
 
@@ -9,7 +9,7 @@ namespace {
 
 struct MujocoRobotTorque : library::RobotFace {
   In<double[]> tau{"tau", "N.m", "[ndof<=10]", frame = "joint", doc = "Torque at each joint; cut at tau_max."};
-  OutConst<library::LinkMass[]> links{"links", "1", "[ndof<=10]", doc = "Mass and drive, a link a joint, base to tip."};
+  OutConst<library::LinkMass[]> links{"links", "1", "[ndof<=10]", doc = "Mass and drive of each link, base to tip."};
 
   void init(Cycle c) {
     start([this] { return load_with_links(); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A robot interface of the velocity kind with any simulated arm behind it.
+// Robot interface with velocity commands, for any simulated arm.
 #include "library/mujoco/robot_face.h"
 
 using namespace chimera;
@@ -8,11 +8,11 @@ namespace {
 
 struct MujocoRobotVelocity : library::RobotFace {
   In<double[]> qd_ref{"qd_ref", "rad/s", "[ndof<=10]", frame = "joint",
-                      doc = "Velocity that the drives hold; it slows down before a joint limit."};
+                      doc = "Wanted velocity; lower before a joint limit."};
   InConst<double> bandwidth{"bandwidth", "rad/s", initial = 100.0, range(1, 200),
-                            doc = "Angular frequency at which an error of a joint decays."};
+                            doc = "Angular frequency at which a joint error decays."};
   InConst<double> acceleration_limit{"acceleration_limit", "rad/s2", initial = 20.0, range(0.1, 1000),
-                                     doc = "The most that the drives accelerate a joint."};
+                                     doc = "Largest joint acceleration."};
 
   void init(Cycle c) {
     set_drives();

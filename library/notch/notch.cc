@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes one frequency out of a signal. README.md is the data sheet.
+// Removes one frequency from a signal. README.md is the data sheet.
 #include "chimera/task/component.h"
 #include "library/signals/input.h"
 #include "library/signals/tpt.h"
@@ -8,14 +8,13 @@ using namespace chimera;
 
 namespace {
 
-// Hz. Far below it nothing is left of the ratio of width and center.
+// Hz. Far below, rounding destroys the ratio of width and center.
 constexpr double kLeast = 1e-6;
 
 struct Notch {
   In<double[]>    x{"x", "U", "[n...<=64]", doc = "Any signal."};
-  InConst<double> center{"center", "Hz", range(kLeast, 1e6), doc = "What is taken out; below half the rate."};
-  InConst<double> width{"width", "Hz", range(kLeast, 1e6),
-                        doc = "Between the two frequencies where the gain is 1/sqrt(2)."};
+  InConst<double> center{"center", "Hz", range(kLeast, 1e6), doc = "Frequency to remove; below half the rate."};
+  InConst<double> width{"width", "Hz", range(kLeast, 1e6), doc = "Between the frequencies of gain 1/sqrt(2)."};
   Out<double[]>   y{"y", "U", "[n...<=64]", doc = "x without the centre frequency."};
 
   Outcome init() {
@@ -43,7 +42,7 @@ struct Notch {
   bool error() { return true; }
 
  private:
-  // The width survives the transform exactly: tan(pi width dt) = k g / (1 + g^2).
+  // The transform keeps the width exactly: tan(pi width dt) = k g / (1 + g^2).
   void tune(double dt) {
     last_dt_ = dt;
     g_ = library::prewarped(*center, dt);
@@ -62,7 +61,7 @@ struct Notch {
   library::SecondOrder section_[library::kMostElements];
 };
 
-CHIMERA_COMPONENT(Notch, "notch", "Takes one frequency out of a signal.", rate = 1000.0,
+CHIMERA_COMPONENT(Notch, "notch", "Removes one frequency from a signal.", rate = 1000.0,
                   source = "Orfanidis 1996, section 11.3; Zavalishin 2018, section 4.4");
 
 }  // namespace

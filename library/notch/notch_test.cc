@@ -31,8 +31,8 @@ TEST_F(NotchTest, HasTheGainOfTheClosedFormAtEveryFrequency) {
 }
 
 TEST_F(NotchTest, IsExactlyAsWideAsItSays) {
-  start(200, 60);  // far up, where the transform bends most
-  // cos(2 pi f1) and cos(2 pi f2) of the edges: their frequencies differ by the width, and tan tan = g^2.
+  start(200, 60);  // near half the rate, where the transform distorts most
+  // cos(2 pi f1) and cos(2 pi f2) of the band edges, whose frequencies differ by the width; tan tan = g^2.
   const double g = std::tan(math::kPi * 0.2), t = std::tan(math::kPi * 0.06);
   const double low = (-t * (1 + g * g) + std::sqrt(t * t * (1 + g * g) * (1 + g * g) + 4 * g * g)) / 2;
   const double f1 = std::atan(low) / math::kPi * 1000;

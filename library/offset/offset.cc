@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds an offset that may change while it runs: y = x + offset. README.md is the data sheet.
+// Adds a variable offset: y = x + offset. README.md is the data sheet.
 #include "chimera/task/component.h"
 #include "library/signals/input.h"
 
@@ -9,7 +9,7 @@ namespace {
 
 struct Offset {
   In<double[]> x{"x", "U", "[n...<=64]", doc = "Any signal."};
-  In<double[]> offset{"offset", "U", "[n...<=64]", doc = "What is added: of the operator, or of another task."};
+  In<double[]> offset{"offset", "U", "[n...<=64]", doc = "Value to add."};
   Out<double[]> y{"y", "U", "[n...<=64]", doc = "x plus the offset."};
 
   void on() {

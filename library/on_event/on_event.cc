@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes a stated execution time for every event: aperiodic load, for schedules and measurements.
+// Uses a stated execution time for every event: aperiodic load for schedules and measurements.
 #include <cmath>
 
 #include "chimera/task/component.h"
@@ -14,7 +14,7 @@ struct OnEvent {
 
   Outcome init() { return *time >= 0 && *time <= 3600 ? ok() : fault("time is 0 to 3600 s"); }
   Outcome reinit() { return init(); }
-  bool sync() { return true; }  // whoever calls it has the event
+  bool sync() { return true; }  // every call takes one event
   void cycle(Cycle c) {
     c.spend({std::llround(*time * 1e9)});
     *answered += 1;

@@ -7,7 +7,8 @@ namespace chimera::library {
 namespace {
 
 TEST(Pfwdkin, IsTheFlangeOfThePublishedPoses) {
-  // Of the wrist centre (Corke and Armstrong-Helouvry 1994); the flange is before it along the z axis of the hand.
+  // Place of the wrist centre (Corke and Armstrong-Helouvry 1994). The flange is before it along the z axis of the
+  // hand.
   struct Published {
     Puma560::Vector q;
     Vec3 wrist, z;

@@ -11,31 +11,31 @@ using namespace chimera;
 namespace {
 
 struct Pid {
-  In<double[]> reference{"reference", "U", "[n...<=64]", doc = "What the measured quantity is to be."};
-  In<double[]> measured{"measured", "U", "[n...<=64]", doc = "What it is."};
+  In<double[]> reference{"reference", "U", "[n...<=64]", doc = "Wanted value."};
+  In<double[]> measured{"measured", "U", "[n...<=64]", doc = "Measured value."};
   In<double[]> kp{"kp", "X/U", "[n...<=64]", doc = "Gain of the error."};
   In<double[]> ki{"ki", "X/(U.s)", "[n...<=64]", doc = "Gain of its integral."};
   In<double[]> kd{"kd", "X.s/U", "[n...<=64]", doc = "Gain of its rate of change."};
-  InConst<double[]> low{"low", "X", "[n...<=64]", doc = "Least output that the actuator takes."};
-  InConst<double[]> high{"high", "X", "[n...<=64]", at_least = "low", doc = "Greatest; likewise."};
+  InConst<double[]> low{"low", "X", "[n...<=64]", doc = "Least output."};
+  InConst<double[]> high{"high", "X", "[n...<=64]", at_least = "low", doc = "Greatest output."};
   InConst<double> filter_time{"filter_time", "s", initial = 0.0, range(0, 86400),
                               doc = "Time constant of the filter of both rates; 0 for none."};
   InConst<double> reference_weight{"reference_weight", "1", initial = 1.0, range(0, 1),
-                                   doc = "b: how much of the reference kp sees; below 1 for less overshoot."};
+                                   doc = "b: share of the reference in P; below 1: less overshoot."};
   InConst<double> derivative_weight{"derivative_weight", "1", initial = 0.0, range(0, 1),
-                                    doc = "c: how much of the reference kd sees; 0: a step of it makes no kick."};
+                                    doc = "c: share of the reference in D; 0: no kick at a step."};
   InConst<double[]> deadband{"deadband",
                              "U",
                              "[n...<=64]",
                              initial = 0.0,
                              range(0, library::kNoLimit),
-                             doc = "An error up to this counts as none, a larger one as less by it."};
+                             doc = "An error up to this counts as 0."};
   InConst<double[]> ff{"ff", "X/U", "[n...<=64]", initial = 0.0, doc = "Feed-forward of the reference."};
   InConst<double[]> ff_rate{"ff_rate", "X.s/U", "[n...<=64]", initial = 0.0,
                             doc = "Feed-forward of its rate of change."};
   InConst<bool> holds_off{"holds_off", "1", initial = true,
-                          doc = "Off, the last output stands; false: it becomes 0, or the limit next to it."};
-  Out<double[]> output{"output", "X", "[n...<=64]", initial = 0.0, safety, doc = "To the actuator, low to high."};
+                          doc = "off holds the output; false: it becomes 0, or the limit next to 0."};
+  Out<double[]> output{"output", "X", "[n...<=64]", initial = 0.0, safety, doc = "Output, low to high."};
 
   Outcome init() {
     for (std::size_t i = 0; i < low.size(); ++i)
@@ -50,15 +50,15 @@ struct Pid {
   }
   Outcome reinit() { return init(); }
 
-  // The start itself waits for the first cycle: an input may come from a task that goes on after this one. An output
-  // that is outdated belongs to another state of the plant.
+  // The first cycle starts the loop, because the task of an input may go ON after this one. An outdated output belongs
+  // to another state of the plant.
   void on() {
     is_started_ = false;
     if (output.is_outdated()) rest();
   }
 
   Outcome cycle(Cycle c) {
-    if (c.illegal()) {  // the actuator holds itself, and the error means nothing: do not integrate it
+    if (c.illegal()) {  // the actuator holds itself, so the error must not be integrated
       is_started_ = false;
       return ok();
     }
@@ -85,10 +85,10 @@ struct Pid {
     library::PidAxis axis;
     double last_weighted = 0, last_reference = 0, reference_rate = 0;
   };
-  /// What the control law is made of at one instant.
+  /// Terms of the control law at one instant.
   struct Terms {
     library::PidGains gains;
-    double error, weighted, besides;  // besides: proportional weight and feed-forward of the reference
+    double error, weighted, besides;  // besides: feed-forward and weighted reference
   };
 
   void rest() {
@@ -111,8 +111,8 @@ struct Pid {
             *derivative_weight * r - y,
             (*reference_weight - 1) * p * r + ff.begin()[i] * r};
   }
-  // Bumpless: the integral takes what the other terms lack to the output that stands: that of a predecessor, what was
-  // held while the configuration was illegal, or the initial one.
+  // Bumpless: sets the integral so that the output continues from the last one: that of a predecessor, the one held
+  // while the configuration was illegal, or the initial one.
   void start() {
     for (std::size_t i = 0; i < output.size(); ++i) {
       const Terms now = terms(i);
@@ -134,7 +134,7 @@ struct Pid {
     const double besides = now.besides + ff_rate.begin()[i] * loop.reference_rate;
     const double least = low.begin()[i], most = high.begin()[i];
     const double u = loop.axis.step(now.gains, now.error, rate, dt, *filter_time, least - besides, most - besides);
-    return std::clamp(u + besides, least, most);  // the sum may be rounded across a limit
+    return std::clamp(u + besides, least, most);  // rounding of the sum may cross a limit
   }
 
   Loop loop_[library::kMostElements];

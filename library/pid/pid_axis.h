@@ -7,26 +7,26 @@
 
 namespace chimera::library {
 
-/// Gains of one axis, for an output in X and an error in U; of a joint N.m and rad.
+/// Gains of one axis, for an output in X and an error in U (N.m and rad for a joint).
 struct PidGains {
   double kp = 0;  ///< X/U
   double ki = 0;  ///< X/(U.s)
   double kd = 0;  ///< X.s/U
 };
 
-/// u = kp e + kd F(de) + I, cut at low and high; F is a first-order filter of the error's rate, dI/dt = ki e.
-/// Anti-windup by conditional integration: an e that would drive u across a limit moves I as far as u meets the limit,
-/// and not at all where u is beyond. It needs no tracking gain of its own, and the ki of every axis may be tuned while
-/// it runs. Context: cycle; wait-free.
+/// u = kp e + kd F(de) + I, cut at low and high. F is a first-order filter of the rate of the error, dI/dt = ki e.
+/// Anti-windup by conditional integration: an e that would drive u across a limit moves I only until u meets the limit.
+/// This needs no tracking gain, and ki may change while the axis runs. Context: cycle; wait-free.
 class PidAxis {
  public:
-  /// Starts so that the first output is `output`: the integral takes what the other terms do not give.
+  /// Sets the integral so that the first output is `output`.
   void start(const PidGains& gains, double error, double error_rate, double output) noexcept {
     filtered_ = error_rate;
     integral_ = output - gains.kp * error - gains.kd * error_rate;
   }
 
-  /// The output after `dt` seconds more. `filter_time` (s) is that of F; 0 = no filter. Requires: dt > 0, low <= high.
+  /// Advances by `dt` seconds and returns the output. `filter_time` (s) belongs to F; 0: no filter. Requires: dt > 0,
+  /// low <= high.
   double step(const PidGains& gains, double error, double error_rate, double dt, double filter_time, double low,
               double high) noexcept {
     filtered_ += (error_rate - filtered_) * dt / (filter_time + dt);

@@ -62,7 +62,7 @@ TEST(PidAxis, RemovesASteadyErrorUnderAConstantLoad) {
   EXPECT_NEAR(axis.integral(), 30, 1e-2);
 }
 
-// 1/s2 under PID with all three poles in -a (kp = 3 a2, ki = a3, kd = 3 a on the velocity): the step of the reference
+// 1/s2 under PID with all three poles at -a (kp = 3 a2, ki = a3, kd = 3 a on the velocity). A step of the reference
 // gives q(t) = 1 - exp(-a t) (1 + a t - a2 t2), a load of 1 N.m gives t2/2 exp(-a t). The plant is exact between steps.
 TEST(PidAxis, HasTheStepResponsesOfTheClosedForm) {
   constexpr double a = 20, dt = 1e-5;

@@ -27,7 +27,7 @@ struct PidTest : ::testing::Test {
     rig.set("reference", reference), rig.set("measured", measured);
     return rig.cycle(dt) ? rig.get<double>("output") : std::nan("");
   }
-  /// Controls `plant` (input, step of time; it answers its output) for `seconds` after a step of the reference to 1.
+  /// Controls `plant` (input, time step; returns its output) for `seconds` after a step of the reference to 1.
   void follow(double dt, double seconds, const std::function<double(double, double)>& plant,
               const std::function<double(double)>& closed, double tolerance) {
     double y = 0;
@@ -44,11 +44,11 @@ TEST_F(PidTest, AddsItsThreeTerms) {
   start();
   EXPECT_EQ(step(0, 0), 0);
   EXPECT_DOUBLE_EQ(step(1, 0.25), 2 * 0.75 + 30 * 0.75 * 1e-3 - 0.5 * 0.25 / 1e-3);
-  EXPECT_DOUBLE_EQ(step(1, 0.25), 2 * 0.75 + 2 * 30 * 0.75 * 1e-3);  // the measured value stands: no rate
+  EXPECT_DOUBLE_EQ(step(1, 0.25), 2 * 0.75 + 2 * 30 * 0.75 * 1e-3);  // constant measured value: no rate
 }
 
-// 1/s under PI, both poles in -a (kp = 2 a, ki = a2). The weight of the reference moves the zero of the loop:
-// y(t) = 1 - exp(-a t) (1 - a t) at b = 1, and 1 - exp(-a t) (1 + a t) at b = 0, which does not overshoot.
+// 1/s under PI, both poles at -a (kp = 2 a, ki = a2). The weight of the reference moves the zero of the loop: y(t) = 1
+// - exp(-a t) (1 - a t) at b = 1, and 1 - exp(-a t) (1 + a t) at b = 0, which does not overshoot.
 TEST_F(PidTest, HasTheStepResponseOfTheClosedFormForEachWeightOfTheReference) {
   constexpr double a = 10;
   for (const double b : {1.0, 0.5, 0.0}) {
@@ -64,8 +64,8 @@ TEST_F(PidTest, HasTheStepResponseOfTheClosedFormForEachWeightOfTheReference) {
   }
 }
 
-// 1/s2 with all three poles in -a (kp = 3 a2, ki = a3, kd = 3 a), the plant exact between steps. The numerator of the
-// loop is c 3a s2 + b 3a2 s + a3, and y(t) = 1 - exp(-at) (1 + p at + q a2t2).
+// 1/s2 with all three poles at -a (kp = 3 a2, ki = a3, kd = 3 a); the plant is exact between steps. The numerator of
+// the loop is c 3a s2 + b 3a2 s + a3, and y(t) = 1 - exp(-at) (1 + p at + q a2t2).
 TEST_F(PidTest, HasTheStepResponseOfTheClosedFormForEachWeightOfTheDerivative) {
   constexpr double a = 20;
   constexpr struct { double b, c, p, q; } kWeights[] = {{0, 0, 1, 0.5}, {1, 0, 1, -1}, {1, 1, -2, 0.5}};
@@ -90,19 +90,19 @@ TEST_F(PidTest, HasTheStepResponseOfTheClosedFormForEachWeightOfTheDerivative) {
   }
 }
 
-// A motor at constant speed needs ff * reference, and ff_rate * its slope while it accelerates: then no error is left
-// for the gains (which are 0 here).
+// A motor at constant speed needs ff * reference, and ff_rate * its slope while it accelerates. The error is then 0,
+// and so are the gains here.
 TEST_F(PidTest, FeedsTheReferenceAndItsRateForward) {
   give(0, 0, 0);
   rig.set("ff", 0.5), rig.set("ff_rate", 0.25);
   start();
-  EXPECT_EQ(step(2, 0), 0);  // bumpless: the first output is the one that stands
+  EXPECT_EQ(step(2, 0), 0);  // bumpless: the first output is the last one
   EXPECT_DOUBLE_EQ(step(3, 0), 0.5 * (3 - 2) + 0.25 * 1000);
   EXPECT_DOUBLE_EQ(step(3, 0), 0.5 * (3 - 2));
 }
 
 TEST_F(PidTest, FiltersBothRatesWithOneTimeConstant) {
-  constexpr double kFilter = 9e-3;  // a tenth of what is left goes in every millisecond
+  constexpr double kFilter = 9e-3;  // a tenth of the rest decays in every millisecond
   give(0, 0, 2);
   rig.set("filter_time", kFilter), rig.set("ff_rate", 5.0);
   start();
@@ -120,13 +120,13 @@ TEST_F(PidTest, IsCutAndDoesNotWindUp) {
   start();
   for (int k = 0; k < 10000; ++k) step(3, 0);
   EXPECT_EQ(rig.get<double>("output"), 5);
-  EXPECT_LT(step(3, 3.5), 5);  // comes off its limit with the first error of the other sign
+  EXPECT_LT(step(3, 3.5), 5);  // leaves its limit with the first error of the other sign
   for (int k = 0; k < 10000; ++k) step(-3, 0);
   EXPECT_EQ(rig.get<double>("output"), -2);
   EXPECT_GT(step(-3, -3.5), -2);
 }
 
-// With feed-forward the integral may use only what that leaves of the limits.
+// The integral may use only the part of the limits that the feed-forward leaves.
 TEST_F(PidTest, CountsTheFeedForwardWhenItJudgesTheLimit) {
   give(0, 100, 0);
   rig.set("high", 5.0), rig.set("ff", 10.0);

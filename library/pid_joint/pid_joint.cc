@@ -23,7 +23,7 @@ struct PidJoint {
                     doc = "Torque for each joint, within tau_max."};
   InConst<std::int32_t> ndof{"ndof", "1", range(1, 10), doc = "Joints."};
   InConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", range(0, 200), frame = "joint",
-                            doc = "What the drives can give."};
+                            doc = "Largest torque of the drives."};
   InConst<double> filter_time{"filter_time", "s", initial = 2e-3, range(0, 1),
                               doc = "Time constant of the velocity filter; 0 for none."};
 
@@ -35,19 +35,19 @@ struct PidJoint {
   }
   Outcome reinit() { return init(); }
 
-  // Bumpless: goes on from the torque that is handed over. An older one belongs to another state of the arm.
+  // Bumpless: continues from the torque that is handed over. An outdated torque belongs to another state of the arm.
   void on() {
     for (double& torque : tau)
       if (tau.is_outdated()) torque = 0;
     begin();
   }
-  // Goes on from the torque that stands.
+  // Continues from the last torque.
   void begin() {
     for (std::size_t i = 0; i < tau.size(); ++i)
       axis_[i].start(gains(i), q_ref[i] - q[i], qd_ref[i] - qd[i], std::isnan(tau[i]) ? 0 : tau[i]);
   }
   Outcome cycle(Cycle c) {
-    // While the configuration is illegal the robot holds itself and the errors mean nothing: do not integrate them.
+    // While the configuration is illegal, the robot holds itself, so the errors must not be integrated.
     if (c.illegal()) {
       begin();
       return ok();
@@ -60,8 +60,8 @@ struct PidJoint {
     }
     return ok();
   }
-  // No off(): the last torque stands, for a successor to go on from. Who stops needs no zero from here, because a
-  // robot without a controller is an illegal configuration, in which it holds itself.
+  // There is no off(): the last torque holds for a successor. A robot without a controller is an illegal configuration,
+  // in which the robot holds itself, so stopping needs no zero here.
 
  private:
   library::PidGains gains(std::size_t i) const { return {kp[i], ki[i], kd[i]}; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Inverse kinematics of the Puma 560 in closed form: of eight solutions the nearest.
+// Inverse kinematics of the Puma 560 in closed form: the nearest of eight solutions.
 #include "library/kinematics/dh_ports.h"
 #include "library/kinematics/puma560.h"
 #include "library/signals/input.h"
@@ -10,12 +10,12 @@ namespace {
 
 struct Pinvkin {
   In<Pose> xr{"xr", frame = "base", doc = "Reference tool pose: the flange."};
-  In<double[6]> q{"q", "rad", frame = "joint",
-                 doc = "Measured joint positions: which solution is near at on, unless q_ref is handed over."};
+  In<double[6]> q{"q", "rad", frame = "joint", doc = "Measured joint positions."};
   Out<double[6]> q_ref{"q_ref", "rad", initial = 0.0, frame = "joint", doc = "Joint positions for xr."};
-  Out<bool> is_reachable{"is_reachable", "1", initial = true, doc = "False: xr is out of reach, q_ref stands."};
+  Out<bool> is_reachable{"is_reachable", "1", initial = true, doc = "False: xr is out of reach."};
 
-  // Bumpless: a command that is handed over goes on; the drives are still behind it. Else the arm is where it is.
+  // Bumpless: continues from a command that is handed over, because the drives lag behind it; else starts at the
+  // measured positions.
   Outcome on() {
     const bool goes_on = q_ref.is_handed_over() && library::all_finite(q_ref);
     for (std::size_t i = 0; !goes_on && i < 6; ++i) {

@@ -67,7 +67,7 @@ TEST_F(PinvkinTest, WhatIsOutOfReachOrBeyondTheLimitsLeavesTheReferenceAndIsSaid
 }
 
 TEST_F(PinvkinTest, ComesThroughTheSingularPosesOfThePuma) {
-  const double elbow = -std::atan2(Puma560::d4, Puma560::a3);  // stretched: the edge of what it reaches
+  const double elbow = -std::atan2(Puma560::d4, Puma560::a3);  // stretched arm, at the limit of its reach
   for (const Puma560::Vector& q : {Puma560::Vector{0.3, 0.8, -2.5, 0.4, 0, -0.2}, {0.3, 0.8, elbow, 0.4, 0.8, -0.2},
                                    {0.3, 0.8, elbow, 0.4, 0, -0.2}, {0, 0, 0, 0, 0, 0}}) {
     rig.give("q", q);

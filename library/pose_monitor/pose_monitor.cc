@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Judges how a tool follows a target that moves, so that an application can be judged by values in the table.
+// Judges how a tool follows a moving target, in variables that `--expect` compares.
 #include <algorithm>
 #include <cmath>
 
@@ -13,13 +13,13 @@ namespace {
 struct PoseMonitor {
   In<Pose> target{"target", frame = "base", doc = "Where the tool should be."};
   In<Pose> xm{"xm", frame = "base", doc = "Where the tool is."};
-  Out<double> distance{"distance", "m", initial = 0.0, doc = "Between the two, now."};
-  Out<double> angle{"angle", "rad", initial = 0.0, doc = "Of the turn between the two, now."};
-  Out<double> max_distance{"max_distance", "m", initial = 1e9, doc = "The most since settled; 1e9 before."};
-  Out<double> max_angle{"max_angle", "rad", initial = 1e9, doc = "The most since settled; 1e9 before."};
-  Out<double> target_moved{"target_moved", "m", initial = 0.0, doc = "Path of the target since settled."};
+  Out<double> distance{"distance", "m", initial = 0.0, doc = "Distance now."};
+  Out<double> angle{"angle", "rad", initial = 0.0, doc = "Angle between the orientations now."};
+  Out<double> max_distance{"max_distance", "m", initial = 1e9, doc = "Largest after settle; 1e9 before."};
+  Out<double> max_angle{"max_angle", "rad", initial = 1e9, doc = "Largest after settle; 1e9 before."};
+  Out<double> target_moved{"target_moved", "m", initial = 0.0, doc = "Path of the target after settle."};
   Out<double> tool_moved{"tool_moved", "m", initial = 0.0, doc = "Path of the tool since on."};
-  InConst<double> settle{"settle", "s", initial = 1.0, range(0, 3600), doc = "Time to come near, not judged."};
+  InConst<double> settle{"settle", "s", initial = 1.0, range(0, 3600), doc = "Time at the start that does not count."};
 
   void on() {
     elapsed_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Input element of the cruise control (2000 paper, figure 15): the wheel position resolver.
+// The wheel position resolver of the cruise control (2000 paper, figure 15).
 #include <cmath>
 #include <numbers>
 
@@ -11,9 +11,9 @@ namespace {
 
 struct Position {
   In<double> xw{"xw", "rad", doc = "Angle of the wheel since on."};
-  Out<double> xz{"xz", "m", doc = "Way of the car since on, in whole counts of the resolver."};
-  InConst<double> wheel_radius{"wheel_radius", "m", initial = 0.3, range(0.1, 1), doc = "Of the tyre under load."};
-  InConst<std::int32_t> counts{"counts", "1", initial = 65536, range(1, 1e9), doc = "Of the resolver in one turn."};
+  Out<double> xz{"xz", "m", doc = "Way of the car since on, in whole counts."};
+  InConst<double> wheel_radius{"wheel_radius", "m", initial = 0.3, range(0.1, 1), doc = "Tyre under load."};
+  InConst<std::int32_t> counts{"counts", "1", initial = 65536, range(1, 1e9), doc = "Counts in one turn."};
 
   Outcome init() {
     if (*counts < 1 || !(*wheel_radius > 0)) return fault("counts and wheel_radius must be above 0");

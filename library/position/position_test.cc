@@ -15,10 +15,10 @@ TEST(Position, IsTheWayInWholeCounts) {
   rig.set("counts", std::int32_t{4});
   rig.set("wheel_radius", 0.5);
   ASSERT_TRUE(rig.init());
-  rig.set("xw", 0.6 * std::numbers::pi);  // one quarter turn and a bit
+  rig.set("xw", 0.6 * std::numbers::pi);  // more than a quarter turn
   ASSERT_TRUE(rig.on());
   EXPECT_DOUBLE_EQ(rig.get<double>("xz"), 0.5 * std::numbers::pi * 0.5);
-  rig.set("xw", -0.1);  // backwards: the count below
+  rig.set("xw", -0.1);  // backwards: the next lower count
   ASSERT_TRUE(rig.cycle());
   EXPECT_DOUBLE_EQ(rig.get<double>("xz"), -0.5 * std::numbers::pi * 0.5);
 }

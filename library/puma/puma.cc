@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Puma 560 in position mode (2000 paper, figure 3), simulated; the arm is that of library/puma_torque.
+// The simulated Puma 560 in position mode (2000 paper, figure 3). The arm is that of library/puma_torque.
 #include <algorithm>
 
 #include "library/kinematics/puma560.h"
@@ -10,13 +10,12 @@ using namespace chimera;
 namespace {
 
 struct Puma : library::PumaBody {
-  In<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", frame = "joint", doc = "Position that the drives go to."};
+  In<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", frame = "joint", doc = "Wanted position."};
   InConst<double[]> start_pose{"start_pose", "rad", "[ndof<=10]", initial = 0.0, frame = "joint",
                                doc = "Where the arm stands at init, within the joint limits."};
   InConst<double> bandwidth{"bandwidth", "rad/s", initial = 100.0, range(1, 200),
-                            doc = "Angular frequency at which an error of a joint decays."};
-  InConst<double> speed_limit{"speed_limit", "rad/s", initial = 1.5, range(0.01, 10),
-                              doc = "The fastest that the drives move a joint."};
+                            doc = "Angular frequency at which a joint error decays."};
+  InConst<double> speed_limit{"speed_limit", "rad/s", initial = 1.5, range(0.01, 10), doc = "Largest joint speed."};
   InConst<double> payload_mass{"payload_mass", "kg", initial = 0.0, range(0, 10), doc = "Bolted to the flange."};
   OutConst<std::int32_t> ndof{"ndof", "1", doc = "Joints: 6."};
   OutConst<library::DhLink[]> dh{"dh", "1", "[ndof<=10]", doc = "Denavit-Hartenberg rows, base to flange."};
@@ -27,7 +26,7 @@ struct Puma : library::PumaBody {
     load();
     check(arm_.place(Joints(start_pose.begin(), 6)));
   }
-  // Another payload or other drives, at rest in the same place.
+  // Changes payload or drives and keeps the place, at rest.
   void reinit() {
     restart([this] { load(); });
   }

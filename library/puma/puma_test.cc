@@ -32,7 +32,7 @@ TEST_F(PumaTest, TellsItsRows) {
   EXPECT_EQ(rig.get<library::DhLink>("dh", 5).d, .05625);
 }
 
-// A simulated arm in the place of another: where that one is and as fast, not in its own start pose.
+// An arm that replaces another starts at the place and speed of that arm, not in its start pose.
 TEST_F(PumaTest, GoesOnWhereThatOneIsWhosePlaceItTakes) {
   start();
   const auto inherit = [&](Nanoseconds age, double elbow) {

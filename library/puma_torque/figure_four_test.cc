@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 1994 paper's figure 4 at 1 kHz on the plain classes: the gains of examples/01_puma_pid are tuned here.
+// Runs figure 4 of the 1994 paper at 1 kHz on the plain classes. The gains of examples/01_puma_pid were tuned here.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,9 +21,9 @@ constexpr PumaVector kKi{5000, 12000, 4000, 800, 800, 800};
 constexpr PumaVector kKd{150, 250, 60, 12, 12, 12};
 
 struct Figures {
-  PumaVector furthest{};  ///< rad from the reference, ever
-  PumaVector last{};      ///< rad from the goal at the end
-  PumaVector moved{};     ///< rad from the start at 2 s
+  PumaVector furthest{};  ///< rad, largest error
+  PumaVector last{};      ///< rad, from the goal at the end
+  PumaVector moved{};     ///< rad, from the start at 2 s
   PumaVector peak{};      ///< N.m
 };
 

@@ -14,7 +14,7 @@
 namespace chimera::library {
 namespace {
 
-// Damping of the drives while the configuration is illegal (N.m.s/rad): 20/s times each joint's inertia or so.
+// Damping of the drives while the configuration is illegal (N.m.s/rad): about 20/s times the inertia of each joint.
 constexpr PumaVector kHoldDamping{80, 80, 20, 4, 4, 4};
 constexpr double kPayloadRadius = 0.05;
 
@@ -25,7 +25,7 @@ struct FilesRelease {
   }
 };
 
-// A component runs from a sealed copy of its object: it cannot know what lies beside the file it came from.
+// A component runs from a sealed copy of its object, so it cannot find files beside the original.
 std::unique_ptr<mjVFS, FilesRelease> built_in_files() {
   std::unique_ptr<mjVFS, FilesRelease> files(new mjVFS);
   mj_defaultVFS(files.get());

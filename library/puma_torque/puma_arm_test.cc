@@ -21,7 +21,7 @@ namespace {
 constexpr PumaVector kQz{};
 constexpr PumaVector kQr{0, math::kPi / 2, -math::kPi / 2, 0, 0, 0};
 constexpr PumaVector kQs{0, 0, -math::kPi / 2, 0, 0, 0};
-// The published nominal pose has joint 3 at +180 degrees; -180 is the same place within the limits.
+// In the published nominal pose joint 3 is at +180 degrees; -180 is the same place within the limits.
 constexpr PumaVector kQn{0, math::kPi / 4, -math::kPi, 0, math::kPi / 4, 0};
 
 const char* model_path() { return kPumaModel; }
@@ -76,7 +76,7 @@ TEST_F(PumaArmTest, HasThePublishedMassMatrix) {
 TEST_F(PumaArmTest, PayloadAddsItsWeightAtTheFlange) {
   load({.payload_mass = 2});
   ASSERT_TRUE(arm.place(kQs));
-  // Stretched out level: the wrist is 0.8636 m out and the flange points on outwards.
+  // Arm stretched horizontally: the wrist is 0.8636 m out, and the flange points outwards.
   EXPECT_NEAR(bias_torque(arm)[1], 46.0069 + 2 * 9.81 * (.8636 + .05625), 1e-3);
   EXPECT_NEAR(bias_torque(arm)[4], (2 * .05625 + .09 * .032) * 9.81, 1e-6);
   PumaVector upright = kQs;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the two interfaces of the simulated Puma 560 have in common: everything but the command and what they tell.
+// Common part of the two interfaces of the simulated Puma 560: everything except command and constants.
 #pragma once
 
 #include "library/mujoco/arm_body.h"
@@ -9,7 +9,7 @@ namespace chimera::library {
 
 struct PumaBody : ArmBody<PumaArm> {
  protected:
-  /// For reinit: what `load` reads, at rest in the same place.
+  /// For reinit: loads the arm again and keeps the place, at rest.
   template <class Load>
   void restart(Load load) {
     PumaVector here;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The torque-mode robot interface of figure 4 (1994 paper), with a simulated Puma 560 behind it.
+// The torque-mode robot interface of figure 4 (1994 paper), with a simulated Puma 560.
 #include <algorithm>
 
 #include "library/puma_torque/puma_body.h"
@@ -20,18 +20,17 @@ struct PumaTorque : library::PumaBody {
   OutConst<Pose> base{"base", "1", frame = "base", doc = "Frame 0."};
   OutConst<Pose> tool{"tool", "1", frame = "last", doc = "The flange in frame ndof."};
   OutConst<library::LinkMass[]> links{"links", "1", "[ndof<=10]",
-                                      doc = "Mass and drive, a link a joint, base to tip; without payload."};
+                                      doc = "Mass and drive of each link, base to tip, without payload."};
   OutConst<double[]> q_min{"q_min", "rad", "[ndof<=10]", frame = "joint", doc = "Lower joint limits."};
   OutConst<double[]> q_max{"q_max", "rad", "[ndof<=10]", frame = "joint", doc = "Upper joint limits."};
-  OutConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", frame = "joint",
-                             doc = "What the drives can give, either way; more is cut."};
+  OutConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", frame = "joint", doc = "Largest torque of the drives."};
   Resource model{"model", shared, doc = "MJCF file; puma560.xml without a directory is built in."};
 
   void init() {
     load();
     check(arm_.place(PumaInput(start_pose.begin(), library::kPumaJoints)));
   }
-  // Another payload, at rest in the same place.
+  // Changes the payload and keeps the place, at rest.
   void reinit() {
     restart([this] { load(); });
   }

@@ -38,8 +38,9 @@ TEST_F(PumaTorqueTest, TellsItsJointsAndLimitsAtInit) {
   EXPECT_EQ(rig.get<double>("tau_max", 5), 21.3);
 }
 
-// Pushed against its limits at full torque, the arm passes them by up to 0.29 rad. When a cycle fails there, its
-// out-vars stand as of the cycle before, with a speed, while the arm has braked: they are no other arm that moves on.
+// An arm that is pushed against its limits at full torque passes them by up to 0.29 rad. If a cycle fails there, the
+// out-vars hold the state before that cycle, with a speed, while the arm has braked. They must not count as another arm
+// in motion.
 TEST_F(PumaTorqueTest, ComesBackFromAnErrorWhereItStands) {
   start();
   std::array<double, 6> q{}, qd{};
@@ -61,7 +62,7 @@ TEST_F(PumaTorqueTest, ComesBackFromAnErrorWhereItStands) {
   ASSERT_FALSE(rig.cycle(milliseconds(1)));
   (void)rig.error();
   ASSERT_TRUE(rig.clear());
-  for (std::size_t i = 0; i < 6; ++i) rig.set("q", q[i], i);  // what the failed cycle wrote was not published
+  for (std::size_t i = 0; i < 6; ++i) rig.set("q", q[i], i);  // the failed cycle published nothing
   for (std::size_t i = 0; i < 6; ++i) rig.set("qd", qd[i], i);
   for (const char* port : {"q", "qd"}) rig.inherit(port, milliseconds(2));
   const RigAnswer on = rig.on();
@@ -85,7 +86,7 @@ TEST_F(PumaTorqueTest, TellsHowItIsBuiltAndWhatItWeighsWithoutPayload) {
     EXPECT_NEAR(link.rotor, published.rotor, 1e-12);
     EXPECT_NEAR(link.friction, published.friction, 1e-12);
     EXPECT_NEAR(link.inertia[1], published.inertia[1], 1e-12);
-    if (i == 0) continue;  // of link 1 no more is published, and no more has an effect
+    if (i == 0) continue;  // of link 1 only one inertia is published, and only that has an effect
     EXPECT_NEAR(link.mass, published.mass, 1e-12);
     for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(link.centre[c], published.centre[c], 1e-12);
     for (std::size_t e = 0; e < 6; ++e) EXPECT_NEAR(link.inertia[e], published.inertia[e], 1e-12) << i << " " << e;

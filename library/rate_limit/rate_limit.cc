@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Follows a signal no faster than allowed. README.md is the data sheet.
+// Limits the rate of a signal. README.md is the data sheet.
 #include <algorithm>
 
 #include "chimera/task/component.h"
@@ -13,7 +13,7 @@ struct RateLimit {
                          doc = "How fast y may grow; above 0."};
   InConst<double[]> fall{"fall", "U/s", "[n...<=64]", range(0, library::kNoLimit),
                          doc = "How fast y may fall; above 0."};
-  Out<double[]>     y{"y", "U", "[n...<=64]", doc = "x, as near as the rates allow."};
+  Out<double[]>     y{"y", "U", "[n...<=64]", doc = "x, limited in rate."};
 
   Outcome init() {
     for (std::size_t i = 0; i < rise.size(); ++i)
@@ -21,7 +21,7 @@ struct RateLimit {
     return ok();
   }
   Outcome reinit() { return init(); }
-  // What stands, of an earlier run or a predecessor, is where y goes on: no jump.
+  // Continues from the last output, of an earlier run or a predecessor, without a jump.
   void on() {
     if (!library::all_finite(y) && library::all_finite(x)) std::copy(x.begin(), x.end(), y.begin());
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rings the doorbell of a task behind a server, now and then, several times at once: events, and storms of them.
+// Rings the doorbell of a task behind a server, alone or in bursts.
 #include "chimera/task/component.h"
 
 using namespace chimera;

@@ -35,7 +35,7 @@ const char* judge(const RmmsModule& m) {
   return nullptr;
 }
 
-/// Nullptr, or what is wrong with the line.
+/// Returns nullptr, or the error of the line.
 const char* read_module(const std::string& line, RmmsModule& m) {
   std::istringstream words(line);
   double alpha = 0, theta = 0, low = 0, high = 0;
@@ -51,7 +51,7 @@ const char* read_module(const std::string& line, RmmsModule& m) {
   return judge(m);
 }
 
-/// As many digits as a double has.
+/// Writes all digits of a double.
 std::string digits(double x) {
   char text[32];
   std::snprintf(text, sizeof text, "%.17g", x);
@@ -60,7 +60,7 @@ std::string digits(double x) {
 
 std::string three(double x, double y, double z) { return digits(x) + ' ' + digits(y) + ' ' + digits(z); }
 
-/// Where the next body stands in the one that turns with `before`: after Tz(d) Tx(a) Rx(alpha), turned by theta.
+/// Place of the next body in the body that turns with `before`: after Tz(d) Tx(a) Rx(alpha), turned by theta.
 std::string place(const DhLink& before, double theta) {
   const double ca = std::cos(before.alpha / 2), sa = std::sin(before.alpha / 2);
   const double ct = std::cos(theta / 2), st = std::sin(theta / 2);

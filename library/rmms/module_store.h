@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the modules of a reconfigurable arm say of themselves when it is switched on: a text file stands for their
-// EPROMs. One line a joint module with the link after it, base to tip; `#` begins a remark:
+// Reads the modules of a reconfigurable arm from a text file, in place of their EPROMs. One line for each joint module
+// and the link after it, base to tip; `#` begins a comment:
 //
 //   # module     a m   alpha deg   d m   theta deg   mass kg   low deg   high deg   torque N.m
 //   rotate-1     0     90          0.35  0           9.0       -170      170        270
@@ -20,7 +20,7 @@ struct RmmsModule {
   DhLink link{};
   double mass = 0;           ///< kg, spread along the link
   double low = 0, high = 0;  ///< rad
-  double torque = 0;         ///< N.m, either way
+  double torque = 0;         ///< N.m, in both directions
 };
 
 /// The modules of an arm, base to tip.
@@ -28,12 +28,11 @@ struct ModuleStore {
   std::array<RmmsModule, kMostJoints> modules;
   std::size_t count = 0;
 
-  /// Reads a store. Refuses, with the number of the line: a file that cannot be read, a line that is not a name and
-  /// eight finite numbers, a mass or torque that is not positive, limits that are not in order, a module without
-  /// extent or such as nobody builds, no module, more than kMostJoints, a line or a file that is too long.
-  /// Context: setup; may block.
+  /// Reads a store. Refuses, with the line number: a file that cannot be read, a line without a name and eight finite
+  /// numbers, a mass or torque that is not positive, limits out of order, a module without length or with excessive
+  /// numbers, no module, more than kMostJoints, a line or a file that is too long. Context: setup; may block.
   static Result<ModuleStore> read(const std::string& path);
-  /// The same arm as MJCF, its tip a site `tip`.
+  /// The arm as MJCF, with a site `tip`.
   std::string mjcf() const;
 };
 

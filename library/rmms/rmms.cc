@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Interface to the Reconfigurable Modular Manipulator System, simulated: what is plugged together is what it tells.
+// The simulated Reconfigurable Modular Manipulator System: provides the constants of its modules.
 #include <mujoco/mujoco.h>
 
 #include <cstring>
@@ -13,13 +13,11 @@ using namespace chimera;
 namespace {
 
 struct Rmms : library::RobotBody {
-  In<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", frame = "joint",
-                     doc = "Position that the drives go to; cut at the joint limits."};
+  In<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", frame = "joint", doc = "Wanted position; cut at the joint limits."};
   InConst<double> bandwidth{"bandwidth", "rad/s", initial = 100.0, range(1, 200),
-                            doc = "Angular frequency at which an error of a joint decays."};
-  InConst<double> speed_limit{"speed_limit", "rad/s", initial = 1.5, range(0.01, 10),
-                              doc = "The fastest that the drives move a joint."};
-  Resource store{"store", shared, doc = "Module store: the file that stands for the EPROMs in the arm."};
+                            doc = "Angular frequency at which a joint error decays."};
+  InConst<double> speed_limit{"speed_limit", "rad/s", initial = 1.5, range(0.01, 10), doc = "Largest joint speed."};
+  Resource store{"store", shared, doc = "Module store: a text file."};
 
   void init() {
     set_drives();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pedals of the cruise control (2000 paper, figure 15): the driver's foot is a script.
+// The pedals of the cruise control (2000 paper, figure 15), moved by a script.
 #pragma once
 
 #include "chimera/task/component.h"
@@ -7,12 +7,12 @@
 
 namespace chimera::library {
 
-/// All there is to a pedal but its name; the out-var is called `output`. At full travel it asks for `full` newtons.
+/// A pedal with the out-var `output`. At full travel it asks for `full` newtons.
 struct Pedal {
   Out<double> force;
   InConst<double> full_force;
   Resource pedal{"pedal", safe_state, shared,
-                 doc = "Script of seconds:travel, 0 to 1, straight lines between; \"0:0\" is never touched."};
+                 doc = "Script of seconds:travel, 0 to 1, straight lines between; \"0:0\": never pressed."};
 
   Outcome init() {
     if (const char* wrong = travel_.read(pedal.text(), 0, 1, "the travel of a pedal is 0 to 1")) return fault(wrong);

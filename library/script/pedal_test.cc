@@ -28,7 +28,7 @@ TEST_P(PedalTest, FollowsItsScriptAndLetsGoWhenOff) {
   EXPECT_DOUBLE_EQ(rig.get<double>(GetParam().output), 0.5 * GetParam().full);
   ASSERT_TRUE(rig.off());
   EXPECT_EQ(rig.get<double>(GetParam().output), 0);
-  ASSERT_TRUE(rig.on());  // the script begins anew
+  ASSERT_TRUE(rig.on());  // restarts the script
   EXPECT_EQ(rig.get<double>(GetParam().output), 0);
 }
 

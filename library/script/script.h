@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happens when, as one line of text: "0:0 5:0.4 8:0" is 0 from 0 on, 0.4 from 5 on, 0 again from 8 on. It stands
-// for the driver's foot, a button or a road where a simulated world has to be told.
+// A function of time or distance in one line of text: "0:0 5:0.4 8:0" is 0 from 0, 0.4 from 5, 0 from 8. It replaces a
+// foot, a button or a road in a simulation.
 #pragma once
 
 #include <charconv>
@@ -17,15 +17,15 @@ class Script {
  public:
   static constexpr std::size_t kMostPoints = 32;
 
-  /// Reads "at:value at:value ...", at most 32 points, arguments rising, all numbers finite.
-  /// Nullptr, or what is wrong; the script is then empty. Context: setup.
+  /// Reads "at:value at:value ...", at most 32 points, arguments rising, all numbers finite. Returns nullptr, or the
+  /// error; the script is then empty. Context: setup.
   const char* read(std::string_view text) noexcept {
     points_.clear();
     const char* wrong = read_points(text);
     if (wrong != nullptr) points_.clear();
     return wrong;
   }
-  /// The same; `outside` is what is wrong when a value is not from `low` to `high`.
+  /// Reads a script. Returns `outside` if a value is not within `low` to `high`.
   const char* read(std::string_view text, double low, double high, const char* outside) noexcept {
     if (const char* wrong = read(text)) return wrong;
     for (const Point& point : points_)
@@ -36,13 +36,13 @@ class Script {
     return nullptr;
   }
 
-  /// The value of the last point at or before `at`. 0 without points. Context: cycle; wait-free.
+  /// Value of the last point at or before `at`. 0 without points. Context: cycle; wait-free.
   double step(double at) const noexcept {
     const std::size_t n = passed(at);
     return points_.empty() ? 0 : points_[n == 0 ? 0 : n - 1].value;
   }
 
-  /// The value on the straight line between the points around `at`. 0 without points. Context: cycle; wait-free.
+  /// Value on the straight line between the points around `at`. 0 without points. Context: cycle; wait-free.
   double line(double at) const noexcept {
     const std::size_t n = passed(at);
     if (n == 0 || n == points_.size()) return step(at);

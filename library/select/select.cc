@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hands on the input that a number names. README.md is the data sheet.
+// Passes on the input with a given number. README.md is the data sheet.
 #include <algorithm>
 #include <cstdio>
 
@@ -9,9 +9,9 @@
 using namespace chimera;
 
 struct Select {
-  Many<In<double[]>> in{"in*", "U", "[n...<=64]", doc = "What there is to choose from."};
-  In<std::int32_t>   which{"which", "1", range(0, 15), doc = "The number of the input that counts, from 0."};
-  Out<double[]>      out{"out", "U", "[n...<=64]", doc = "The values of that input."};
+  Many<In<double[]>> in{"in*", "U", "[n...<=64]", doc = "Inputs to choose from."};
+  In<std::int32_t>   which{"which", "1", range(0, 15), doc = "Number of the selected input, from 0."};
+  Out<double[]>      out{"out", "U", "[n...<=64]", doc = "Values of the selected input."};
 
   Outcome init() const {
     return in.size() > 0 ? ok() : fault("there is nothing to choose from: name at least one input");
@@ -36,7 +36,7 @@ struct Select {
  private:
   bool is_named() const { return *which >= 0 && static_cast<std::size_t>(*which) < in.size(); }
   std::size_t number() const { return static_cast<std::size_t>(*which); }
-  // Without formatting: it is asked for in every cycle.
+  // Avoids formatted output, because every cycle calls it.
   const char* name_of(char* name) const {
     char* at = std::copy_n("in[", 3, name);
     if (*which >= 10) *at++ = '1';
@@ -46,4 +46,4 @@ struct Select {
   }
   void hand_on() { std::copy(in[number()].begin(), in[number()].end(), out.begin()); }
 };
-CHIMERA_COMPONENT(Select, "select", "Hands on the input that a number names.");
+CHIMERA_COMPONENT(Select, "select", "Passes on the input with a given number.");

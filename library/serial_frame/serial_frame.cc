@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device on a serial line that takes a command and answers with its state, frame by frame. README.md is the data
-// sheet.
+// Exchanges frames with a device on a serial line. README.md is the data sheet.
 #include "library/frame/frame_device.h"
 #include "library/serial_frame/serial_port.h"
 
@@ -11,7 +10,7 @@ namespace {
 
 struct SerialFrame : FrameDevice {
   InConst<std::int32_t> baud{"baud", "1", initial = 115200, range(9600, 2000000), doc = "Bits a second, 8N1."};
-  Out<std::int64_t> noise{"noise", "1", initial = 0, doc = "Bytes that belonged to no frame."};
+  Out<std::int64_t> noise{"noise", "1", initial = 0, doc = "Bytes outside frames."};
   Resource device{"device", doc = "Serial device, such as /dev/ttyUSB0."};
 
   void init(Cycle c) {
@@ -34,7 +33,7 @@ struct SerialFrame : FrameDevice {
     tell_idled(c, is_open && is_idle_frame_ && sent_ == filled_);
     return ok();
   }
-  // What is left of a cut frame goes first: the device must understand the idle one.
+  // Sends the rest of a cut frame first, so that the device understands the idle frame.
   void off() {
     std::memmove(out_.data(), out_.data() + sent_, filled_ - sent_);
     filled_ -= std::exchange(sent_, 0);
@@ -57,7 +56,8 @@ struct SerialFrame : FrameDevice {
     port_.open(device.c_str(), *baud);
     c.safe_frame(0, port_.descriptor());
   }
-  // A frame that the end of this process cuts is filled up by what begins none: the device understands the idle one.
+  // Bytes that begin no frame complete a frame that the death of the process cuts, so that the device understands the
+  // idle frame after them.
   void put_safe_frame(Cycle c) {
     std::uint8_t bytes[2 * kLongestFrame] = {};
     std::uint8_t* const frame = bytes + kLongestFrame;
@@ -75,7 +75,7 @@ struct SerialFrame : FrameDevice {
   }
   bool send(bool is_idle) {
     if (sent_ < filled_) *unsent += 1;
-    // A frame that was begun is ended; one that found no room at all gives way to a newer one.
+    // Completes a frame that was partly sent. A frame of which nothing was sent is replaced by the new one.
     if (sent_ == 0 || sent_ == filled_) {
       const std::size_t payload = put_command(out_.data(), is_idle);
       if (payload == 0) return true;
@@ -92,7 +92,7 @@ struct SerialFrame : FrameDevice {
   FrameReader reader_;
   std::array<std::uint8_t, 2 * kLongestFrame> out_{};
   std::size_t sent_ = 0, filled_ = 0;
-  bool is_idle_frame_ = false;  // what lies in out_
+  bool is_idle_frame_ = false;  // the frame in out_
 };
 
 CHIMERA_COMPONENT(SerialFrame, "serial_frame", "Exchanges framed values with a device on a serial line.", rate = 100.0);

@@ -25,7 +25,7 @@ struct SerialFrameTest : ::testing::Test {
   Rig rig{"serial_frame"};
   std::string path;
   int device = -1;  // the other end
-  int line = -1;    // a second look at the component's end
+  int line = -1;    // another descriptor of the component's end
 
   SerialFrameTest() { plug(); }
   ~SerialFrameTest() override { unplug(); }
@@ -50,7 +50,7 @@ struct SerialFrameTest : ::testing::Test {
     ASSERT_TRUE(made) << made.text;
     ASSERT_TRUE(rig.on());
   }
-  /// Until the bytes lie at the component's end: the kernel takes its time.
+  /// Waits until the bytes have arrived at the component's end, because the kernel delays them.
   void say(const Bytes& bytes) {
     int before = 0, there = 0;
     ASSERT_EQ(::ioctl(line, FIONREAD, &before), 0);
@@ -66,7 +66,7 @@ struct SerialFrameTest : ::testing::Test {
     close_frame(made.data(), values.size() * 4);
     return made;
   }
-  /// What the device hears: `size` bytes, waited for; without a size whatever comes within 20 ms.
+  /// Bytes that the device received: waits for `size` bytes, or 20 ms without a size.
   Bytes heard(std::size_t size = 0) {
     Bytes bytes;
     pollfd ready{device, POLLIN, 0};
@@ -114,12 +114,12 @@ TEST_F(SerialFrameTest, NoiseCutFramesAndWrongChecksumsAreCountedAndPassedOver) 
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(count("received"), 1);
   EXPECT_EQ(count("wrong"), 1);
-  EXPECT_EQ(count("noise"), 4 + 11);  // and what was behind the start of the wrong one
+  EXPECT_EQ(count("noise"), 4 + 11);  // and the bytes after the start of the wrong frame
   EXPECT_EQ(state(1), 2);
   say(frame({std::nan(""), 5}));
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(count("wrong"), 2);
-  EXPECT_EQ(state(1), 2);  // nothing of a frame that is not finite
+  EXPECT_EQ(state(1), 2);  // no value of a frame that is not finite
 }
 
 TEST_F(SerialFrameTest, WhatIsNotFiniteIsNeverSentAndTheRestIsHeldWithinTheLimit) {
@@ -180,7 +180,7 @@ TEST_F(SerialFrameTest, TheSafeFrameIsIdleBehindWhatEndsACutFrame) {
   FrameReader reader;
   reader.reset(4);
   const Bytes cut = frame({7});
-  std::size_t size = 3;  // of the frame that was being sent
+  std::size_t size = 3;  // size of the frame being sent
   std::memcpy(reader.room().data(), cut.data(), size);
   std::memcpy(reader.room().data() + size, bytes.data(), bytes.size());
   reader.taken(size + bytes.size());
@@ -198,7 +198,7 @@ TEST_F(SerialFrameTest, TheSafeFrameIsIdleBehindWhatEndsACutFrame) {
 TEST_F(SerialFrameTest, ALineThatIsFullWaitsForNobodyAndLosesNoFrameInTheMiddle) {
   rig.set("timeout", 3600.0);
   start(1, 16);
-  for (int i = 0; i < 3000; ++i) ASSERT_TRUE(rig.cycle());  // nobody reads
+  for (int i = 0; i < 3000; ++i) ASSERT_TRUE(rig.cycle());  // the device does not read
   EXPECT_GT(count("unsent"), 100);
   rig.illegal(true);
   ASSERT_TRUE(rig.cycle());
@@ -252,7 +252,7 @@ TEST_F(SerialFrameTest, ADeviceThatIsUnpluggedIsAFaultAndComesBackByClear) {
   EXPECT_EQ(rig.cycle().text, path + " is gone: bring it back, then `clear` and `on`");
   EXPECT_EQ(rig.clear().status, CHIMERA_FAULT);
   plug();
-  rig.resource("device", path.c_str());  // a pseudo terminal may come back under another name
+  rig.resource("device", path.c_str());  // a new pseudo terminal may have another name
   ASSERT_TRUE(rig.clear());
   ASSERT_TRUE(rig.on());
   say(frame({2}));

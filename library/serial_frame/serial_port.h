@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A serial device that never makes anybody wait.
+// A serial device whose calls never wait.
 #pragma once
 
 #include <fcntl.h>
@@ -38,7 +38,7 @@ class SerialPort {
     }
     ::cfmakeraw(&mode);
     mode.c_cflag |= CLOCAL | CREAD;
-    mode.c_cc[VMIN] = 1;  // so that a read without bytes says so, and 0 is the end
+    mode.c_cc[VMIN] = 1;  // a read without bytes then fails with EAGAIN, and 0 means the end
     mode.c_cc[VTIME] = 0;
     ::cfsetspeed(&mode, speed);
     if (::tcsetattr(file_, TCSANOW, &mode) == 0) return;
@@ -49,21 +49,22 @@ class SerialPort {
   void close() noexcept {
     if (file_ >= 0) ::close(std::exchange(file_, -1));
   }
-  /// What came and was not read is forgotten. Context: cycle boundary; wait-free, one system call.
+  /// Drops received bytes. Context: cycle boundary; wait-free, one system call.
   void flush() noexcept { ::tcflush(file_, TCIFLUSH); }
-  /// Bytes that came, at most `to`; -1: the device is gone. Context: cycle; one system call that does not wait.
+  /// Returns the number of bytes read into `to`; -1: the device is gone. Context: cycle; one system call that does not
+  /// wait.
   int read(std::span<std::uint8_t> to) noexcept {
     const ssize_t got = ::read(file_, to.data(), to.size());
     return got > 0 ? static_cast<int>(got) : waits(got) ? 0 : -1;
   }
-  /// Bytes that were taken; -1: the device is gone. Context: cycle; one system call that does not wait.
+  /// Returns the number of bytes written; -1: the device is gone. Context: cycle; one system call that does not wait.
   int write(std::span<const std::uint8_t> from) noexcept {
     const ssize_t put = ::write(file_, from.data(), from.size());
     return put > 0 ? static_cast<int>(put) : waits(put) ? 0 : -1;
   }
-  /// Below 0: it is not open. Context: any; wait-free.
+  /// Below 0 if it is not open. Context: any; wait-free.
   int descriptor() const noexcept { return file_; }
-  /// Error number of what failed last; 0: it hung up.
+  /// Error number of the last failure; 0: the device hung up.
   int error() const noexcept { return error_; }
 
  private:

@@ -12,21 +12,17 @@ namespace {
 
 struct SignalGenerator {
   InConst<Text<16>>     wave{"wave", "1", initial = "sine",
-                             one_of = "sine square triangle sawtooth chirp noise step", doc = "The kind of signal."};
+                             one_of = "sine square triangle sawtooth chirp noise step", doc = "Kind of signal."};
   InConst<double[]>     amplitude{"amplitude", "U", "[n...<=64]",
-                                  doc = "From the middle to the peak; one for all elements, or one each."};
+                                  doc = "From the middle to the peak."};
   InConst<double[]>     offset{"offset", "U", "[n...<=64]", initial = 0.0, doc = "The middle."};
   InConst<double>       frequency{"frequency", "Hz", initial = 1.0, range(0, 1e6),
-                                  doc = "Of the wave; where a chirp begins."};
-  InConst<double[]>     phase{"phase", "rad", "[n...<=64]", initial = 0.0,
-                              doc = "Where in its period the wave begins."};
-  InConst<double>       end_frequency{"end_frequency", "Hz", initial = 10.0, range(0, 1e6),
-                                      doc = "Where a chirp ends."};
-  InConst<double>       duration{"duration", "s", initial = 10.0, range(1e-6, 86400),
-                                 doc = "Of a chirp, which then begins again."};
-  InConst<double>       delay{"delay", "s", initial = 0.0, range(0, 86400),
-                              doc = "The middle stands until then; a step steps then."};
-  InConst<std::int64_t> seed{"seed", "1", initial = 1, doc = "Of the noise: the same seed, the same values."};
+                                  doc = "Frequency of the wave; start of a chirp."};
+  InConst<double[]>     phase{"phase", "rad", "[n...<=64]", initial = 0.0, doc = "Phase at the start."};
+  InConst<double>       end_frequency{"end_frequency", "Hz", initial = 10.0, range(0, 1e6), doc = "End of a chirp."};
+  InConst<double>       duration{"duration", "s", initial = 10.0, range(1e-6, 86400), doc = "Duration of a chirp."};
+  InConst<double>       delay{"delay", "s", initial = 0.0, range(0, 86400), doc = "Time before the wave or the step."};
+  InConst<std::int64_t> seed{"seed", "1", initial = 1, doc = "Equal seeds give equal noise."};
   Out<double[]>         y{"y", "U", "[n...<=64]", doc = "offset + amplitude times the wave."};
 
   Outcome init() {
@@ -69,7 +65,7 @@ struct SignalGenerator {
 
   library::Waveform wave_ = library::Waveform::kSine;
   library::Noise noise_{1};
-  Nanoseconds elapsed_;  // whole nanoseconds: a year of them loses no phase
+  Nanoseconds elapsed_;  // whole nanoseconds lose no phase in a year
 };
 
 CHIMERA_COMPONENT(SignalGenerator, "signal_generator",

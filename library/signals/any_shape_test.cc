@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every signal component takes scalars, lists and matrices, and works on each element by itself.
+// Every signal component accepts scalars, lists and matrices and handles each element independently.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -12,8 +12,8 @@ namespace {
 
 struct Signal {
   const char* component;
-  std::function<void(Rig&, std::size_t)> give;  // constants of one element
-  double least, most;                           // of y where x is 3
+  std::function<void(Rig&, std::size_t)> give;  // sets the constants of one element
+  double least, most;                           // range of y at x = 3
 };
 
 void fill(Rig& rig, const char* port, double value, std::size_t count) {

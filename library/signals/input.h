@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every signal component does about its input before it uses it.
+// Checks of the inputs of signal components.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,14 @@
 
 namespace chimera::library {
 
-/// Elements of a signal at most: every signal component declares [n...<=64], any shape, and
-/// sees a list of its elements.
+/// Greatest number of elements of a signal. Every signal component declares [n...<=64], any shape, and sees a list of
+/// its elements.
 inline constexpr std::size_t kMostElements = 64;
 
-/// The upper end of a range that has none.
+/// The end of a range without an end.
 inline constexpr double kNoLimit = __builtin_inf();
 
-/// Whether every element is finite. Context: cycle; wait-free.
+/// Returns true if every element is finite. Context: cycle; wait-free.
 template <class P>
 bool all_finite(const P& port) noexcept {
   for (const double value : port)
@@ -25,9 +25,9 @@ bool all_finite(const P& port) noexcept {
   return true;
 }
 
-/// ok(): every element may be used. aborted(): nobody has written the input yet, so nothing is to be published.
-/// A fault that names the first element that is NaN or infinite: nothing is published either, so a state that the
-/// caller has not touched yet stays as clean as the output that stands. Context: cycle; wait-free.
+/// Returns ok() if every element is finite, aborted() if the input was never written, otherwise a fault that names the
+/// first element that is NaN or infinite. Unless ok() is returned, nothing is published, so the caller must not have
+/// changed its state. Context: cycle; wait-free.
 template <class P>
 Outcome judge(const P& port, const char* name) noexcept {
   for (std::size_t i = 0; i < port.size(); ++i) {

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The signal components ask the heap for nothing in on, cycle and off: counted, and the counter is
-// shown to see.
+// Signal components do not allocate in on, cycle and off. A hook counts allocations, and a test shows that it counts.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
 #include "library/signals/testing/signal_rig.h"
 
-// Of the address sanitizer, under which the tests of the library are built; <sanitizer/allocator_interface.h>.
+// From the address sanitizer, with which the tests of the library are built; <sanitizer/allocator_interface.h>.
 extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*made)(const volatile void*, std::size_t),
                                                          void (*freed)(const volatile void*));
 
 namespace {
 
-thread_local std::size_t n_allocations = 0;  // malloc and every form of new, of this thread
+thread_local std::size_t n_allocations = 0;  // malloc and every form of new, in this thread
 
 void count(const volatile void*, std::size_t) { ++n_allocations; }
 void ignore(const volatile void*) {}
@@ -122,7 +121,7 @@ TEST(SignalComponents, AskTheHeapForNothingInTheirCycles) {
     for (int i = 0; i < 300; ++i) went_well = static_cast<bool>(rig.cycle()) && went_well;
     if (has_x) {
       rig.set("x", std::nan(""));
-      went_well = rig.cycle().status == CHIMERA_FAULT && went_well;  // its text is the rig's, below
+      went_well = rig.cycle().status == CHIMERA_FAULT && went_well;  // the rig allocates its text, below
       went_well = static_cast<bool>(rig.error()) && went_well;
     }
     went_well = static_cast<bool>(rig.off()) && went_well;
@@ -131,7 +130,7 @@ TEST(SignalComponents, AskTheHeapForNothingInTheirCycles) {
     EXPECT_TRUE(went_well) << given.component;
   }
   const std::size_t before = n_allocations;
-  delete new int(1);  // the counter sees
+  delete new int(1);  // the hook counts this
   EXPECT_EQ(n_allocations, before + 1);
 }
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Filters of first and second order whose integrators are trapezoidal: the bilinear transform with prewarping, in a
-// form whose states are those of the analog circuit, so that the step of time may change while the filter runs
-// (Zavalishin, The Art of VA Filter Design, rev. 2.1.2, 2018, sections 3.9 and 4.4).
+// Filters of first and second order with trapezoidal integrators: the bilinear transform with prewarping. Their states
+// are those of the analog circuit, so that the time step may change while the filter runs (Zavalishin, The Art of VA
+// Filter Design, rev. 2.1.2, 2018, sections 3.9 and 4.4).
 #pragma once
 
 #include "chimera/base/math.h"
 
 namespace chimera::library {
 
-/// Frequency times step of time that is still followed; beyond, the filter acts as if it were there.
+/// Largest frequency times time step. The filter treats a larger product as this one.
 inline constexpr double kMostTurns = 0.49;
 
 /// g = tan(pi f dt): the gain that puts the analog frequency 1 exactly at f (Hz) for steps of dt (s).
@@ -21,7 +21,7 @@ inline double prewarped(double frequency, double dt) noexcept {
 /// 1 / (s + 1). Context: cycle; wait-free.
 class FirstOrder {
  public:
-  /// As if the input had been `x` for ever.
+  /// Sets the state for a constant input `x`.
   void settle(double x) noexcept { low_ = x, slope_ = 0; }
   double lowpass(double x, double g) noexcept {
     low_ = (g * (x + slope_) + low_) / (1 + g);
@@ -30,11 +30,11 @@ class FirstOrder {
   }
 
  private:
-  double low_ = 0;    // the integrator
-  double slope_ = 0;  // what goes into it
+  double low_ = 0;    // integrator
+  double slope_ = 0;  // input of the integrator
 };
 
-/// s^2 + k s + 1 below, and 1 (low) or s^2 + 1 (notch) above; k = 1/Q. Context: cycle; wait-free.
+/// Denominator s^2 + k s + 1, numerator 1 (lowpass) or s^2 + 1 (notch); k = 1/Q. Context: cycle; wait-free.
 class SecondOrder {
  public:
   void settle(double x) noexcept { high_ = band_ = 0, low_ = x; }
@@ -48,8 +48,8 @@ class SecondOrder {
   }
 
  private:
-  // Each integrator gains half a step of what went in last and half a step of what goes in now, both of this step's
-  // length: what is kept is not bound to a length.
+  // Each integrator adds half a step of its last input and half a step of its present input, both with the present
+  // length of a step. The state does not depend on a step length.
   void step(double x, double g, double k) noexcept {
     const double band = band_ + g * high_, low = low_ + g * band_;
     high_ = (x - (k + g) * band - low) / (1 + g * (k + g));

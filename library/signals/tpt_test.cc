@@ -26,7 +26,7 @@ TEST(FirstOrder, IsTheBilinearTransformOfOneOverSPlusOne) {
   }
 }
 
-// scipy.signal.butter(2, 0.5) as its manual and every table of half-band filters print it.
+// scipy.signal.butter(2, 0.5), as in its manual and in tables of half-band filters.
 TEST(SecondOrder, HasTheCoefficientsOfTheHalfBandButterworth) {
   const double g = prewarped(250, 1e-3), k = std::numbers::sqrt2;
   constexpr double b[] = {0.29289322, 0.58578644, 0.29289322}, a = 0.17157288;

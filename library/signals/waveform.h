@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Periodic waves of amplitude 1, the phase of a chirp, and noise that a seed repeats.
+// Periodic waves of amplitude 1, the phase of a chirp, and repeatable noise.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace chimera::library {
 
 enum class Waveform { kSine, kSquare, kTriangle, kSawtooth, kChirp, kNoise, kStep };
 
-/// False when no wave has that name. Context: any; wait-free.
+/// Returns false if no wave has that name. Context: any; wait-free.
 inline bool find_waveform(std::string_view name, Waveform& found) noexcept {
   constexpr std::string_view kNames[] = {"sine", "square", "triangle", "sawtooth", "chirp", "noise", "step"};
   for (int i = 0; i < 7; ++i)
@@ -19,8 +19,8 @@ inline bool find_waveform(std::string_view name, Waveform& found) noexcept {
   return false;
 }
 
-/// The value in [-1, 1] after so many turns. All but the step (1) and the square begin at 0 and rise.
-/// A chirp is a sine of the turns that chirp_turns() gives. Context: cycle; wait-free.
+/// Value in [-1, 1] after `turns` turns. All waves but the step (1) and the square begin at 0 and rise. A chirp is a
+/// sine of the turns that chirp_turns() gives. Context: cycle; wait-free.
 inline double waveform(Waveform wave, double turns) noexcept {
   const double u = turns - math::floor(turns);  // [0, 1)
   switch (wave) {
@@ -32,15 +32,15 @@ inline double waveform(Waveform wave, double turns) noexcept {
   }
 }
 
-/// Turns of a sine whose frequency grows evenly from `from` to `to` (Hz) in `duration` seconds and begins again.
-/// Requires: duration > 0. Context: cycle; wait-free.
+/// Turns of a sine whose frequency changes linearly from `from` to `to` (Hz) in `duration` seconds and then starts
+/// again. Requires: duration > 0. Context: cycle; wait-free.
 inline double chirp_turns(double t, double from, double to, double duration) noexcept {
   const double since = t - duration * math::floor(t / duration);
   return since * (from + (to - from) * since / (2 * duration));
 }
 
-/// Evenly spread over [-1, 1), white: a counter through the finaliser of splitmix64
-/// (Steele, Lea and Flood, Fast splittable pseudorandom number generators, 2014). Context: cycle; wait-free.
+/// White noise, uniform over [-1, 1): a counter through the finaliser of splitmix64 (Steele, Lea and Flood, Fast
+/// splittable pseudorandom number generators, 2014). Context: cycle; wait-free.
 class Noise {
  public:
   explicit Noise(std::uint64_t seed) noexcept : state_(seed) {}

@@ -40,7 +40,7 @@ TEST(ChirpTurns, HaveTheFrequencyThatGrowsEvenlyAndBeginAgain) {
   }
 }
 
-// Moments of a flat spread over 200,000 values within five standard errors, and no correlation with the next.
+// Moments of a uniform distribution over 200,000 values within five standard errors, and no correlation of neighbours.
 TEST(Noise, IsFlatWhiteAndRepeatable) {
   Noise noise(7), again(7), other(8);
   double sum = 0, squares = 0, fourth = 0, neighbours = 0, last = 0;
@@ -61,7 +61,7 @@ TEST(Noise, IsFlatWhiteAndRepeatable) {
   EXPECT_EQ(same, 0);
 }
 
-// The first three values of the sequence of seed 1234567 that the published splitmix64.c gives.
+// The first three values of seed 1234567 in the published splitmix64.c.
 TEST(Noise, IsThePublishedSequence) {
   Noise noise(1234567);
   for (const std::uint64_t bits : {6457827717110365317u, 3203168211198807973u, 9817491932198370423u})

@@ -34,7 +34,7 @@ TEST(SingularValues, OfAJacobianWhoseMotionsAreOrthogonalAreTheirLengths) {
 
 TEST(SingularValues, TheirProductIsTheDeterminant) {
   const Puma560::Vector nominal{0, math::kPi / 4, math::kPi, 0, math::kPi / 4, 0};
-  EXPECT_NEAR(SingularValues(of_puma(nominal), 6).manipulability(), 0.078617, 5e-7);  // as published for this pose
+  EXPECT_NEAR(SingularValues(of_puma(nominal), 6).manipulability(), 0.078617, 5e-7);  // published for this pose
 }
 
 TEST(SingularValues, AreFoundWithinTheBoundAndAreSmallWhereThePumaIsSingular) {
@@ -77,10 +77,10 @@ TEST_F(SingularityMonitorTest, IsNearBelowOneValueUntilAboveTheOther) {
   EXPECT_TRUE(is_near_at(0.02));
   EXPECT_LT(value(), 0.05);
   double wrist = 0.02;
-  while (value() < 0.055) EXPECT_TRUE(is_near_at(wrist += 0.01));  // between the two: near still
+  while (value() < 0.055) EXPECT_TRUE(is_near_at(wrist += 0.01));  // between the thresholds: still near
   while (value() < 0.085) is_near_at(wrist += 0.01);
   EXPECT_FALSE(is_near_at(wrist));
-  while (value() > 0.06) EXPECT_EQ(is_near_at(wrist -= 0.01), value() < 0.05);  // and clear still
+  while (value() > 0.06) EXPECT_EQ(is_near_at(wrist -= 0.01), value() < 0.05);  // and still clear
 }
 
 TEST_F(SingularityMonitorTest, CountsAsNearAtOnUntilItIsSeenToBeClear) {

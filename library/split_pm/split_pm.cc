@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Splits one force into one for the engine and one for the brakes (2000 paper, figure 17).
+// Splits a force into engine force and brake force (2000 paper, figure 17).
 #include <algorithm>
 #include <cmath>
 
@@ -10,9 +10,9 @@ using namespace chimera;
 namespace {
 
 struct SplitPm {
-  In<double> fd{"fd", "N", doc = "Force wanted by the control; below 0 to brake."};
-  Out<double> fde{"fde", "N", doc = "Force wanted of the engine, 0 or more."};
-  Out<double> fdw{"fdw", "N", doc = "Force wanted of the brakes, 0 or more."};
+  In<double> fd{"fd", "N", doc = "Wanted force; below 0 brakes."};
+  Out<double> fde{"fde", "N", doc = "Wanted engine force."};
+  Out<double> fdw{"fdw", "N", doc = "Wanted brake force."};
 
   Outcome on() { return cycle(); }
   Outcome cycle() {

@@ -10,11 +10,11 @@ using namespace chimera;
 namespace {
 
 struct SplitPmOverride {
-  In<double> fd{"fd", "N", doc = "Force wanted by the control; below 0 to brake."};
-  In<double> fra{"fra", "N", doc = "Force asked for by the accelerator pedal; 0: foot off."};
-  In<double> frb{"frb", "N", doc = "Force asked for by the brake pedal; 0: foot off."};
-  Out<double> fde{"fde", "N", doc = "Force wanted of the engine, 0 or more."};
-  Out<double> fdw{"fdw", "N", doc = "Force wanted of the brakes, 0 or more."};
+  In<double> fd{"fd", "N", doc = "Wanted force; below 0 brakes."};
+  In<double> fra{"fra", "N", doc = "Force of the accelerator pedal; 0: not pressed."};
+  In<double> frb{"frb", "N", doc = "Force of the brake pedal; 0: not pressed."};
+  Out<double> fde{"fde", "N", doc = "Wanted engine force."};
+  Out<double> fdw{"fdw", "N", doc = "Wanted brake force."};
 
   Outcome on() { return cycle(); }
   Outcome cycle() {

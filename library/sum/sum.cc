@@ -11,11 +11,10 @@ using namespace chimera;
 namespace {
 
 struct Sum {
-  Many<In<double[]>> in{"in*", "U", "[n...<=64]", doc = "What is added."};
-  Many<InConst<double>> weight{"weight*", "1", initial = 1.0,
-                               doc = "What each is multiplied by: -1 takes away; one for each input, or none."};
-  InConst<double[]> bias{"bias", "U", "[n...<=64]", initial = 0.0, doc = "What the sum begins with."};
-  Out<double[]> out{"out", "U", "[n...<=64]", doc = "The bias plus each weight times its input."};
+  Many<In<double[]>> in{"in*", "U", "[n...<=64]", doc = "Signals to add."};
+  Many<InConst<double>> weight{"weight*", "1", initial = 1.0, doc = "Weight of each input; one for each, or none."};
+  InConst<double[]> bias{"bias", "U", "[n...<=64]", initial = 0.0, doc = "Constant to add."};
+  Out<double[]> out{"out", "U", "[n...<=64]", doc = "The sum."};
 
   Outcome init() const {
     if (in.size() == 0) return fault("there is nothing to add: name at least one input");
@@ -37,7 +36,7 @@ struct Sum {
   bool error() { return true; }
 
  private:
-  // Formats a name: only where there is something to complain about.
+  // Formats a name, but only for a fault.
   Outcome judge(std::size_t i) const {
     char name[16];
     std::snprintf(name, sizeof name, "in[%zu]", i);

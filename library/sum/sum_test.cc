@@ -21,7 +21,7 @@ TEST(Sum, AddsWithoutWeights) {
   for (std::size_t i = 0; i < 3; ++i) rig.set("in", static_cast<double>(i + 1), 0, i);
   ASSERT_TRUE(rig.init());
   ASSERT_TRUE(rig.on());
-  EXPECT_EQ(rig.get<double>("out"), 6);  // from on already: no step in the first cycle
+  EXPECT_EQ(rig.get<double>("out"), 6);  // computed by on: no step in the first cycle
   rig.set("in", 10.0, 0, 2);
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(rig.get<double>("out"), 13);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What input events say about a ball with six degrees of freedom.
+// The state of a ball with six degrees of freedom, from input events.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace chimera::library {
 
-/// One event as Linux numbers them (linux/input-event-codes.h).
+/// One event, with Linux's numbers (linux/input-event-codes.h).
 struct BallEvent {
   std::uint16_t type = 0;
   std::uint16_t code = 0;
@@ -22,23 +22,23 @@ inline constexpr std::uint16_t kReport = 0, kDropped = 3;  // codes of kSyncEven
 inline constexpr std::uint16_t kFirstButton = 0x100;       // BTN_0
 inline constexpr std::size_t kBallAxes = 6, kBallButtons = 16;
 
-/// The ball as of the last whole report. A relative axis says only what is not zero, so one that is silent for `hold`
-/// has come back; an absolute one says every change.
+/// The ball as of the last complete report. A relative axis reports only values other than 0, so a silence of `hold`
+/// means 0. An absolute axis reports every change.
 class Ball {
  public:
-  /// At rest, nothing pressed; `full` counts are a full deflection. Context: any; wait-free.
+  /// Puts the ball at rest with no button pressed. `full` counts are a full deflection. Context: any; wait-free.
   void reset(std::int32_t full, Nanoseconds hold) noexcept {
     *this = {};
     full_ = full;
     hold_ = hold;
   }
-  /// Lets go of all axes. Context: cycle; wait-free.
+  /// Puts all axes to rest. Context: cycle; wait-free.
   void rest() noexcept { shown_ = next_ = {}; }
 
-  /// Takes an event seen at `at`; it counts from the report that ends it. Context: cycle; wait-free.
+  /// Accepts an event at time `at`. The next report makes it effective. Context: cycle; wait-free.
   void take(const BallEvent& event, Nanoseconds at) noexcept {
     if (event.type == kSyncEvent && event.code == kDropped) {
-      is_deaf_ = true;  // the kernel lost events: what was held may long be let go
+      is_deaf_ = true;  // the kernel lost events, so old deflections may be wrong
       return rest();
     }
     if (event.type == kSyncEvent && event.code == kReport) return report(at);
@@ -50,14 +50,14 @@ class Ball {
       next_buttons_ = event.value != 0 ? next_buttons_ | bit : next_buttons_ & ~bit;
     }
   }
-  /// Of axis x, y, z, about x, about y, about z: -1 to 1. Context: cycle; wait-free.
+  /// Deflection of axis x, y, z, about x, about y, about z: -1 to 1. Context: cycle; wait-free.
   double deflection(std::size_t axis, Nanoseconds now) const noexcept {
     const Axis& a = shown_[axis];
     if (a.is_relative && now - a.at > hold_) return 0;
     const double part = static_cast<double>(a.value) / static_cast<double>(full_);
     return part > 1 ? 1 : part < -1 ? -1 : part;
   }
-  /// A bit for each button that is pressed. Context: cycle; wait-free.
+  /// One bit for each pressed button. Context: cycle; wait-free.
   std::int32_t buttons() const noexcept { return buttons_; }
 
  private:

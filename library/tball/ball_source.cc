@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens devices, terminals and recordings, and turns their bytes into events of the ball.
+// Opens devices, terminals and recordings, and reads ball events from their bytes.
 #include "library/tball/ball_source.h"
 
 #include <fcntl.h>
@@ -47,12 +47,12 @@ void BallSource::open_device(bool is_fifo) {
   }
 }
 
-// Keys come one by one and unseen; the interrupt key still interrupts.
+// Keys arrive one by one without echo. The interrupt key still interrupts.
 void BallSource::make_raw() {
   has_mode_ = ::tcgetattr(file_, &mode_) == 0;
   termios raw = mode_;
   raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
-  raw.c_cc[VMIN] = 1;  // so that a read without keys says so, and 0 is the end
+  raw.c_cc[VMIN] = 1;  // a read without keys then fails with EAGAIN, and 0 means the end
   raw.c_cc[VTIME] = 0;
   if (has_mode_ && ::tcsetattr(file_, TCSANOW, &raw) == 0) return;
   const int error = errno;
@@ -71,7 +71,7 @@ void BallSource::reopen() {
   open(std::string(path_));
   kept_ = 0;
   if (kind_ == Kind::kRecording || fill(sizeof buffer_) >= 0) return;
-  throw std::runtime_error(path_ + ": opens, but nobody is at the other end");
+  throw std::runtime_error(path_ + ": opens, but no process has the other end open");
 }
 
 void BallSource::start(Nanoseconds now) noexcept {

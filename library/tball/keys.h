@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keys that stand for a ball: a d, s w, f r along x y z; j l, k i, o u about them; the space bar lets go.
+// Keys in place of a ball: a d, s w, f r along x y z; j l, k i, o u about them; the space bar stops.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace chimera::library {
 
-/// The event of a full deflection by that key; none for any other. Context: cycle; wait-free.
+/// Event of full deflection for `key`, or none. Context: cycle; wait-free.
 inline std::optional<BallEvent> event_of_key(char key, std::int32_t full) noexcept {
   constexpr char kKeys[kBallAxes][2] = {{'a', 'd'}, {'s', 'w'}, {'f', 'r'}, {'j', 'l'}, {'k', 'i'}, {'o', 'u'}};
   for (std::uint16_t axis = 0; axis < kBallAxes; ++axis) {

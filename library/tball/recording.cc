@@ -12,7 +12,7 @@
 namespace chimera::library {
 namespace {
 
-constexpr long long kLatestSecond = 4'000'000'000;  // of the clock of the recording machine
+constexpr long long kLatestSecond = 4'000'000'000;  // on the clock of the recording machine
 
 bool read_event(const char* line, RecordedEvent& to) {
   long long seconds = 0, micros = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A ball with six degrees of freedom, by which a person moves a reference. README.md is the data sheet.
+// A ball with six degrees of freedom with which a person moves a reference. README.md is the data sheet.
 #include <stdexcept>
 
 #include "chimera/base/math.h"
@@ -13,15 +13,13 @@ using namespace chimera::library;
 
 namespace {
 
-constexpr double kLongestStep = 0.1;  // s: after a pause the reference goes on, it does not catch up
+constexpr double kLongestStep = 0.1;  // s; a longer step moves the reference only by this time
 
 struct TrackBall {
-  Many<In<Pose>, 1> xm{"xm*", "1", frame = "base",
-                    doc = "Measured tool pose, where xd starts at on unless it is handed over; may be left out."};
-  Out<Pose> xd{"xd", frame = "base", initial = Pose{{0, 0, 0}, {1, 0, 0, 0}},
-               doc = "Cartesian reference, moved by the ball."};
+  Many<In<Pose>, 1> xm{"xm*", "1", frame = "base", doc = "Measured tool pose; may be left out."};
+  Out<Pose> xd{"xd", frame = "base", initial = Pose{{0, 0, 0}, {1, 0, 0, 0}}, doc = "Cartesian reference."};
   Out<double[6]> motion{"motion", "U", initial = 0.0,
-                        doc = "Deflection times scale: along x y z, about x y z; or of six joints."};
+                        doc = "Deflection times scale: along and about x y z, or of six joints."};
   Out<std::int32_t> buttons{"buttons", "1", initial = 0, doc = "A bit for each button that is pressed."};
   InConst<double[6]> scale{"scale", "U", initial = 1.0, range(-1e6, 1e6), doc = "Motion at full deflection."};
   InConst<double> linear{"linear", "m/s", initial = 0.1, range(0, 10), doc = "Speed of xd at full deflection."};
@@ -30,7 +28,7 @@ struct TrackBall {
   InConst<std::int32_t> full{"full", "1", initial = 350, range(1, 1000000),
                              doc = "Counts of the device at full deflection."};
   InConst<double> hold{"hold", "s", initial = 0.2, range(0.001, 10),
-                       doc = "An axis or key that is silent for so long has been let go."};
+                       doc = "Silence after which an axis or key counts as released."};
   Resource device{"device", safe_state, doc = "Input device, FIFO of its events, terminal (its keys), or recording."};
 
   void init() {
@@ -47,7 +45,7 @@ struct TrackBall {
     reinit();
     source_.start(c.now());
     rest();
-    if (xd.is_handed_over() && is_sound(*xd)) return ok();  // bumpless: the reference goes on
+    if (xd.is_handed_over() && is_sound(*xd)) return ok();  // bumpless: the reference continues
     if (xm.size() == 0 || !xm[0].valid()) return ok();
     if (!is_sound(*xm[0])) return fault("xm is not finite or no orientation: xd cannot start there");
     *xd = *xm[0];
@@ -55,7 +53,7 @@ struct TrackBall {
   }
   Outcome cycle(Cycle c) {
     if (is_gone_) return fault(lost_.text(), source_.error());
-    // Without its device the ball is at rest for one more cycle, so that everybody hears it; then it is a fault.
+    // If the device is gone, one cycle publishes a ball at rest for all readers; the next cycle is a fault.
     is_gone_ = !source_.collect(ball_, *full, c.now());
     if (is_gone_) ball_.rest();
     double deflection[kBallAxes];
@@ -92,7 +90,7 @@ struct TrackBall {
     return norm > 0.5 && norm < 2;  // false for NaN
   }
 
-  // xd moves along and about the axes of its frame.
+  // Moves xd along and about the axes of its frame.
   void move(const double (&deflection)[kBallAxes], double dt) {
     Pose pose = *xd;
     for (std::size_t i = 0; i < 3; ++i) pose.position[i] += *linear * deflection[i] * dt;

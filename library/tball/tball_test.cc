@@ -67,9 +67,9 @@ TEST_F(TballTest, ARecordingPlaysOnTheClockOfTheTask) {
   EXPECT_EQ(motion(0), 1.0);  // half of the full 350, times 2
   EXPECT_EQ(motion(1), 0.0);
   for (int i = 0; i < 9; ++i) ASSERT_TRUE(rig.cycle(milliseconds(10)));
-  EXPECT_EQ(motion(1), -1.0);  // beyond the full deflection: held there
+  EXPECT_EQ(motion(1), -1.0);  // more than full deflection: cut
   for (int i = 0; i < 22; ++i) ASSERT_TRUE(rig.cycle(milliseconds(10)));
-  EXPECT_EQ(motion(0), 0.0);  // silent for 0.2 s: let go
+  EXPECT_EQ(motion(0), 0.0);  // silent for 0.2 s: released
   EXPECT_EQ(motion(1), 0.0);
 }
 
@@ -83,8 +83,8 @@ TEST_F(TballTest, TheShippedRecordingGoesOutAndComesBack) {
     turned = std::fmax(turned, 2 * std::acos(xd().orientation[0]));
     pressed += rig.get<std::int32_t>("buttons");
   }
-  EXPECT_NEAR(far, 2 * 0.1 * 2 / M_PI, 0.002);           // 2 s of a half sine at 0.1 m/s
-  EXPECT_NEAR(turned, 2 * 0.5 / M_PI, 0.02);              // 1 s of one at 0.5 rad/s
+  EXPECT_NEAR(far, 2 * 0.1 * 2 / M_PI, 0.002);           // a half sine of 2 s at 0.1 m/s
+  EXPECT_NEAR(turned, 2 * 0.5 / M_PI, 0.02);              // a half sine of 1 s at 0.5 rad/s
   EXPECT_NEAR(xd().position[0], 0, 0.005);
   EXPECT_EQ(pressed, 20);
 }
@@ -124,7 +124,7 @@ TEST_F(TballTest, StartsWhereTheToolIsAndTurnsAboutTheAxesOfTheFrame) {
   start(path);
   for (int i = 0; i < 100; ++i) ASSERT_TRUE(rig.cycle(milliseconds(10)));
   EXPECT_EQ(xd().position[1], 2.0);
-  EXPECT_NEAR(xd().orientation[0], std::cos(0.5), 1e-12);  // 1 s at 1 rad/s: an absolute axis stays where it is
+  EXPECT_NEAR(xd().orientation[0], std::cos(0.5), 1e-12);  // 1 s at 1 rad/s: an absolute axis holds
   EXPECT_NEAR(xd().orientation[3], std::sin(0.5), 1e-12);
   rig.set("xm", Pose{{std::nan(""), 0, 0}, {1, 0, 0, 0}});
   ASSERT_TRUE(rig.off());
@@ -196,11 +196,11 @@ TEST_F(TballTest, ALostDeviceRestsThenIsAFaultAndComesBackByClear) {
   EXPECT_EQ(motion(0), 1.0);
   unplug();
   ASSERT_TRUE(rig.cycle());
-  EXPECT_EQ(motion(0), 0.0);  // what everybody reads from now on
+  EXPECT_EQ(motion(0), 0.0);  // the value that all readers see
   const RigAnswer fault = rig.cycle();
   EXPECT_EQ(fault.status, CHIMERA_FAULT);
   EXPECT_NE(fault.text.find(" is gone: bring it back, then `clear` and `on`"), std::string::npos) << fault.text;
-  EXPECT_EQ(rig.clear().text, path + ": opens, but nobody is at the other end");
+  EXPECT_EQ(rig.clear().text, path + ": opens, but no process has the other end open");
   plug();
   ASSERT_TRUE(rig.clear());
   ASSERT_TRUE(rig.on());
@@ -221,7 +221,7 @@ TEST_F(TballTest, KeysOfATerminalMoveItUntilItHangsUp) {
     const int wanted = static_cast<int>(std::strlen(keys));
     ASSERT_EQ(::write(master, keys, std::strlen(keys)), wanted);
     int there = 0;
-    for (int i = 0; i < 2000 && there < wanted; ++i) {  // the kernel takes its time
+    for (int i = 0; i < 2000 && there < wanted; ++i) {  // the kernel delays the bytes
       if (i > 0) ::usleep(1000);
       ASSERT_EQ(::ioctl(line, FIONREAD, &there), 0);
     }

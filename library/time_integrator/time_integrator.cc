@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The integral over time of each element of a signal (1994 paper, figure 9: joint speeds to joint positions).
+// Integrates each element of a signal over time (1994 paper, figure 9: joint speeds to joint positions).
 #include <algorithm>
 #include <cmath>
 
@@ -11,12 +11,11 @@ using namespace chimera;
 namespace {
 
 struct TimeIntegrator {
-  In<double[]> rate_of_change{"rate_of_change", "U/s", "[n...<=64]", doc = "What is integrated."};
-  In<double[]> start{"start", "U", "[n...<=64]", doc = "Where the integral begins at on, unless it is handed over."};
-  Out<double[]> integral{"integral", "U", "[n...<=64]", initial = 0.0,
-                         doc = "start at on, or what is handed over, plus what was integrated since."};
+  In<double[]> rate_of_change{"rate_of_change", "U/s", "[n...<=64]", doc = "Any rate."};
+  In<double[]> start{"start", "U", "[n...<=64]", doc = "Integral at on, unless it is handed over."};
+  Out<double[]> integral{"integral", "U", "[n...<=64]", initial = 0.0, doc = "The integral."};
 
-  // Bumpless: an integral that is handed over goes on.
+  // Bumpless: continues from an integral that is handed over.
   Outcome on() {
     if (integral.is_handed_over() && library::all_finite(integral)) return ok();
     for (std::size_t i = 0; i < integral.size(); ++i) {

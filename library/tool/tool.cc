@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What hangs on the flange of an arm: it tells its frame and its mass, to whoever reckons with them.
+// A tool on the flange of an arm: provides its frame and mass as constants.
 #include <cmath>
 
 #include "library/kinematics/dh_ports.h"
@@ -9,9 +9,9 @@ using namespace chimera;
 namespace {
 
 struct Tool {
-  Out<bool> is_attached{"is_attached", "1", initial = false, doc = "The task is ON: this tool is the one at work."};
+  Out<bool> is_attached{"is_attached", "1", initial = false, doc = "The task is ON."};
   InConst<Pose> pose{"pose", frame = "last", doc = "The tool in the frame of the flange."};
-  InConst<double> mass{"mass", "kg", initial = 0.0, range(0, 100), doc = "Of the tool, with what it holds."};
+  InConst<double> mass{"mass", "kg", initial = 0.0, range(0, 100), doc = "Mass of the tool with its load."};
   OutConst<Pose> tool{"tool", frame = "last", doc = "`pose`."};
   OutConst<double> payload_mass{"payload_mass", "kg", doc = "`mass`."};
 
@@ -28,7 +28,7 @@ struct Tool {
   void off() { *is_attached = false; }
 };
 
-CHIMERA_COMPONENT(Tool, "tool", "Tells the frame and the mass of the tool on the flange.", rate = 10.0,
+CHIMERA_COMPONENT(Tool, "tool", "Provides the frame and the mass of the tool on the flange.", rate = 10.0,
                   source = "1994 paper, section 3.3, the exchange of a tool");
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Judges how a robot follows its reference, so that a demonstration can be judged by values in the table.
+// Judges how a robot follows its reference, in variables that `--expect` compares.
 #include <algorithm>
 #include <cmath>
 
@@ -14,13 +14,12 @@ constexpr std::size_t kMostJoints = 10;
 struct TrackingMonitor {
   In<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", frame = "joint", doc = "Reference positions."};
   In<double[]> q{"q", "rad", "[ndof<=10]", frame = "joint", doc = "Measured positions."};
-  Out<double> max_error{"max_error", "rad", initial = 0.0,
-                        doc = "Farthest any joint strayed from its reference since on."};
-  Out<double> error_now{"error_now", "rad", initial = 0.0, doc = "Farthest of all joints in this cycle."};
+  Out<double> max_error{"max_error", "rad", initial = 0.0, doc = "Largest error of all joints since on."};
+  Out<double> error_now{"error_now", "rad", initial = 0.0, doc = "Largest error of all joints now."};
   Out<double> moved{"moved", "rad", initial = 0.0,
-                    doc = "Least of all joints: farthest from where it stood at on, within the window."};
+                    doc = "Least way of all joints from their place at on, within the window."};
   InConst<std::int32_t> ndof{"ndof", "1", range(1, 10), doc = "Joints."};
-  InConst<double> window{"window", "s", initial = 2.0, range(0, 3600), doc = "Time that moved looks at."};
+  InConst<double> window{"window", "s", initial = 2.0, range(0, 3600), doc = "Time that counts for moved."};
 
   void on() {
     elapsed_ = 0;

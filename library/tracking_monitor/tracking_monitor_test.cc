@@ -41,7 +41,7 @@ TEST_F(TrackingMonitorTest, MovedIsTheJointThatMovedLeast) {
   place(1.6, -1.2);
   ASSERT_TRUE(rig.cycle());
   EXPECT_NEAR(rig.get<double>("moved"), 0.2, 1e-12);
-  place(1.0, -1.0);  // back again: farthest counts
+  place(1.0, -1.0);  // returns: the farthest place counts
   ASSERT_TRUE(rig.cycle());
   EXPECT_NEAR(rig.get<double>("moved"), 0.2, 1e-12);
 }

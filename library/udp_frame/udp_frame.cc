@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device on the network that takes a command and answers with its state, in numbered datagrams. README.md is the data
-// sheet.
+// Exchanges frames with a device on the network in numbered datagrams. README.md is the data sheet.
 #include "library/frame/frame_device.h"
 #include "library/udp_frame/udp_socket.h"
 
@@ -9,21 +8,18 @@ using namespace chimera::library;
 
 namespace {
 
-constexpr int kMostDatagrams = 8;   // a cycle
-constexpr int kMostForgotten = 64;  // the same, of those that came before `on`
-constexpr int kMostOld = 1000;      // of those that came before `on`: more than a queue holds
-// How far ahead the number of the safe frame is of the last one that was sent, and when it moves on: a device that
-// drops what is old takes it, whatever was on the way.
+constexpr int kMostDatagrams = 8;   // received in a cycle
+constexpr int kMostForgotten = 64;  // dropped in a cycle, of those from before `on`
+constexpr int kMostOld = 1000;      // from before `on`: more than a queue holds
+// The number of the safe frame is kAhead after the last one sent, and moves on after kAnewAfter datagrams. A device
+// that drops old numbers therefore accepts it, whatever datagrams are under way.
 constexpr std::uint32_t kAhead = 1u << 30, kAnewAfter = 1u << 20;
 
 struct UdpFrame : FrameDevice {
-  InConst<std::int32_t> local_port{"local_port", "1", initial = 0, range(0, 65535),
-                                   doc = "Our UDP port; 0: any."};
-  Out<std::int64_t> missing{"missing", "1", initial = 0,
-                            doc = "Numbers that were passed over: datagrams lost or late."};
-  Out<std::int64_t> old{"old", "1", initial = 0,
-                        doc = "Datagrams with a number that was there or passed over already."};
-  Resource device{"device", doc = "Address and port of the device in numbers, such as 192.168.0.7:5000."};
+  InConst<std::int32_t> local_port{"local_port", "1", initial = 0, range(0, 65535), doc = "Local UDP port; 0: any."};
+  Out<std::int64_t> missing{"missing", "1", initial = 0, doc = "Datagrams lost or late."};
+  Out<std::int64_t> old{"old", "1", initial = 0, doc = "Datagrams repeated or out of order."};
+  Resource device{"device", doc = "Numeric address and port, such as 192.168.0.7:5000."};
 
   void init(Cycle c) {
     prepare(device.text(), 4);
@@ -57,7 +53,7 @@ struct UdpFrame : FrameDevice {
     send(true);
     *connected = false;
   }
-  // The port stays ours: the guard has a copy of the descriptor, and gives it back in its own time.
+  // Keeps the port, because the guard has a copy of the descriptor and closes it later.
   bool clear(Cycle c) {
     if (socket_.descriptor() < 0) open(c);
     else socket_.connect(std::string(device.text()));
@@ -74,7 +70,7 @@ struct UdpFrame : FrameDevice {
     socket_.open(std::string(device.text()), *local_port);
     c.safe_frame(0, socket_.descriptor());
   }
-  // Of what came before `on`; a queue that was full is forgotten in some cycles.
+  // Drops datagrams from before `on`. A full queue takes several cycles.
   void forget(int most) {
     std::uint8_t bytes[1];
     for (int i = 0; old_ > 0 && i < most; ++i) old_ = socket_.receive(bytes) > 0 ? old_ - 1 : 0;
@@ -112,9 +108,9 @@ struct UdpFrame : FrameDevice {
   }
 
   UdpSocket socket_;
-  int old_ = 0;  // so many datagrams at most may be of the time before `on`; 0: they are forgotten
+  int old_ = 0;  // largest number of datagrams from before `on`; 0: all are dropped
   bool has_number_ = false;
-  std::uint32_t number_ = 0;  // of the last good datagram
+  std::uint32_t number_ = 0;  // number of the last good datagram
   std::uint32_t sent_ = 0;
 };
 

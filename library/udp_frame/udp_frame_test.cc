@@ -22,7 +22,7 @@ struct UdpFrameTest : ::testing::Test {
   Rig rig{"udp_frame"};
   int device = -1;  // the other end
   std::string address;
-  sockaddr_in task{};  // where the component's datagrams come from
+  sockaddr_in task{};  // source address of the component's datagrams
 
   UdpFrameTest() { plug(0); }
   ~UdpFrameTest() override { ::close(device); }
@@ -46,7 +46,7 @@ struct UdpFrameTest : ::testing::Test {
     ASSERT_TRUE(made) << made.text;
     ASSERT_TRUE(rig.on());
     ASSERT_TRUE(rig.cycle());
-    EXPECT_EQ(heard(), datagram(1, 0));  // and says where to answer
+    EXPECT_EQ(heard(), datagram(1, 0));  // which also shows the return address
   }
   static Bytes datagram(std::uint32_t number, double value) {
     Bytes made(8 + kFrameOverhead);
@@ -207,13 +207,13 @@ TEST_F(UdpFrameTest, ADeviceThatGoesIsAFaultAndComesBackByClear) {
   ASSERT_TRUE(rig.on());
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(get_value(heard().data() + 6, Form::kFloat32, 1), 5.0);
-  say(datagram(1, 2));  // it has begun again
+  say(datagram(1, 2));  // the device has restarted its numbers
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(state(), 2);
 }
 
 TEST_F(UdpFrameTest, ItsPortIsNotLostToTheCopyThatTheGuardHas) {
-  const int found = ::socket(AF_INET, SOCK_DGRAM, 0);  // a port that is free
+  const int found = ::socket(AF_INET, SOCK_DGRAM, 0);  // finds a free port
   sockaddr_in here{};
   here.sin_family = AF_INET;
   socklen_t size = sizeof here;
@@ -251,7 +251,7 @@ TEST_F(UdpFrameTest, RefusesWhatIsNoAddressAndAPortThatIsTaken) {
   rig.resource("device", address.c_str());
   rig.set("local_port", std::int32_t{std::stoi(port)});
   EXPECT_EQ(rig.init().text,
-            "UDP port " + port + ": Address already in use: name another `local_port`, or end who has it");
+            "UDP port " + port + ": Address already in use: name another `local_port`, or end the process that has it");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Datagrams to and from one peer; nobody ever waits for them.
+// Exchanges datagrams with one peer. No call waits.
 #pragma once
 
 #include <arpa/inet.h>
@@ -24,8 +24,8 @@ class UdpSocket {
   UdpSocket& operator=(const UdpSocket&) = delete;
   ~UdpSocket() { close(); }
 
-  /// To and from `peer`, "ADDRESS:PORT" in numbers; `local_port` 0: any. Datagrams of others are not received.
-  /// Throws std::runtime_error with a remedy. Context: setup; no look-up of names, nothing is waited for.
+  /// Opens a socket for `peer`, "ADDRESS:PORT" in numbers; `local_port` 0: any. Datagrams of other senders are not
+  /// received. Throws std::runtime_error with a remedy. Context: setup; no name lookup, no wait.
   void open(const std::string& peer, int local_port) {
     close();
     (void)address_of(peer);
@@ -35,12 +35,11 @@ class UdpSocket {
     here.sin_family = AF_INET;
     here.sin_port = htons(static_cast<std::uint16_t>(local_port));
     if (::bind(file_, reinterpret_cast<const sockaddr*>(&here), sizeof here) != 0)
-      refuse("UDP port " + std::to_string(local_port), ": name another `local_port`, or end who has it");
+      refuse("UDP port " + std::to_string(local_port), ": name another `local_port`, or end the process that has it");
     connect(peer);
   }
-  /// As open() to another peer, with the port that it has: a copy of the descriptor, such as the guard's, would keep
-  /// that from being taken anew. Requires: it is open, and stays so. Throws as open(). Context: setup; nothing is
-  /// waited for.
+  /// Changes the peer and keeps the port: a copy of the descriptor, such as the guard's, would prevent binding the port
+  /// again. Requires: the socket is open, and remains open. Throws as open(). Context: setup; no wait.
   void connect(const std::string& peer) {
     const sockaddr_in there = address_of(peer);
     if (::connect(file_, reinterpret_cast<const sockaddr*>(&there), sizeof there) != 0)
@@ -50,22 +49,22 @@ class UdpSocket {
   void close() noexcept {
     if (file_ >= 0) ::close(std::exchange(file_, -1));
   }
-  /// Bytes of one datagram, 0: there is none. What is wrong with the network shows as silence.
-  /// Context: cycle; one system call that does not wait.
+  /// Returns the bytes of one datagram; 0: none waits. A network failure shows as silence. Context: cycle; one system
+  /// call that does not wait.
   std::size_t receive(std::span<std::uint8_t> to) noexcept {
     const ssize_t got = ::recv(file_, to.data(), to.size(), MSG_DONTWAIT | MSG_TRUNC);
     error_ = got < 0 && errno != EAGAIN ? errno : error_;
     return got > 0 ? static_cast<std::size_t>(got) : 0;
   }
-  /// False when it was not taken. Context: cycle; one system call that does not wait.
+  /// Returns false if the datagram was not sent. Context: cycle; one system call that does not wait.
   bool send(std::span<const std::uint8_t> from) noexcept {
     const ssize_t put = ::send(file_, from.data(), from.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
     error_ = put < 0 ? errno : error_;
     return put == static_cast<ssize_t>(from.size());
   }
-  /// Below 0: it is not open. Context: any; wait-free.
+  /// Below 0 if it is not open. Context: any; wait-free.
   int descriptor() const noexcept { return file_; }
-  /// Error number of what failed last (111: nobody has that port there); 0: nothing did.
+  /// Error number of the last failure (111: the peer has no such port open); 0: none.
   int error() const noexcept { return error_; }
 
  private:

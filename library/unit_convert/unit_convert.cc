@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hands a signal on in another unit: y = factor x + offset. README.md is the data sheet.
+// Converts a signal to another unit: y = factor x + offset. README.md is the data sheet.
 #include "chimera/task/component.h"
 #include "library/signals/input.h"
 
@@ -33,4 +33,4 @@ struct UnitConvert {
     for (double& out : y) out = times * *in++ + plus;
   }
 };
-CHIMERA_COMPONENT(UnitConvert, "unit_convert", "Hands a signal on in another unit.");
+CHIMERA_COMPONENT(UnitConvert, "unit_convert", "Converts a signal to another unit.");

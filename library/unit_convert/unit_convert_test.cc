@@ -14,7 +14,7 @@ TEST(UnitConvert, MakesKelvinOfCelsius) {
   rig.set("x", -273.15, 1);
   ASSERT_TRUE(rig.init());
   ASSERT_TRUE(rig.on());
-  EXPECT_DOUBLE_EQ(rig.get<double>("y", 0), 293.15);  // from on already
+  EXPECT_DOUBLE_EQ(rig.get<double>("y", 0), 293.15);  // computed by on
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(rig.get<double>("y", 1), 0);
 }

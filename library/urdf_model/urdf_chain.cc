@@ -15,7 +15,7 @@ namespace chimera::library {
 namespace {
 
 constexpr double kNone = 1e6;
-constexpr std::size_t kLongest = std::size_t{4} << 20;  // bytes of a file
+constexpr std::size_t kLongest = std::size_t{4} << 20;  // bytes of a file, at most
 
 Error bad(const std::string& text) {
   Error error;
@@ -23,7 +23,7 @@ Error bad(const std::string& text) {
   return error;
 }
 
-/// urdfdom tells its reasons to a log and nobody else.
+/// Collects the first error message, because urdfdom reports errors only to its log.
 class FirstReason final : public console_bridge::OutputHandler {
  public:
   FirstReason() : before_(console_bridge::getOutputHandler()) { console_bridge::useOutputHandler(this); }
@@ -44,7 +44,7 @@ bool turns(const urdf::Joint& joint) {
   return joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS;
 }
 
-/// Joints from the root to `link`, fixed ones too; one more than the model has where they go round in a circle.
+/// Joints from the root to `link`, with fixed ones. In a loop the result has one joint more than the model.
 std::vector<urdf::JointConstSharedPtr> joints_to(const urdf::ModelInterface& model, urdf::LinkConstSharedPtr link) {
   std::vector<urdf::JointConstSharedPtr> joints;
   while (link && link->parent_joint && joints.size() <= model.joints_.size()) {
@@ -61,7 +61,7 @@ bool has_circle(const urdf::ModelInterface& model) {
   });
 }
 
-/// The link behind the most turning joints. Links are kept by name, so the choice is the same every time.
+/// The link behind the most turning joints. Links are sorted by name, so the choice is repeatable.
 std::string farthest_link(const urdf::ModelInterface& model) {
   std::string best;
   std::size_t most = 0;
@@ -136,7 +136,7 @@ Result<UrdfChain> read_urdf(const std::string& path, const std::string& tip) {
     if (!model) return bad(path + ": " + reason.text());
   }
   if (has_circle(*model)) {
-    for (const auto& [name, link] : model->links_) link->child_links.clear();  // they would own each other for ever
+    for (const auto& [name, link] : model->links_) link->child_links.clear();  // breaks ownership cycles
     return bad(path + ": its joints go round in a circle");
   }
   const std::string link = tip.empty() ? farthest_link(*model) : tip;

@@ -22,7 +22,7 @@ std::string shipped_urdf(const std::string& file) { return source_path("library/
 struct UrdfChainTest : ::testing::Test {
   std::string path = testing::TempDir() + "chain_" + std::to_string(::getpid()) + ".urdf";
   ~UrdfChainTest() override { ::unlink(path.c_str()); }
-  /// Reads two links and, between them, what `joint` says.
+  /// Reads two links with the joint `joint` between them.
   std::string refusal(const std::string& joint, const char* tip = "") {
     std::ofstream(path) << "<robot name='r'><link name='a'/><link name='b'/>" + joint + "</robot>";
     const Result<UrdfChain> found = read_urdf(path, tip);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells a robot's constants from its URDF file, for generic kinematics and for limits.
+// Provides the constants of a robot from its URDF file, for generic kinematics and for limits.
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -26,7 +26,7 @@ struct UrdfModel {
 
   void init() { read(); }
   void reinit() { read(); }
-  void cycle() {}  // all that it has to say was said in init
+  void cycle() {}  // init has written all outputs
 
  private:
   void read() {
@@ -45,6 +45,6 @@ struct UrdfModel {
 };
 
 CHIMERA_COMPONENT(UrdfModel, "urdf_model", "Constants of a robot from its URDF file.", rate = 1.0,
-                  source = "2000 paper, section 3.2: constants that the robot itself tells");
+                  source = "2000 paper, section 3.2: constants of the robot itself");
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The constants of a calibrated camera, the same for who simulates it and who reads it.
+// Constants of a calibrated camera, shared by its simulation and by its reader.
 #pragma once
 
 #include <cmath>
@@ -10,13 +10,13 @@
 
 namespace chimera::library {
 
-/// In-consts that a component derives from.
+/// Base of a component with the in-consts of a camera.
 struct CameraPorts {
   InConst<Pose> camera{"camera", frame = "base", doc = "The camera: x to the right, y down, z forward."};
-  InConst<double> focal_length{"focal_length", "1", initial = 800.0, range(1, 1e5), doc = "In pixels."};
+  InConst<double> focal_length{"focal_length", "1", initial = 800.0, range(1, 1e5), doc = "Focal length in pixels."};
   InConst<double[2]> image_size{"image_size", "1", initial = {1280.0, 960.0}, range(1, 1e5),
                                 doc = "Width and height in pixels; the optical axis meets the middle."};
-  InConst<double> ball_diameter{"ball_diameter", "m", initial = 0.05, range(1e-3, 10), doc = "Of the target."};
+  InConst<double> ball_diameter{"ball_diameter", "m", initial = 0.05, range(1e-3, 10), doc = "Diameter of the ball."};
 
  protected:
   Pinhole pinhole() const {

@@ -31,7 +31,7 @@ Error bad(const std::string& text) {
 
 Error refused_by_system(const std::string& link) { return bad(link + ": " + std::strerror(errno)); }
 
-/// An address of either family.
+/// An IPv4 or Unix address.
 struct Address {
   sockaddr_storage storage{};
   socklen_t size = 0;
@@ -69,7 +69,7 @@ Result<Address> local_address(const std::string& link) {
   return address;
 }
 
-/// An abstract address that no other process has.
+/// A unique abstract address.
 Result<Address> own_address(const std::string& link) {
   const std::string name = link.substr(5);
   if (name.empty() || name.size() > 64) return bad(link + ": expected here:NAME of 1 to 64 bytes");

@@ -57,7 +57,7 @@ TEST(FeatureText, IsReadAsItWasWritten) {
   for (const char* wrong : {"", "1,2,3", "1,2,3,4,5", "1,2,3,x", "1;2;3;4", "1,2,3,nan", "1,2,3,4 "}) {
     EXPECT_FALSE(read_feature(wrong, back)) << wrong;
   }
-  const double huge = 1e300;  // would be 900 letters
+  const double huge = 1e300;  // would take 900 characters
   EXPECT_EQ(feature_text({huge, huge, huge, 1}, text), 0u);
   EXPECT_EQ(feature_text({1e9, 1e5, 1e5, 1e5}, text), 54u);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera without distortion that looks at a ball: where in the picture it stands, and how large.
+// A camera without distortion that sees a ball: place and size of the ball in the picture.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace chimera::library {
 
-/// What the vision subsystem tells of one picture: few numbers out of megabytes.
+/// Result of the vision subsystem for one picture.
 struct Feature {
   double time = 0;      ///< s, on the clock of the sender
   double u = 0, v = 0;  ///< px, to the right and down from the corner
@@ -22,7 +22,7 @@ struct Pinhole {
   Frame place;                        ///< the camera's frame in the base frame
   double ball_diameter = 0.05;        ///< m
 
-  /// The picture of a ball at `point` (m, base frame). False, and nothing written, when it is not in the picture.
+  /// Projects a ball at `point` (m, base frame). Returns false and writes nothing if it is outside the picture.
   bool project(const Vec3& point, Feature& feature) const noexcept {
     const Vec3 seen = place.inverse_rotate(point - place.origin);
     if (!(seen[2] > ball_diameter)) return false;
@@ -33,7 +33,7 @@ struct Pinhole {
     feature.size = focal_length * ball_diameter / seen[2];
     return true;
   }
-  /// Where the ball of that picture is (m, base frame). False when the numbers are those of no picture.
+  /// Finds the place of the ball (m, base frame). Returns false if the numbers belong to no picture.
   bool locate(const Feature& feature, Vec3& point) const noexcept {
     if (!(feature.size > 0) || !std::isfinite(feature.size + feature.u + feature.v)) return false;
     const double depth = focal_length * ball_diameter / feature.size;

@@ -14,20 +14,19 @@ using namespace chimera;
 namespace {
 
 struct VisualServoInterface : library::CameraPorts {
-  In<Pose> xm{"xm", frame = "base", doc = "Measured tool pose: where xd begins at on, unless it is handed over."};
+  In<Pose> xm{"xm", frame = "base", doc = "Measured tool pose."};
   Out<Pose> xd{"xd", frame = "base", doc = "Desired tool pose."};
-  Out<Pose> target{"target", frame = "base", doc = "Where the tool should be for the ball that is seen."};
+  Out<Pose> target{"target", frame = "base", doc = "Tool pose at the ball."};
   Out<bool> in_sight{"in_sight", "1", initial = false, doc = "The last feature is younger than timeout."};
-  Out<std::int64_t> received{"received", "1", initial = 0, doc = "Features that told a place."};
+  Out<std::int64_t> received{"received", "1", initial = 0, doc = "Features with a valid place."};
   InConst<Pose> grip{"grip", initial = library::kIdentityPose, frame = "base",
                      doc = "Tool beside the ball: offset along the base's axes, orientation in the base."};
-  InConst<double> gain{"gain", "1/s", initial = 5.0, range(0, 100), doc = "How fast xd closes in on the target."};
-  InConst<double> speed_limit{"speed_limit", "m/s", initial = 0.5, range(0, 10), doc = "Of xd."};
-  InConst<double> turn_limit{"turn_limit", "rad/s", initial = 1.0, range(0, 10), doc = "Of the orientation of xd."};
+  InConst<double> gain{"gain", "1/s", initial = 5.0, range(0, 100), doc = "Rate at which xd approaches the target."};
+  InConst<double> speed_limit{"speed_limit", "m/s", initial = 0.5, range(0, 10), doc = "Largest speed of xd."};
+  InConst<double> turn_limit{"turn_limit", "rad/s", initial = 1.0, range(0, 10), doc = "Largest turning speed of xd."};
   InConst<double> timeout{"timeout", "s", initial = 0.3, range(0.001, 60),
-                          doc = "After so long without a feature xd stands still."};
-  Resource link{"link", safe_state, shared,
-                doc = "Where features come from: udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH."};
+                          doc = "Time without a feature after which xd holds."};
+  Resource link{"link", safe_state, shared, doc = "udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH."};
 
   void init() {
     reinit();
@@ -39,7 +38,7 @@ struct VisualServoInterface : library::CameraPorts {
     if (!xm.valid()) return fault("xm was never written: where the tool is is not known");
     if (!is_finite(*xm)) return fault("xm is not a number");
     *target = *xm;
-    if (!xd.is_handed_over() || !is_finite(*xd)) *xd = *xm;  // else bumpless: a reference that is handed over goes on
+    if (!xd.is_handed_over() || !is_finite(*xd)) *xd = *xm;  // otherwise bumpless: xd continues
     reader_.rewind();
     begin_ = c.now();
     was_seen_ = *in_sight = false;
@@ -66,7 +65,7 @@ struct VisualServoInterface : library::CameraPorts {
     return std::isfinite(library::length(frame.origin + frame.x));
   }
 
-  // Between two pictures the ball goes on as it went from the last to this one.
+  // Between two pictures the ball is assumed to move with its last velocity.
   void look(const library::Feature& feature, double now) {
     Vec3 place;
     if (!pinhole_.locate(feature, place)) return;
@@ -86,7 +85,7 @@ struct VisualServoInterface : library::CameraPorts {
     std::ranges::copy(grip->orientation, target->orientation);
   }
   void approach(double dt) {
-    const double lead = *gain > 0 ? 1 : 0;  // without it xd would trail a ball that moves by its speed over the gain
+    const double lead = *gain > 0 ? 1 : 0;  // otherwise xd would lag a moving ball by its speed over the gain
     Vec3 v;
     for (std::size_t i = 0; i < 3; ++i) v[i] = *gain * (target->position[i] - xd->position[i]) + lead * velocity_[i];
     const double speed = library::length(v), share = speed > *speed_limit ? *speed_limit / speed : 1;

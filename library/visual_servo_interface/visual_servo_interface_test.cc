@@ -11,7 +11,7 @@
 namespace chimera {
 namespace {
 
-// Before the robot, looking back along x.
+// In front of the robot, looking back along x.
 constexpr Pose kCamera{{2.0, 0, 0.5}, {0.5, 0.5, -0.5, -0.5}};
 constexpr Nanoseconds kStep = milliseconds(10);
 
@@ -36,7 +36,8 @@ struct VisionTest : ::testing::Test {
     ASSERT_TRUE(servo.on());
     ASSERT_TRUE(camera.on());
   }
-  /// A camera of 100/3 pictures a second beside a servo of 100 cycles; returns how far xd is from the ball at the end.
+  /// Runs a camera with 100/3 pictures a second and a servo with 100 cycles a second. Returns the final distance of xd
+  /// from the ball.
   double follow(int cycles) {
     for (int i = 0; i < cycles; ++i) {
       if (i % 3 == 0) {

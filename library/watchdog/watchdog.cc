@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Says when values it watches are no longer renewed, and acts on it. README.md is the data sheet.
+// Detects values that are no longer renewed, and acts. README.md is the data sheet.
 #include <algorithm>
 #include <cstdio>
 
@@ -12,15 +12,15 @@ namespace {
 enum class Action { kReport, kFault, kOff };
 
 struct Watchdog {
-  Many<In<Any[]>>    in{"in*", "U", "[n...<=64]", type = "T", doc = "The values to watch, of one type and unit."};
-  InConst<double>    max_age{"max_age", "s", range(1e-6, 86400), doc = "A value must be renewed at least this often."};
-  InConst<Text<16>>  action{"action", "1", initial = "report", one_of = "report fault off", doc = "What follows."};
-  InConst<Text<64>>  target{"target", "1", initial = "", doc = "The task that the action off turns off."};
-  Out<bool>          alive{"alive", "1", initial = true, doc = "All of them are renewed in time."};
-  Out<std::int32_t>  late{"late", "1", initial = 0, range(0, 16), doc = "How many are not."};
-  Out<double>        oldest{"oldest", "s", initial = 0.0,
-                            doc = "The age of the oldest; what nobody has written counts from on."};
-  Out<std::int64_t>  alarms{"alarms", "1", initial = 0, doc = "How often alive went from true to false."};
+  Many<In<Any[]>>    in{"in*", "U", "[n...<=64]", type = "T", doc = "Values to watch, of one type and unit."};
+  InConst<double>    max_age{"max_age", "s", range(1e-6, 86400), doc = "Largest age of a live value."};
+  InConst<Text<16>>  action{"action", "1", initial = "report", one_of = "report fault off",
+                            doc = "Action when alive falls."};
+  InConst<Text<64>>  target{"target", "1", initial = "", doc = "Task for the action off."};
+  Out<bool>          alive{"alive", "1", initial = true, doc = "All values are renewed in time."};
+  Out<std::int32_t>  late{"late", "1", initial = 0, range(0, 16), doc = "Number of values that are too old."};
+  Out<double>        oldest{"oldest", "s", initial = 0.0, doc = "Age of the oldest value."};
+  Out<std::int64_t>  alarms{"alarms", "1", initial = 0, doc = "Times that alive fell."};
 
   Outcome init() {
     if (in.size() == 0) return fault("there is nothing to watch: name at least one input");
@@ -54,13 +54,13 @@ struct Watchdog {
     if (*alive || !was_alive) return ok();
     *alarms += 1;
     if (action_ == Action::kOff && !c.signal(Signal::kOff, target->c_str()))
-      return fault("the target could not be told");
+      return fault("the target is no task of this application");
     if (action_ != Action::kFault) return ok();
     char text[80];
     std::snprintf(text, sizeof text, "in[%zu] has not been renewed for %.3g s", worst, *oldest);
     return fault(text);
   }
-  // Only somebody who looks after the cause turns it on again.
+  // Always succeeds, because a person turns the task on again after removing the cause.
   bool clear() { return true; }
 
  private:
@@ -69,6 +69,6 @@ struct Watchdog {
 };
 
 CHIMERA_COMPONENT(Watchdog, "watchdog",
-                  "Says when values it watches are no longer renewed, and acts on it.", rate = 100.0);
+                  "Detects values that are no longer renewed, and acts.", rate = 100.0);
 
 }  // namespace

@@ -37,7 +37,7 @@ TEST_F(WatchdogTest, SaysWhichManyAreLateAndWhenTheyAreRenewed) {
   EXPECT_EQ(rig.get<std::int32_t>("late"), 1);
   EXPECT_NEAR(rig.get<double>("oldest"), 0.011, 1e-12);
   ASSERT_TRUE(rig.cycle());
-  EXPECT_EQ(rig.get<std::int64_t>("alarms"), 1);  // once for each time
+  EXPECT_EQ(rig.get<std::int64_t>("alarms"), 1);  // once for each failure
   renew(0);
   ASSERT_TRUE(rig.cycle());
   EXPECT_TRUE(alive());
@@ -53,7 +53,7 @@ TEST_F(WatchdogTest, GivesWhatNobodyHasWrittenTheSameTimeFromOn) {
   ASSERT_TRUE(rig.off());
   ASSERT_TRUE(rig.on());
   ASSERT_TRUE(rig.cycle());
-  EXPECT_TRUE(alive());  // its patience begins anew
+  EXPECT_TRUE(alive());  // max_age counts from `on` again
 }
 
 TEST_F(WatchdogTest, AsAFaultSaysWhoIsLateAndClearBringsItBack) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Output element of the cruise control (2000 paper, figure 15): how hard to press the brakes.
+// Computes the brake force for a wanted force of the cruise control (2000 paper, figure 15).
 #include <algorithm>
 #include <cmath>
 
@@ -10,9 +10,9 @@ using namespace chimera;
 namespace {
 
 struct Wheels {
-  In<double> fdw{"fdw", "N", doc = "Force wanted of the brakes."};
+  In<double> fdw{"fdw", "N", doc = "Wanted brake force."};
   Out<double> fb{"fb", "N", initial = 0.0, safety, range(0, 20000), doc = "Brake force at the wheels."};
-  InConst<double> brake_limit{"brake_limit", "N", initial = 12000.0, range(0, 20000), doc = "Of the brakes."};
+  InConst<double> brake_limit{"brake_limit", "N", initial = 12000.0, range(0, 20000), doc = "Largest brake force."};
 
   Outcome init() {
     return *brake_limit >= 0 && *brake_limit <= 20000 ? ok() : fault("brake_limit is 0 to 20000 N");

@@ -6,7 +6,7 @@
 #include <array>
 #include <string>
 
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 #include "chimera/runtime/preemptive/preemptive_executor.h"
 #include "tests/conformance/runner.h"
 #include "tests/conformance/timeline.h"

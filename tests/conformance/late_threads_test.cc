@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 #include "chimera/runtime/preemptive/preemptive_executor.h"
 #include "tests/conformance/listener.h"
 #include "tests/conformance/toy.h"

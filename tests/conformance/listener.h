@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 #include "chimera/runtime/boundary_listener.h"
 #include "chimera/runtime/releases.h"
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 #include "chimera/runtime/preemptive/preemptive_executor.h"
 #include "tests/conformance/runner.h"
 #include "tests/conformance/toy.h"

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "chimera/platform/virtual/virtual_clock.h"
+#include "chimera/platform/clock.h"
 #include "chimera/runtime/executive/executive.h"
 #include "chimera/runtime/hosted/asked_sets.h"
 #include "chimera/runtime/hosted/refusal_text.h"

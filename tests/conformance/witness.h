@@ -12,7 +12,7 @@
 #include <string>
 #include <thread>
 
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 
 namespace chimera::toy {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "bench/tasks.h"
-#include "chimera/platform/virtual/virtual_clock.h"
+#include "chimera/platform/clock.h"
 #include "chimera/runtime/executive/executive.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
 

@@ -12,7 +12,7 @@
 #include <new>
 #include <span>
 
-#include "chimera/platform/memory_region.h"
+#include "chimera/platform/shared_memory.h"
 #include "chimera/table/group.h"
 #include "tests/kill/forked.h"
 #include "tests/kill/publication.h"

@@ -4,7 +4,7 @@
 # usage: typed.sh --stand-in BUILD_TREE    with the programs of a tree, ordinary priority, and a ./dev that only knows
 #                                          its commands: building and installing is typed by tools/fresh_machine.sh
 #        typed.sh --real                   in the checkout, with everything, as a newcomer does
-# Also refuses a command of the README that stands in no block, and YAML that is in no file.
+# Also refuses a command that stands in no block of the README, YAML that is in no file, and output that no lesson has.
 set -euo pipefail
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 readme=$source/README.md
@@ -73,5 +73,8 @@ while IFS= read -r line; do
   grep -qxF -- "$line" "$source/library/tderiv/tderiv.cc" ||
     fail "no such line in a component: $line"
 done < <(blocks cpp)
-for file in puma.svg trace.json arm.svg; do [ -s "$file" ] || fail "no $file was made"; done
+while IFS= read -r line; do
+  grep -qxF -- "$line" "$source"/examples/*/expected.txt || fail "README.md quotes what no lesson prints: $line"
+done < <(blocks text)
+for file in puma.svg sweep.svg trace.json arm.svg; do [ -s "$file" ] || fail "no $file was made"; done
 echo "readme: $(blocks sh | grep -c .) lines typed"

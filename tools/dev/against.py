@@ -228,6 +228,16 @@ def show(found):
               ", ".join(f"bench/{file}" for file in found["differing_sources"]))
 
 
+def record(found):
+    """Adds a line for each figure of a result to bench/results/pairs.csv. `lower` and `upper` are quartiles."""
+    machine = found["machine"]
+    keys = ("there", "here", "ratio", "lower_quartile", "upper_quartile")
+    common.record("pairs.csv", [
+        (machine["commit"], found["against"], machine["cpu"], figure["row"], figure["what"], figure["unit"],
+         *("" if figure[key] is None else f"{figure[key]:.4g}" for key in keys), figure["pairs"], "")
+        for figure in found["figures"]])
+
+
 def prepare(arguments, known):
     """Builds both sides. Returns (the other tree, rows), or raises Refused before anything is measured."""
     other = Other(arguments.against)

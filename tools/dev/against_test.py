@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Comparing two commits: what is refused leaves nothing behind, and the numbers are those of the pairs."""
 import contextlib
+import csv
+import functools
 import io
 import json
 import pathlib
@@ -189,6 +191,22 @@ class Lines(unittest.TestCase):
         self.assertIn("only here: row 7, new\n", said)
         self.assertIn("are not the same in both: bench/row_07_a.cc\n", said)
 
+    def test_record_adds_a_line_for_each_figure_of_both(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "pairs.csv"
+            write = functools.partial(common.record, folder=pathlib.Path(folder))
+            with mock.patch.object(common, "record", write):
+                self.said()
+                self.assertFalse(file.exists())
+                self.said("--record")
+            [line] = csv.reader(file.read_text().splitlines())
+            with open(common.RESULTS / "pairs.csv", encoding="utf-8") as committed:
+                columns = next(csv.reader(committed))
+        found = dict(zip(columns, line, strict=True))
+        self.assertEqual([found[key] for key in columns[1:2] + columns[3:]],
+                         ["abc", "7", "a", "ns", "2", "3", "1.5", "1.5", "1.5", "1", ""])
+        self.assertEqual(columns[5:9], ["unit", "before", "after", "ratio"])
+
     def test_a_refusal_is_one_sentence_and_its_code(self):
         said = io.StringIO()
         with mock.patch.object(against, "result", side_effect=against.Refused("no such commit", 2)), \
@@ -197,7 +215,7 @@ class Lines(unittest.TestCase):
         self.assertEqual(said.getvalue(), "./dev: no such commit\n")
 
     def test_the_command_line_is_judged_before_anything_is_built(self):
-        for arguments in (["7", "--pairs", "0", "--against", "HEAD"], ["7", "--pairs", "3"],
+        for arguments in (["7", "--pairs", "0", "--against", "HEAD"], ["7", "--pairs", "3"], ["7", "--record"],
                           ["7", "--peers", "--against", "HEAD"], ["99", "--against", "HEAD"]):
             done = subprocess.run(["/usr/bin/python3", str(common.ROOT / "tools" / "dev" / "bench.py"), *arguments],
                                   capture_output=True, text=True)

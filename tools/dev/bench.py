@@ -38,9 +38,13 @@ def parse_arguments():
     group.add_argument("--against", metavar="COMMIT", help="unpack and build that commit under build/against/ too, run "
                        "the rows of both in turn, and print both figures, the median ratio and its quartiles")
     parser.add_argument("--pairs", type=pair_count, metavar="N", help=f"with --against: pairs of runs ({PAIRS})")
+    parser.add_argument("--record", action="store_true", help="with --against: add the figures to "
+                        "bench/results/pairs.csv")
     arguments = parser.parse_args()
     if arguments.pairs and not arguments.against:
         parser.error("--pairs counts the pairs of --against COMMIT, which is missing")
+    if arguments.record and not arguments.against:
+        parser.error("--record keeps the figures of --against COMMIT, which is missing")
     arguments.pairs = arguments.pairs or PAIRS
     return arguments
 
@@ -135,6 +139,8 @@ def main():
     sys.stdout = output
     if found:
         show(found, arguments)
+        if arguments.record:
+            against.record(found)
     return code
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the commands of ./dev share: lines for people, the build trees, the machine-wide real-time lock."""
 import contextlib
+import csv
 import fcntl
 import os
 import pathlib
@@ -12,6 +13,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build"
+RESULTS = ROOT / "bench" / "results"
 
 
 def step(text):
@@ -95,6 +97,12 @@ def commit():
     except (OSError, subprocess.CalledProcessError):
         return "unknown"
     return name.stdout.strip() + ("+" if dirty.stdout.strip() else "")
+
+
+def record(name, lines, folder=RESULTS):
+    """Adds lines to a file of measurements. Its first line names the columns."""
+    with open(folder / name, "a", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows(lines)
 
 
 def _open_lock_file():

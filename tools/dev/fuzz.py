@@ -1,33 +1,51 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs a libFuzzer target from a committed corpus for a time; with --planted the target must find its defect."""
+"""The campaign fuzz: mutates the committed corpus of every x_fuzz.cc for a time. First each target runs with its
+planted defect, which it must find. The last line counts executions and faults.
+Build first: ./dev build fuzz fuzz_targets"""
 import argparse
+import json
+import os
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
+import time
+
+import common
+
+PLANTED_LIMIT = 30  # s; a planted defect is found in less
 
 
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("program", type=pathlib.Path)
-    parser.add_argument("--corpus", type=pathlib.Path, required=True)
-    parser.add_argument("--seconds", type=int, default=8)
-    parser.add_argument("--planted", action="store_true", help="the target has a planted defect: finding it is success")
+    parser.add_argument("--build", type=pathlib.Path, default=common.BUILD / "fuzz")
+    parser.add_argument("--seconds", type=float, default=60)
     return parser.parse_args()
 
 
-def fuzz(arguments, folder):
-    """Runs in `folder` on a copy of the corpus, so that the committed one stays as it is."""
-    corpus = folder / "corpus"
-    shutil.copytree(arguments.corpus, corpus)
-    command = [str(arguments.program.resolve()), str(corpus), f"-max_total_time={arguments.seconds}",
-               "-print_final_stats=1", "-timeout=5", "-rss_limit_mb=2048", f"-artifact_prefix={folder}/found_"]
-    if arguments.planted:
-        command.append("-seed=1")  # so many executions, on every machine: a slow one does not find it less
-    return subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                          errors="replace")
+def sources():
+    """Every x_fuzz.cc; its corpus is the folder x_corpus beside it."""
+    return sorted((common.ROOT / "chimera").rglob("*_fuzz.cc"))
+
+
+def corpus_of(source):
+    return source.with_name(source.stem.removesuffix("_fuzz") + "_corpus")
+
+
+def fuzz(program, corpus, seconds, *options):
+    """Runs on a copy of the corpus, so that the committed one stays as it is; an input that fails is kept beside the
+    program. Returns (exit code, what the program printed)."""
+    with tempfile.TemporaryDirectory() as folder:
+        copy = pathlib.Path(folder) / "corpus"
+        shutil.copytree(corpus, copy)
+        command = [str(program), str(copy), f"-max_total_time={max(1, round(seconds))}", "-print_final_stats=1",
+                   "-timeout=5", "-rss_limit_mb=2048", f"-artifact_prefix={program}.found_", *options]
+        process = subprocess.run(command, cwd=folder, env=dict(os.environ, CHIMERA_SOURCE=str(common.ROOT)),
+                                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                 errors="replace")
+        return process.returncode, process.stdout
 
 
 def last_number(pattern, text):
@@ -35,30 +53,42 @@ def last_number(pattern, text):
     return int(found[-1]) if found else 0
 
 
-def judge(arguments, process):
-    """Exit code and the line that says why."""
-    said = process.stdout + process.stderr
-    executions = max(last_number(r"stat::number_of_executed_units: (\d+)", said), last_number(r"^#(\d+)", said))
-    edges = last_number(r"cov: (\d+)", said)
-    counted = f"{arguments.program.name}: {executions} executions, {edges} edges"
-    crashed = process.returncode != 0 and "SUMMARY: " in said
-    if arguments.planted:
-        return (0, f"{counted}, the planted defect was found") if crashed else (1, f"{counted}, NOT found:\n{said}")
-    if process.returncode != 0 or not executions or not edges:
-        return 1, f"{said}\n{counted}, exit {process.returncode}"
-    return 0, counted
+def executions(said):
+    return max(last_number(r"stat::number_of_executed_units: (\d+)", said), last_number(r"^#(\d+)", said))
+
+
+def judge(code, said):
+    """Why a run without a planted defect is a fault; empty: it is none."""
+    if code != 0:
+        return f"exit {code}"
+    return "" if executions(said) and last_number(r"cov: (\d+)", said) else "it executed nothing"
+
+
+def judge_planted(code, said):
+    return "" if code != 0 and "SUMMARY: " in said else "it did not find its planted defect"
+
+
+def report(name, fault, said):
+    print(f"{said}\n{name}: {fault}" if fault else f"{name}: {executions(said)} executions", flush=True)
+    return 1 if fault else 0
 
 
 def main():
     arguments = parse_arguments()
-    if not arguments.corpus.is_dir() or not any(arguments.corpus.iterdir()):
-        print(f"no corpus in {arguments.corpus}")
-        return 1
-    with tempfile.TemporaryDirectory() as folder:
-        process = fuzz(arguments, pathlib.Path(folder))
-        code, line = judge(arguments, process)
-    print(line)
-    return code
+    programs = [(arguments.build.resolve() / "targets" / source.stem, corpus_of(source)) for source in sources()]
+    begin, n, faults = time.monotonic(), 0, 0
+    for program, corpus in programs:
+        planted = program.with_name(program.name + "_planted")
+        # With one seed the mutations are the same on every machine, and a slow machine finds the defect too.
+        code, said = fuzz(planted, corpus, PLANTED_LIMIT, "-seed=1")
+        faults += report(planted.name, judge_planted(code, said), said)
+    left = arguments.seconds - (time.monotonic() - begin)
+    for program, corpus in programs:
+        code, said = fuzz(program, corpus, left / len(programs))
+        n += executions(said)
+        faults += report(program.name, judge(code, said), said)
+    print(json.dumps({"name": "fuzz", "n": n, "faults": faults}))
+    return 1 if faults or not n else 0
 
 
 if __name__ == "__main__":

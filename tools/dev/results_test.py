@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The counting frame on made-up results: nothing that went wrong may pass for passed."""
 import contextlib
+import csv
+import functools
 import io
 import json
 import os
 import pathlib
+import sys
 import tempfile
 import unittest
 from unittest import mock
@@ -175,26 +178,58 @@ class Shares(unittest.TestCase):
 
 class Fuzz(unittest.TestCase):
     STATS = "#9 cov: 12 ft: 3\nstat::number_of_executed_units: 900\n"
+    CRASH = STATS + "SUMMARY: libFuzzer: deadly signal"
 
-    def judge(self, planted, code, said):
-        arguments = mock.Mock(planted=planted, program=pathlib.Path("f"))
-        return fuzz.judge(arguments, mock.Mock(returncode=code, stdout="", stderr=said))
+    def campaign(self, plain, planted):
+        """(exit code, last line) when every target ends so: (exit code, output)."""
+        said = io.StringIO()
+        with mock.patch.object(fuzz, "fuzz", lambda program, *_: planted if "planted" in program.name else plain), \
+                mock.patch.object(sys, "argv", ["fuzz.py", "--seconds", "0"]), contextlib.redirect_stdout(said):
+            return fuzz.main(), json.loads(said.getvalue().splitlines()[-1])
 
-    def test_a_quiet_run_passes_with_its_counts(self):
-        self.assertEqual(self.judge(False, 0, self.STATS), (0, "f: 900 executions, 12 edges"))
+    def test_counts_the_executions_without_planted_defects(self):
+        targets = len(fuzz.sources())
+        self.assertEqual(self.campaign((0, self.STATS), (77, self.CRASH)),
+                         (0, {"name": "fuzz", "n": 900 * targets, "faults": 0}))
 
-    def test_a_crash_fails(self):
-        self.assertEqual(self.judge(False, 77, self.STATS + "SUMMARY: libFuzzer: deadly signal")[0], 1)
+    def test_a_crash_is_a_fault(self):
+        code, report = self.campaign((77, self.CRASH), (77, self.CRASH))
+        self.assertEqual((code, report["faults"]), (1, len(fuzz.sources())))
 
-    def test_a_run_without_executions_fails(self):
-        self.assertEqual(self.judge(False, 0, "")[0], 1)
+    def test_a_run_without_executions_is_a_fault(self):
+        self.assertTrue(fuzz.judge(0, ""))
 
-    def test_a_planted_defect_that_is_not_found_fails(self):
-        self.assertEqual(self.judge(True, 0, self.STATS)[0], 1)
-        self.assertEqual(self.judge(True, 1, "cannot open the corpus")[0], 1)
+    def test_a_planted_defect_that_is_not_found_is_a_fault(self):
+        self.assertEqual(self.campaign((0, self.STATS), (0, self.STATS))[0], 1)
+        self.assertTrue(fuzz.judge_planted(1, "cannot open the corpus"))
+
+    def test_every_target_has_a_corpus(self):
+        self.assertTrue(fuzz.sources())
+        self.assertEqual([source.name for source in fuzz.sources() if not any(fuzz.corpus_of(source).iterdir())], [])
 
 
 class Stress(unittest.TestCase):
+    def test_a_target_without_a_tree_is_in_the_release_tree(self):
+        found = {campaign.name: campaign for campaign in stress.campaigns()}
+        self.assertEqual((found["labels"].tree, found["labels"].target), ("release", "labels_stress"))
+        self.assertEqual((found["fuzz"].tree, found["fuzz"].target), ("fuzz", "fuzz_targets"))
+        self.assertIn(str(common.BUILD / "fuzz"), found["fuzz"].command)
+
+    def test_a_campaign_adds_a_line_to_its_file(self):
+        command = ["sh", "-c", 'echo \'{"n": 9, "faults": 0}\'']
+        with tempfile.TemporaryDirectory() as folder:
+            write = functools.partial(common.record, folder=pathlib.Path(folder))
+            with mock.patch.object(common, "record", write), contextlib.redirect_stdout(io.StringIO()):
+                self.assertEqual(stress.run(stress.Campaign("c", "release", "t", command), 1), 0)
+            [line] = csv.reader((pathlib.Path(folder) / "campaigns.csv").read_text().splitlines())
+        with open(common.RESULTS / "campaigns.csv", encoding="utf-8") as committed:
+            found = dict(zip(next(csv.reader(committed)), line, strict=True))
+        self.assertEqual((found["campaign"], found["n"], found["faults"]), ("c", "9", "0"))
+
+    def test_the_page_has_a_row_for_every_campaign(self):
+        page = (common.ROOT / "docs" / "reliability.md").read_text(encoding="utf-8")
+        self.assertEqual([c.name for c in stress.campaigns() if f"| `{c.name}` |" not in page], [])
+
     def test_minutes_and_names_come_in_any_order(self):
         self.assertEqual(stress.parse(["kill", "5", "stop"]), (5.0, ["kill", "stop"]))
         self.assertEqual(stress.parse(["kill"]), (10.0, ["kill"]))

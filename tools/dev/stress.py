@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """./dev test --stress: runs campaigns for a time, prints n and the 95 % bound 3/n, keeps the record."""
+import dataclasses
 import datetime
 import json
 import re
@@ -9,16 +10,25 @@ import subprocess
 import common
 
 LIST = common.ROOT / "tests" / "stress.txt"
-RECORD = common.ROOT / "docs" / "reliability.md"
+
+
+@dataclasses.dataclass
+class Campaign:
+    """A line of tests/stress.txt."""
+    name: str
+    tree: str
+    target: str
+    command: list
 
 
 def campaigns():
-    """(name, target, command) of each line."""
     found = []
     for line in LIST.read_text().splitlines():
         if line.strip() and not line.startswith("#"):
             name, target, command = line.split(None, 2)
-            found.append((name, target, shlex.split(command.format(build=common.BUILD / "release"))))
+            tree, _, target = target.rpartition("/")
+            tree = tree or "release"
+            found.append(Campaign(name, tree, target, shlex.split(command.format(build=common.BUILD / tree))))
     return found
 
 
@@ -40,11 +50,21 @@ def last_json(output):
     raise ValueError("no JSON line in its output")
 
 
-def run(name, command, seconds):
+def build(chosen):
+    """True when the targets of the campaigns are built, a tree at a time; ./dev installs what a tree needs."""
+    trees = {}
+    for campaign in chosen:
+        trees.setdefault(campaign.tree, set()).add(campaign.target)
+    return all(subprocess.run([common.ROOT / "dev", "build", tree, *sorted(targets)]).returncode == 0
+               for tree, targets in trees.items())
+
+
+def run(campaign, seconds):
     """One campaign. Returns its fault count, or None when it did not report."""
+    name = campaign.name
     common.step(f"{name} for {seconds:g} s")
-    process = subprocess.run(command + ["--seconds", f"{seconds:g}"], cwd=common.ROOT, stdin=subprocess.DEVNULL,
-                             capture_output=True, text=True, errors="replace")
+    process = subprocess.run(campaign.command + ["--seconds", f"{seconds:g}"], cwd=common.ROOT,
+                             stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace")
     try:
         report = last_json(process.stdout)
         n, faults = int(report["n"]), int(report["faults"])
@@ -55,27 +75,22 @@ def run(name, command, seconds):
     print(f"   {name}: n = {n}, faults = {faults}, {bound}", flush=True)
     if faults:
         print(process.stdout + process.stderr)
-    record(name, n, faults)
-    return faults if process.returncode == 0 else max(faults, 1)
-
-
-def record(name, n, faults):
     date = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
-    bound = f"{3 / n:.2g}" if faults == 0 and n else "-"
-    with open(RECORD, "a", encoding="utf-8") as file:
-        file.write(f"| {date} | {common.commit()} | {name} | {n} | {faults} | {bound} |\n")
+    common.record("campaigns.csv", [(date, common.commit(), name, n, faults, "")])
+    return faults if process.returncode == 0 else max(faults, 1)
 
 
 def main(words):
     minutes, wanted = parse(words)
-    known = [campaign[0] for campaign in campaigns()]
-    unknown = [name for name in wanted if name not in known]
+    known = campaigns()
+    names = [campaign.name for campaign in known]
+    unknown = [name for name in wanted if name not in names]
     if unknown or not known:
         print(f"./dev: no campaign '{' '.join(unknown)}' in {LIST.relative_to(common.ROOT)}; "
-              f"there are: {', '.join(known) or 'none'}")
+              f"there are: {', '.join(names) or 'none'}")
         return 2
-    chosen = [campaign for campaign in campaigns() if not wanted or campaign[0] in wanted]
-    if not common.configure_with_tests("release") or not common.compile_tree("release", *{c[1] for c in chosen}):
+    chosen = [campaign for campaign in known if not wanted or campaign.name in wanted]
+    if not build(chosen):
         return 1
-    outcomes = [run(name, command, minutes * 60) for name, _, command in chosen]
+    outcomes = [run(campaign, minutes * 60) for campaign in chosen]
     return 0 if all(faults == 0 for faults in outcomes) else 1

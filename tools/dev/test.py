@@ -29,10 +29,10 @@ SHARES = (
     Share("units", (("debug", "unit|hostile"), ("tsan", "threads"), ("release", "symbol|cost"))),
     Share("processes", (("debug", "process"), ("release", "realtime"))),
     Share("firmware", (("debug", "firmware"),)),
-    Share("models", (("debug", "model"), ("fuzz", "fuzz"))),
+    Share("models", (("debug", "model"),)),
 )
 QUICK = Share("quick", (("debug", "unit"),))
-TREES = ("debug", "tsan", "release", "fuzz")
+TREES = ("debug", "tsan", "release")
 # What these tests judge can depend on when the system runs a thread: one that fails runs again, at most twice.
 SCHEDULED = {"threads", "process", "hostile", "realtime"}
 MOST_TRIES = 3
@@ -61,11 +61,8 @@ def parse_arguments():
 
 
 def trees_of(shares):
-    """The trees the shares need; the fuzz tree only when something is to be fuzzed."""
-    wanted = [tree for tree in TREES if any(tree == run[0] for share in shares for run in share.runs)]
-    if not any((common.ROOT / "chimera").rglob("*_fuzz.cc")):
-        wanted = [tree for tree in wanted if tree != "fuzz"]
-    return wanted
+    """The trees the shares need."""
+    return [tree for tree in TREES if any(tree == run[0] for share in shares for run in share.runs)]
 
 
 def on_build_machine():
@@ -74,9 +71,8 @@ def on_build_machine():
 
 def compile_trees(trees, quick=False):
     for tree in trees:
-        ready = common.configure(tree) if tree == "fuzz" else common.configure_with_tests(tree)
         targets = ("tests_quick",) if quick else () if tree == "debug" else ("tests_needed",)
-        if not ready or not common.compile_tree(tree, *targets):
+        if not common.configure_with_tests(tree) or not common.compile_tree(tree, *targets):
             return False
     return True
 

@@ -22,22 +22,17 @@ std::string seconds_text(Nanoseconds time) {
 
 std::string count_text(std::size_t n, const char* noun) { return std::to_string(n) + " " + noun + (n == 1 ? "" : "s"); }
 
-std::string json_list(const std::vector<std::string>& texts) {
-  std::string list;
-  for (const std::string& text : texts) list += (list.empty() ? "" : ", ") + json_string(text);
-  return "[" + list + "]";
-}
-
-std::string json_of(const CaseOutcome& one) {
-  std::string expectations;
+Json json_of(const CaseOutcome& one) {
+  Json expectations = Json::array();
   for (const RunReport::Judged& judged : one.run.expectations)
-    expectations += (expectations.empty() ? "" : ", ") + std::string("{\"text\": ") + json_string(judged.text) +
-                    ", \"holds\": " + (judged.holds ? "true" : "false") + ", \"said\": " + json_string(judged.said) +
-                    "}";
-  return "{\"name\": " + json_string(one.name) + ", \"passes\": " + (one.complaints().empty() ? "true" : "false") +
-         ", \"failure\": " + (one.run.failure.empty() ? "null" : json_string(one.run.failure)) +
-         ", \"ran_ns\": " + std::to_string(one.run.ran.count) + ", \"strict\": " + (one.strict ? "true" : "false") +
-         ", \"expectations\": [" + expectations + "], \"remarks\": " + json_list(one.run.remarks) + "}";
+    expectations.push_back({{"text", judged.text}, {"holds", judged.holds}, {"said", judged.said}});
+  return {{"name", one.name},
+          {"passes", one.complaints().empty()},
+          {"failure", one.run.failure.empty() ? Json() : Json(one.run.failure)},
+          {"ran_ns", one.run.ran.count},
+          {"strict", one.strict},
+          {"expectations", std::move(expectations)},
+          {"remarks", one.run.remarks}};
 }
 
 /// "examples.02_cruise_control.cruise_control": build machines cut it at the dots.
@@ -136,10 +131,10 @@ std::string text(const CaseReport& report) {
 std::string json(const CaseReport& report) {
   std::string files;
   for (const CaseFileOutcome& file : report.files) {
-    std::string cases;
-    for (const CaseOutcome& one : file.cases) cases += (cases.empty() ? "" : ", ") + json_of(one);
-    files += (files.empty() ? "" : ",\n") + std::string("{\"file\": ") + json_string(file.file) +
-             ", \"description\": " + json_string(file.description) + ", \"cases\": [" + cases + "]}";
+    Json cases = Json::array();
+    for (const CaseOutcome& one : file.cases) cases.push_back(json_of(one));
+    files += (files.empty() ? "" : ",\n") +
+             spaced_json({{"file", file.file}, {"description", file.description}, {"cases", std::move(cases)}});
   }
   return "{\"passed\": " + std::to_string(report.passed()) + ", \"failed\": " + std::to_string(report.failed()) +
          ", \"files\": [\n" + files + "]}\n";

@@ -7,18 +7,16 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "chimera/cli/files/blanks.h"
 #include "chimera/cli/run/profile_report.h"
 #include "chimera/cli/run/run_loop.h"
 #include "chimera/cli/run/run_plan.h"
+#include "chimera/text/json.h"
 #include "chimera/text/not_off.h"
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr std::int64_t kMostSamples = 1'000'000;
 
@@ -218,23 +216,22 @@ std::string encode(const MeasuredRun& run) {
               {"expectations", std::move(expectations)},
               {"remarks", run.remarks},
               {"ran", run.ran.count}}
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
+      .dump();
 }
 
 MeasuredRun decode_measured(const std::string& text) {
   MeasuredRun run;
   try {
     const Json json = Json::parse(text);
-    run.failure = json.at("failure").get<std::string>();
-    run.remarks = json.at("remarks").get<std::vector<std::string>>();
-    run.ran = Nanoseconds{json.at("ran").get<std::int64_t>()};
+    run.failure = json.at("failure").as_string();
+    run.remarks = json.at("remarks").as_strings();
+    run.ran = Nanoseconds{json.at("ran").as_int64()};
     for (const Json& number : json.at("numbers"))
-      run.numbers.push_back({number.at(0).get<std::string>(), number.at(1).get<std::string>(),
-                             number.at(2).is_null() ? std::nullopt : std::optional(number.at(2).get<double>())});
+      run.numbers.push_back({number[0].as_string(), number[1].as_string(),
+                             number[2].is_null() ? std::nullopt : std::optional(number[2].as_double())});
     for (const Json& judged : json.at("expectations"))
-      run.expectations.push_back(
-          {judged.at(0).get<std::string>(), judged.at(1).get<std::string>(), judged.at(2).get<bool>()});
-  } catch (const Json::exception&) {
+      run.expectations.push_back({judged[0].as_string(), judged[1].as_string(), judged[2].as_bool()});
+  } catch (const JsonError&) {
     run = {};
     run.failure = "the process of this run ended without a result";
   }

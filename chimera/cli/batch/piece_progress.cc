@@ -2,7 +2,7 @@
 // Prints and wipes a line with the number of finished pieces.
 #include "chimera/cli/batch/piece_progress.h"
 
-#include "chimera/platform/terminal.h"
+#include "chimera/platform/standard_streams.h"
 
 namespace chimera::cli {
 

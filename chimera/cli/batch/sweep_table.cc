@@ -94,21 +94,19 @@ std::string others(const SweepTable& table, std::size_t run) {
   return text;
 }
 
-std::string json_of(const SweepTable& table, std::size_t r) {
+Json json_of(const SweepTable& table, std::size_t r) {
   const MeasuredRun& run = table.runs[r];
-  std::string set, values, expectations;
+  Json set = Json::object(), values = Json::object(), expectations = Json::array();
   for (std::size_t l = 0; l < table.lists.size(); ++l)
-    set += (set.empty() ? "" : ", ") + json_string(table.lists[l].name) + ": " +
-           json_string(table.lists[l].values[table.index_of(r, l)]);
+    set[table.lists[l].name] = table.lists[l].values[table.index_of(r, l)];
   for (const Measure::Number& number : run.numbers)
-    values += (values.empty() ? "" : ", ") + json_string(number.name) + ": {\"unit\": " + json_string(number.unit) +
-              ", \"value\": " + (number.value ? json_number(*number.value) : "null") + "}";
+    values[number.name] = {{"unit", number.unit}, {"value", number.value ? Json(*number.value) : Json()}};
   for (const RunReport::Judged& judged : run.expectations)
-    expectations += (expectations.empty() ? "" : ", ") + std::string("{\"text\": ") + json_string(judged.text) +
-                    ", \"holds\": " + (judged.holds ? "true" : "false") + ", \"said\": " + json_string(judged.said) +
-                    "}";
-  return "{\"set\": {" + set + "}, \"failure\": " + (run.failure.empty() ? "null" : json_string(run.failure)) +
-         ", \"values\": {" + values + "}, \"expectations\": [" + expectations + "]}";
+    expectations.push_back({{"text", judged.text}, {"holds", judged.holds}, {"said", judged.said}});
+  return {{"set", std::move(set)},
+          {"failure", run.failure.empty() ? Json() : Json(run.failure)},
+          {"values", std::move(values)},
+          {"expectations", std::move(expectations)}};
 }
 
 }  // namespace
@@ -157,7 +155,7 @@ std::string csv(const SweepTable& table) {
 
 std::string json(const SweepTable& table) {
   std::string rows;
-  for (std::size_t r = 0; r < table.runs.size(); ++r) rows += (r == 0 ? "" : ",\n") + json_of(table, r);
+  for (std::size_t r = 0; r < table.runs.size(); ++r) rows += (r == 0 ? "" : ",\n") + spaced_json(json_of(table, r));
   return "{\"subsystem\": " + json_string(table.subsystem) + ", \"runs\": [\n" + rows + "]}\n";
 }
 

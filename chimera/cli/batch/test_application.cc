@@ -12,7 +12,7 @@
 #include "chimera/cli/files/file_refusal.h"
 #include "chimera/cli/files/output_file.h"
 #include "chimera/cli/run/run_plan.h"
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/standard_streams.h"
 #include "chimera/text/nearest.h"
 
 namespace chimera::cli {

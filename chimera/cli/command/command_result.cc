@@ -3,7 +3,7 @@
 #include "chimera/cli/command/command_result.h"
 
 #include "chimera/base/hosted/terminal_text.h"
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/standard_streams.h"
 
 namespace chimera::cli {
 

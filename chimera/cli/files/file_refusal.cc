@@ -17,8 +17,7 @@ CommandResult file_refusal(const Error& error, bool json, int code) {
   CommandResult output;
   output.code = code;
   if (json)
-    output.out = "{\"error\": {\"where\": " + json_string(error.where.view()) +
-                 ", \"message\": " + json_string(error.message.view()) + "}}\n";
+    output.out = spaced_json({{"error", {{"where", error.where.view()}, {"message", error.message.view()}}}}) + "\n";
   else
     output.err = error_line(error);
   return output;

@@ -16,15 +16,14 @@ CommandResult list(const Workplace& workplace, bool json) {
   CommandResult output;
   std::size_t width = 4;
   for (const LibraryEntry& entry : library->entries()) width = std::max(width, entry.descriptor.name.size());
-  std::string rows;
+  Json components = Json::array();
   for (const LibraryEntry& entry : library->entries()) {
     const Descriptor& d = entry.descriptor;
     output.out += padded(d.name, width) + "  " + plain_line(d.doc) + "\n";
-    rows += (rows.empty() ? "" : ", ") + std::string("{\"name\": ") + json_string(d.name) +
-            ", \"doc\": " + json_string(d.doc) + ", \"file\": " + json_string(entry.object_file) + "}";
+    components.push_back({{"name", d.name}, {"doc", d.doc}, {"file", entry.object_file}});
   }
   if (json)
-    output.out = "{\"components\": [" + rows + "]}\n";
+    output.out = spaced_json({{"components", std::move(components)}}) + "\n";
   else if (library->entries().empty())
     output.err = "no components found; CHIMERA_PATH says where to look\n";
   for (const std::string& folder : library->missing_folders())

@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "chimera/analysis/recorded_profile.h"
 #include "chimera/cli/files/testing/test_place.h"
+#include "chimera/text/json.h"
 #include "chimera/text/time_text.h"
 
 namespace chimera::cli {
@@ -93,9 +93,9 @@ std::string description(const std::string& rtpus, const std::vector<Line>& lines
   return text;
 }
 
-nlohmann::json analysed(const std::string& text) {
+Json analysed(const std::string& text) {
   const TestFile file(text);
-  return nlohmann::json::parse(schedule({file.path(), "", "", "", true}, test_place()).out);
+  return Json::parse(schedule({file.path(), "", "", "", true}, test_place()).out);
 }
 
 TEST(Schedule, AStandbyIsAnalysedInThePlaceOfItsPrimaryAndAHotOneBesideItToo) {
@@ -108,10 +108,10 @@ TEST(Schedule, AStandbyIsAnalysedInThePlaceOfItsPrimaryAndAHotOneBesideItToo) {
         "  b: {component: t_counter, rate: 100 Hz, budget: 3 ms, rtpu: spare, standby_for: {task: a, hot: " +
         std::string(hot) + "}}\nconfigurations: {run: [a]}\n";
     std::string all;
-    const nlohmann::json report = analysed(text);
-    for (const nlohmann::json& set : report["sets"]) {
-      all += set["name"].get<std::string>() + ":";
-      for (const nlohmann::json& cpu : set["cpus"]) all += " " + cpu["cpu"].dump() + " " + cpu["utilisation"].dump();
+    const Json report = analysed(text);
+    for (const Json& set : report["sets"]) {
+      all += set["name"].as_string() + ":";
+      for (const Json& cpu : set["cpus"]) all += " " + cpu["cpu"].dump() + " " + cpu["utilisation"].dump();
       all += "; ";
     }
     return all;
@@ -121,18 +121,18 @@ TEST(Schedule, AStandbyIsAnalysedInThePlaceOfItsPrimaryAndAHotOneBesideItToo) {
 }
 
 /// CPU 0 as the analysis sees it after the change.
-nlohmann::json changed(const std::string& rtpus, std::vector<Line> lines, const nlohmann::json& remedy) {
+Json changed(const std::string& rtpus, std::vector<Line> lines, const Json& remedy) {
   std::string all = rtpus;
   if (remedy.contains("executor")) all.replace(all.find("executive"), 9, "preemptive");
   for (Line& line : lines) {
-    if (line.name != remedy.value("task", "")) continue;
+    if (line.name != text_at(remedy, "task")) continue;
     if (remedy.contains("rate_hz")) line.rate = remedy["rate_hz"].dump();
     if (remedy.contains("criticality")) line.criticality = remedy["criticality"];
     if (!remedy.contains("rtpu")) continue;
     line.rtpu = remedy["rtpu"].is_null() ? "new" : remedy["rtpu"];
     if (remedy["rtpu"].is_null()) all += ", new: {cpu: 7}";
   }
-  const nlohmann::json said = analysed(description(all, lines));
+  const Json said = analysed(description(all, lines));
   return said.contains("sets") ? said["sets"][0]["cpus"][0] : said;
 }
 
@@ -157,21 +157,21 @@ TEST(Schedule, ItsAdviceIsTrue) {
     const std::string policy = run % 4 == 0 ? "rm" : run % 4 == 1 ? "edf" : "muf";
     const std::string executor = run % 8 < 4 ? "preemptive" : "executive";
     const std::string rtpus = "a: {cpu: 0, policy: " + policy + ", executor: " + executor + "}, b: {cpu: 1}";
-    const nlohmann::json said = analysed(description(rtpus, lines));
+    const Json said = analysed(description(rtpus, lines));
     ASSERT_TRUE(said.contains("sets")) << said;
-    for (const nlohmann::json& remedy : said["sets"][0]["cpus"][0]["remedies"]) {
-      const nlohmann::json cpu = changed(rtpus, lines, remedy);
-      const bool is_lower = remedy.value("criticality", "") == "low";
-      ++tried[is_lower ? "lower" : remedy.items().begin().key()];
+    for (const Json& remedy : said["sets"][0]["cpus"][0]["remedies"]) {
+      const Json cpu = changed(rtpus, lines, remedy);
+      const bool is_lower = text_at(remedy, "criticality") == "low";
+      ++tried[is_lower ? "lower" : (*remedy.items().begin()).first];
       ASSERT_TRUE(cpu.contains("fits")) << remedy << cpu;
       EXPECT_TRUE(is_lower || cpu["fits"]) << remedy << description(rtpus, lines);
       for (const auto& task : cpu["tasks"])
-        EXPECT_TRUE(task["guarantee"] == "yes" || task["task"] == remedy.value("task", "")) << cpu;
+        EXPECT_TRUE(task["guarantee"] == "yes" || task["task"] == text_at(remedy, "task")) << cpu;
     }
-    const double scale = said["sets"][0]["cpus"][0]["scale"];
+    const double scale = said["sets"][0]["cpus"][0]["scale"].as_double();
     std::vector<Line> scaled = lines;
     for (Line& line : scaled) line.budget_us = static_cast<int>(line.budget_us * scale);
-    const nlohmann::json other = analysed(description(rtpus, scaled))["sets"][0]["cpus"][0];
+    const Json other = analysed(description(rtpus, scaled))["sets"][0]["cpus"][0];
     EXPECT_TRUE(other["fits"]) << scale << description(rtpus, lines);
     EXPECT_EQ(scale >= 1, said["sets"][0]["cpus"][0]["fits"]) << scale;
   }
@@ -191,18 +191,18 @@ TEST(Schedule, ASetAtTheVeryLimitFitsWithNoTimeToSpare) {
 TEST(Schedule, AMoreCriticalTaskIsNeverSaidToGiveWayToALessCriticalOne) {
   const std::vector<Line> lines = {{"a", "r", "high", "166.6666667", 2000}, {"b", "r", "high", "100", 2000},
                                    {"c", "r", "high", "83.33333333", 3000}, {"d", "r", "low", "66.66666667", 2000}};
-  const nlohmann::json said = analysed(description("r: {policy: muf, executor: preemptive}", lines));
-  const nlohmann::json remedies = said["sets"][0]["cpus"][0]["remedies"];
-  EXPECT_EQ(remedies.back(), nlohmann::json({{"task", "d"}, {"criticality", "high"}})) << remedies;
+  const Json said = analysed(description("r: {policy: muf, executor: preemptive}", lines));
+  const Json remedies = said["sets"][0]["cpus"][0]["remedies"];
+  EXPECT_EQ(remedies[remedies.size() - 1], Json({{"task", "d"}, {"criticality", "high"}})) << remedies;
 }
 
 // `b`, the most critical, lifts its rtpu above the other one: once it has moved, `a` would come second and miss.
 TEST(Schedule, WhoMovesTakesTheBandOfItsRtpuAlong) {
   const std::vector<Line> lines = {{"a", "second", "low", "200", 1500}, {"b", "second", "high", "20", 6000},
                                    {"c", "first", "low", "20", 4000}};
-  const nlohmann::json said = analysed(description("first: {policy: rm}, second: {policy: rm}", lines));
-  const nlohmann::json remedies = said["sets"][0]["cpus"][0]["remedies"];
-  EXPECT_EQ(remedies.back(), nlohmann::json({{"task", "a"}, {"rtpu", nullptr}})) << remedies;
+  const Json said = analysed(description("first: {policy: rm}, second: {policy: rm}", lines));
+  const Json remedies = said["sets"][0]["cpus"][0]["remedies"];
+  EXPECT_EQ(remedies[remedies.size() - 1], Json({{"task", "a"}, {"rtpu", nullptr}})) << remedies;
 }
 
 TEST(Schedule, JudgesEachUnitAsTheDescriptionHasIt) {

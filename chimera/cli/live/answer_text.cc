@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "chimera/base/hosted/terminal_text.h"
@@ -12,11 +11,10 @@
 #include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/figures.h"
 #include "chimera/cli/live/status_text.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 std::string origin_text(const Json& reading) {
   const std::string producer = text_of(reading, "producer"), state = text_of(reading, "state");
@@ -35,15 +33,15 @@ std::string producer_of(const Json& link) {
 
 std::string figure(const Json& number) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.6g", number.get<double>());
+  std::snprintf(text, sizeof text, "%.6g", number.as_double());
   return text;
 }
 
 bool is_well(const Json& link) { return text_of(link, "verdict") == "ok"; }
 
 std::string age_of(const Json& link) {
-  return truth_of(link, "valid") && whole_of(link, "published_ns") > 0 ? duration_text(whole_or_none(link, "age_ns"))
-                                                                        : "-";
+  return truth_at(link, "valid") && whole_of(link, "published_ns") > 0 ? duration_text(whole_or_none(link, "age_ns"))
+                                                                       : "-";
 }
 
 /// Who, when, from what: the head of `why`.
@@ -73,12 +71,11 @@ std::string in_force_text(const Json& answer) {
 
 }  // namespace
 
-std::string json_line(const Json& answer) { return answer.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+std::string json_line(const Json& answer) { return answer.dump() + "\n"; }
 
 std::string readings_text(const Json& answer) {
   std::string text;
-  const Json& values = field(answer, "values");
-  if (!values.is_object()) return text;
+  const Json& values = answer["values"];
   for (const auto& [name, reading] : values.items())
     text += plain_line(name) + " = " + text_of(reading, "text") + "  (" + origin_text(reading) + ")\n";
   return text;
@@ -86,20 +83,20 @@ std::string readings_text(const Json& answer) {
 
 std::string signal_text(const Json& answer) {
   std::string text;
-  for (const Json& task : field(answer, "tasks")) {
+  for (const Json& task : answer["tasks"]) {
     const std::string before = text_of(task, "before"), after = text_of(task, "after");
     text += text_of(task, "task") + ": " + (before == after ? after : before + " -> " + after) +
-            (truth_of(task, "already") ? " already\n" : "\n");
+            (truth_at(task, "already") ? " already\n" : "\n");
   }
   return text;
 }
 
 std::string save_text(const Json& answer) {
-  const Json& values = field(answer, "operator");
+  const Json& values = answer["operator"];
   if (!values.is_object() || values.empty()) return "no operator variables\n";
   std::string text = "operator:\n";
-  for (const auto& item : values.items())
-    text += "  " + plain_line(item.key()) + ": " + text_of(values, item.key()) + "\n";
+  for (const auto& [name, value] : values.items())
+    text += "  " + plain_line(name) + ": " + text_of(values, name) + "\n";
   return text;
 }
 
@@ -117,7 +114,7 @@ std::string switch_text(const Json& answer) {
                      (from.empty() ? "" : " from '" + from + "'") + " to " + to + " " + end;
   if (end != "done") return text + ": " + text_of(answer, "why") + "\n";
   std::int64_t arrive = 0, leave = 0, lost = 0;
-  for (const Json& task : field(answer, "tasks")) {
+  for (const Json& task : answer["tasks"]) {
     arrive += text_of(task, "move") == "arrives" ? 1 : 0;
     leave += text_of(task, "move") == "leaves" ? 1 : 0;
     lost += whole_of(task, "lost");
@@ -125,20 +122,20 @@ std::string switch_text(const Json& answer) {
   text += ": " + std::to_string(arrive) + (arrive == 1 ? " task arrives, " : " tasks arrive, ") +
           std::to_string(leave) + (leave == 1 ? " leaves, " : " leave, ") + std::to_string(lost) +
           (lost == 1 ? " cycle lost\n" : " cycles lost\n");
-  for (const Json& variable : field(answer, "variables")) {
-    const Json& step = field(variable, "step");
+  for (const Json& variable : answer["variables"]) {
+    const Json& step = variable["step"];
     if (!step.is_number()) continue;
-    const Json& limit = field(variable, "limit");
+    const Json& limit = variable["limit"];
     const std::string unit = text_of(variable, "unit") == "1" ? "" : " " + text_of(variable, "unit");
     text += "  " + text_of(variable, "variable") + " moves by " + figure(step) + unit +
             (limit.is_number() ? ", limit " + figure(limit) + unit : "") +
-            (truth_of(variable, "beyond") ? ": beyond it\n" : "\n");
+            (truth_at(variable, "beyond") ? ": beyond it\n" : "\n");
   }
   return text;
 }
 
 std::string drill_text(const Json& answer) {
-  const Json& tasks = field(answer, "tasks");
+  const Json& tasks = answer["tasks"];
   std::string text = tasks.empty() ? "no task that is ON has hardware that could move\n" : "";
   for (const Json& task : tasks) {
     const std::string verdict = text_of(task, "verdict");
@@ -148,11 +145,12 @@ std::string drill_text(const Json& answer) {
     else if (verdict == "left") text += "left service before it was safe\n";
     else text += "not safe\n";
   }
-  const Json& killed = field(answer, "killed");
+  const Json& killed = answer["killed"];
   if (killed.is_object()) {
     const std::int64_t written = whole_of(killed, "written"), lost = whole_of(killed, "lost");
     text += text_of(killed, "rtpu") + ": killed, ";
-    if (!truth_of(killed, "is_told")) text += "and the guard has not told what it wrote\n";
+    if (!truth_at(killed, "is_told"))
+      text += "and the guard has not told what it wrote\n";
     else if (written + lost == 0) text += "and it had no safe frame\n";
     else text += std::to_string(written) + " of " + std::to_string(written + lost) + " safe frames written";
     if (written > 0) text += " " + figure(Json(number_of(killed, "after_ns") / 1e6)) + " ms after the kill";
@@ -180,7 +178,7 @@ std::string plan_text(const Json& answer) {
     for (const std::string& task : texts_of(answer, move)) names += (names.empty() ? "" : ", ") + task;
     if (!names.empty()) text += "  " + std::string(move) + ": " + names + "\n";
   }
-  for (const Json& variable : field(answer, "variables")) {
+  for (const Json& variable : answer["variables"]) {
     const std::string producer = text_of(variable, "from");
     text += "  " + text_of(variable, "variable") + ": from " + (producer.empty() ? "nobody" : producer) + " to " +
             text_of(variable, "to") + "\n";
@@ -191,7 +189,7 @@ std::string plan_text(const Json& answer) {
 std::string flag_text(const Json& answer) { return flag_words(answer) + "\n"; }
 
 std::string why_text(const Json& answer, std::size_t height) {
-  const Json& chain = field(answer, "chain");
+  const Json& chain = answer["chain"];
   if (!chain.is_array() || chain.empty()) return text_of(answer, "verdict") + "\n";
   std::vector<const Json*> links;
   for (std::size_t i = 1; i < chain.size(); ++i) links.push_back(&chain[i]);

@@ -3,33 +3,34 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
+
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 
 /// The one line of `--json`, its end included. File names and arguments may be no UTF-8: what is not becomes the
 /// replacement character. Context of all: setup.
-std::string json_line(const nlohmann::json& answer);
+std::string json_line(const Json& answer);
 /// `get` and `set`: one line a variable, "kp = [100 90] N.m/rad  (operator, 1.20 s ago)".
-std::string readings_text(const nlohmann::json& answer);
+std::string readings_text(const Json& answer);
 /// `signal`: "pid: ON -> OFF", one line a task.
-std::string signal_text(const nlohmann::json& answer);
+std::string signal_text(const Json& answer);
 /// `save`: lines for the section `operator:` of a description.
-std::string save_text(const nlohmann::json& answer);
+std::string save_text(const Json& answer);
 /// `ring`: "lamp: rung" for each.
-std::string ring_text(const nlohmann::json& answer);
-std::string switch_text(const nlohmann::json& answer);
+std::string ring_text(const Json& answer);
+std::string switch_text(const Json& answer);
 /// `drill`: a line for each hardware task, one about the flag.
-std::string drill_text(const nlohmann::json& answer);
+std::string drill_text(const Json& answer);
 /// What a switch would do, or why it would be refused.
-std::string plan_text(const nlohmann::json& answer);
+std::string plan_text(const Json& answer);
 /// `flag`: "flag up" or "flag down".
-std::string flag_text(const nlohmann::json& answer);
+std::string flag_text(const Json& answer);
 /// `why` on one screen of `height` lines: who produces the variable, when, from what; then its ancestors, those in
 /// trouble before those that are well; the last line is the verdict.
-std::string why_text(const nlohmann::json& answer, std::size_t height);
+std::string why_text(const Json& answer, std::size_t height);
 /// A refusal: "pid: the words; the remedy (did you mean 'pid'?)" from the members of an error.
-std::string refusal_text(const std::string& message, const nlohmann::json& data);
+std::string refusal_text(const std::string& message, const Json& data);
 
 }  // namespace chimera::cli

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/cli/live/answer_text.h"
+#include "chimera/text/json.h"
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 TEST(AnswerText, JsonIsWrittenWhateverBytesANameHas) {
   EXPECT_EQ(json_line({{"file", "a\xff"}}), "{\"file\":\"a\xef\xbf\xbd\"}\n");

@@ -5,12 +5,11 @@
 #include <cctype>
 #include <charconv>
 #include <limits>
-#include <nlohmann/json.hpp>
+
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 bool is_name_letter(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
@@ -43,8 +42,7 @@ const Json* part_of(const Json& value, std::string_view part) {
       std::from_chars(step.data() + 1, step.data() + length - 1, index);
       at = at->is_array() && index < at->size() ? &(*at)[index] : nullptr;
     } else {
-      const std::string name(step.substr(1));
-      at = at->is_object() && at->contains(name) ? &(*at)[name] : nullptr;
+      at = at->find(step.substr(1));
     }
     part.remove_prefix(length);
   }
@@ -55,11 +53,11 @@ void collect(const Json& value, const std::string& part, std::vector<ChannelNumb
   if (value.is_array()) {
     for (std::size_t i = 0; i < value.size(); ++i) collect(value[i], part + "[" + std::to_string(i) + "]", numbers);
   } else if (value.is_object()) {
-    for (const auto& item : value.items()) collect(item.value(), part + "." + item.key(), numbers);
-  } else if (value.is_boolean()) {
-    numbers.push_back({part, value.get<bool>() ? 1.0 : 0.0});
+    for (const auto& [name, field] : value.items()) collect(field, part + "." + name, numbers);
+  } else if (value.is_bool()) {
+    numbers.push_back({part, value.as_bool() ? 1.0 : 0.0});
   } else if (value.is_number()) {
-    numbers.push_back({part, value.get<double>()});
+    numbers.push_back({part, value.as_double()});
   } else if (value.is_null()) {
     numbers.push_back({part, std::numeric_limits<double>::quiet_NaN()});
   }

@@ -2,12 +2,12 @@
 // A variable, or a part of one, as a set of numbers: "q" is all of its elements, "q[2]" one, "pose.x" a field.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "chimera/base/result.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 
@@ -29,6 +29,6 @@ struct ChannelNumber {
 
 /// Every number under `part` of a value as docs/formats/control.md has it; a truth is 0 or 1; texts give none. Empty
 /// when there is no such element.
-std::vector<ChannelNumber> numbers_of(const nlohmann::json& value, const std::string& part);
+std::vector<ChannelNumber> numbers_of(const Json& value, const std::string& part);
 
 }  // namespace chimera::cli

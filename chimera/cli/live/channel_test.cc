@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/cli/live/channel.h"
+#include "chimera/text/json.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 std::string parts(const Json& value, const std::string& part = "") {
   std::string text;

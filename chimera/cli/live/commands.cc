@@ -3,7 +3,6 @@
 #include "chimera/cli/live/commands.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "chimera/base/assert.h"
 #include "chimera/cli/live/answer_text.h"
@@ -13,11 +12,10 @@
 #include "chimera/cli/live/scope_command.h"
 #include "chimera/cli/live/status_text.h"
 #include "chimera/task/signal.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 /// A signal to tasks: the command has the name of the signal.
 RunningCommand signal_row(Signal to_send, const char* help, const char* manual, const char* example) {

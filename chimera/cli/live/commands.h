@@ -4,12 +4,12 @@
 #pragma once
 
 #include <cstdio>
-#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 
 #include "chimera/cli/command/command.h"
 #include "chimera/cli/live/session.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 
@@ -29,9 +29,9 @@ struct RunningCommand {
   Command words;
   const char* method = nullptr;  ///< what it asks of the control protocol; nullptr: nothing
   /// The parameters of that request; nullptr: none.
-  nlohmann::json (*parameters)(const Call&) = nullptr;
+  Json (*parameters)(const Call&) = nullptr;
   /// The answer as text for people.
-  std::string (*show)(const nlohmann::json& answer) = nullptr;
+  std::string (*show)(const Json& answer) = nullptr;
   /// In the place of `parameters` and `show`, for a command of more than one request.
   CommandResult (*once)(Session&, const Call&, const Screen&) = nullptr;
   /// Prints until somebody ends it; returns the exit code.

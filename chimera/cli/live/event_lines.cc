@@ -6,19 +6,17 @@
 #include <array>
 #include <cstdio>
 #include <ctime>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "chimera/base/time.h"
 #include "chimera/cli/live/columns.h"
 #include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/figures.h"
+#include "chimera/text/json.h"
 #include "chimera/text/nearest.h"
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr std::array<std::string_view, 33> kKinds = {
     "started",         "state", "fault", "refused", "signal",  "flag", "rtpu-ended", "rtpu-restarted", "rtpu-given-up",
@@ -128,7 +126,7 @@ std::string events_text(const Json& answer, std::int64_t since, EventLines lines
   const std::int64_t first = whole_of(answer, "first");
   if (since > 0 && first > since && whole_of(answer, "last") >= since)
     text = "(" + std::to_string(first - since) + " older events are gone)\n";
-  for (const Json& event : field(answer, "events")) text += lines.add(event);
+  for (const Json& event : answer["events"]) text += lines.add(event);
   return text + lines.end();
 }
 

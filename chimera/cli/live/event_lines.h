@@ -4,13 +4,13 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "chimera/base/result.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 
@@ -27,16 +27,16 @@ class EventLines {
   explicit EventLines(std::vector<std::string> kinds = {}, bool each = false) : kinds_(std::move(kinds)), each_(each) {}
 
   /// The lines that `event` completes; what may go on is kept back until end().
-  std::string add(const nlohmann::json& event);
+  std::string add(const Json& event);
   std::string end();
-  bool is_wanted(const nlohmann::json& event) const;
+  bool is_wanted(const Json& event) const;
 
  private:
   struct Event {
     std::int64_t number = 0, at_ns = 0, wall_ns = 0;
     std::string kind, who, text;
   };
-  static Event read(const nlohmann::json& event);
+  static Event read(const Json& event);
   static std::string line_of(const Event& event);
   static std::string line_of(const std::vector<Event>& incident);
 
@@ -46,6 +46,6 @@ class EventLines {
 };
 
 /// The answer of `events`, in lines; `since`: the number that was asked for.
-std::string events_text(const nlohmann::json& answer, std::int64_t since, EventLines lines = EventLines());
+std::string events_text(const Json& answer, std::int64_t since, EventLines lines = EventLines());
 
 }  // namespace chimera::cli

@@ -6,15 +6,13 @@
 #include <time.h>
 
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "chimera/base/testing/tree_path.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 TEST(EventLines, AreNumberedAndTimedAndSayWhatIsGone) {
   setenv("TZ", "UTC", 1);

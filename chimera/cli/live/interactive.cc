@@ -8,10 +8,9 @@
 #include <clocale>
 #include <csignal>
 #include <cstring>
-#include <sstream>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/base/hosted/terminal_text.h"
@@ -20,6 +19,7 @@
 #include "chimera/cli/live/terminal.h"
 #include "chimera/cli/live/words.h"
 #include "chimera/control/state_folder.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {

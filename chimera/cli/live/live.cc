@@ -3,7 +3,6 @@
 #include "chimera/cli/live/live.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "chimera/base/hosted/terminal_text.h"
@@ -13,13 +12,13 @@
 #include "chimera/cli/live/terminal.h"
 #include "chimera/cli/live/top.h"
 #include "chimera/cli/live/watch.h"
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/standard_streams.h"
+#include "chimera/text/json.h"
 #include "chimera/units/quantity.h"
 
 namespace chimera::cli {
 namespace {
 
-using Json = nlohmann::json;
 using By = Wakeup::By;
 
 /// The period of --every in whole milliseconds, as the protocol takes it.
@@ -62,7 +61,7 @@ std::string drawn(const std::vector<TopLine>& lines) {
 /// One screen for what is no terminal: without the keys and what is empty at its end.
 std::string printed(const Json& status) {
   ScreenSize size = screen_size(kStandardOutput);
-  size.height = std::max<std::size_t>(5 + field(status, "rtpus").size() + field(status, "tasks").size(), 6);
+  size.height = std::max<std::size_t>(5 + status["rtpus"].size() + status["tasks"].size(), 6);
   std::string text;
   for (TopLine& line : top_lines(status, nullptr, {.width = size.width, .height = size.height, .has_keys = false})) {
     line.text.erase(line.text.find_last_not_of(' ') + 1);
@@ -174,7 +173,7 @@ int watch(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
   const Json wanted = {{"to", "values"}, {"period_ms", period.value()}, {"variables", variables_of(channels.value())}};
   return follow(session, call, wanted, out, err, [&](const control::Note& note, Json&) {
     if (call.json) return;
-    shown.add(field(*note.parameters, "values"));
+    shown.add((*note.parameters)["values"]);
     const std::size_t width = screen_size(kStandardOutput).width;
     if (is_live)
       redraw(shown.lines(width > 1 ? width - 1 : 1, writes_unicode()), is_first, out);
@@ -196,11 +195,11 @@ int follow_events(Session& session, const Call& call, std::FILE* out, std::FILE*
   wanted["since"] = since.empty() ? 0 : std::stoll(since);
   EventLines lines(kinds.value(), call.has("--each"));
   return follow(session, call, wanted, out, err, [&](const control::Note& note, Json& next) {
-    for (const Json& event : field(*note.parameters, "events")) next["since"] = whole_of(event, "number") + 1;
+    for (const Json& event : (*note.parameters)["events"]) next["since"] = whole_of(event, "number") + 1;
     if (call.json) return;
     if (const std::int64_t gone = whole_of(*note.parameters, "lost"); gone > 0)
       std::fprintf(out, "(%lld older events are gone)\n", static_cast<long long>(gone));
-    for (const Json& event : field(*note.parameters, "events")) std::fputs(lines.add(event).c_str(), out);
+    for (const Json& event : (*note.parameters)["events"]) std::fputs(lines.add(event).c_str(), out);
     std::fputs(lines.end().c_str(), out);
   });
 }

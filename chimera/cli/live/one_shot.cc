@@ -5,25 +5,23 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "chimera/analysis/recorded_profile.h"
+#include "chimera/base/hosted/terminal_text.h"
+#include "chimera/base/message.h"
 #include "chimera/cli/live/answer_text.h"
 #include "chimera/cli/live/event_lines.h"
 #include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/save_file.h"
 #include "chimera/cli/live/status_text.h"
-#include "chimera/base/hosted/terminal_text.h"
-#include "chimera/base/message.h"
 #include "chimera/cli/live/words.h"
-#include "chimera/platform/terminal.h"
+#include "chimera/platform/standard_streams.h"
+#include "chimera/text/json.h"
 #include "chimera/text/nearest.h"
 #include "chimera/units/quantity.h"
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 CommandResult wrong(const std::string& message, bool json) {
   return refused(Error{ErrorCode::kBadInput, std::string_view(message), {}}, json, kUsage);
@@ -33,7 +31,7 @@ CommandResult wrong(const std::string& message, bool json) {
 std::vector<std::string> still_off(Session& session, std::vector<std::string> tasks) {
   const control::RpcResponse status = session.ask("status");
   if (!status.is_good()) return tasks;
-  for (const Json& task : field(*status.result, "tasks"))
+  for (const Json& task : (*status.result)["tasks"])
     if (text_of(task, "state") == "ON") std::erase(tasks, text_of(task, "task"));
   return tasks;
 }
@@ -44,7 +42,7 @@ std::vector<std::string> with_configuration(Session& session, std::vector<std::s
   if (tasks.size() != 1 || !described.is_good()) return tasks;
   const Names names = names_of(*described.result);
   if (std::find(names.tasks.begin(), names.tasks.end(), tasks[0]) != names.tasks.end()) return tasks;
-  for (const Json& set : field(*described.result, "configurations"))
+  for (const Json& set : (*described.result)["configurations"])
     if (text_of(set, "name") == tasks[0]) return still_off(session, texts_of(set, "tasks"));
   return tasks;
 }
@@ -56,9 +54,9 @@ CommandResult pid(Session& session, const Call& call) {
   for (const control::RpcResponse* asked : {&hello, &status})
     if (!asked->is_good()) return refused(*asked, call.json);
   std::map<std::string, std::int64_t> pids = {{"keeper", whole_of(*hello.result, "keeper_pid")},
-                                              {"manager", whole_of(field(*hello.result, "manager"), "pid")}};
-  for (const Json& rtpu : field(*status.result, "rtpus"))
-    pids[text_of(rtpu, "name")] = truth_of(rtpu, "alive") ? whole_of(rtpu, "pid") : 0;
+                                              {"manager", whole_of((*hello.result)["manager"], "pid")}};
+  for (const Json& rtpu : (*status.result)["rtpus"])
+    pids[text_of(rtpu, "name")] = truth_at(rtpu, "alive") ? whole_of(rtpu, "pid") : 0;
   const auto found = pids.find(name);
   if (found != pids.end() && found->second > 0)
     return {call.json ? json_line({{"name", name}, {"pid", found->second}})
@@ -93,7 +91,7 @@ bool has_agreed(const std::string& question) {
 }
 
 Json only(const EventLines& lines, Json answer) {
-  std::erase_if(answer["events"].get_ref<Json::array_t&>(), [&](const Json& e) { return !lines.is_wanted(e); });
+  std::erase_if(answer["events"].elements(), [&](const Json& e) { return !lines.is_wanted(e); });
   return answer;
 }
 
@@ -111,7 +109,7 @@ CommandResult profile(Session& session, const Call& call, const Screen&) {
   const control::RpcResponse hello = session.ask("hello");
   for (const control::RpcResponse* asked : {&answer, &hello})
     if (!asked->is_good()) return refused(*asked, call.json);
-  const auto tasks = parse_profiles(field(*answer.result, "tasks").dump(), Nanoseconds{});
+  const auto tasks = read_profiles((*answer.result)["tasks"], Nanoseconds{});
   if (!tasks) return refused(tasks.error(), call.json);
   const std::string file = call.value("--save");
   const auto written = write_recorded_profile(file, recorded(text_of(*hello.result, "subsystem"), *tasks));
@@ -177,7 +175,7 @@ CommandResult drill(Session& session, const Call& call, const Screen&) {
     return wrong("drill: not agreed to; `--yes` does not ask", call.json);
   const control::RpcResponse answer = session.ask("drill", *parameters);
   CommandResult result = answered(answer, call.json, drill_text);
-  if (answer.is_good() && !truth_of(*answer.result, "safe")) result.code = kRefused;
+  if (answer.is_good() && !truth_at(*answer.result, "safe")) result.code = kRefused;
   return result;
 }
 

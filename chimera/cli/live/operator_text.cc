@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "chimera/description/draft.h"
 #include "chimera/description/yaml_reader.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
@@ -112,7 +112,7 @@ bool is_in_brackets(std::string_view text, const Draft& draft) {
 }
 
 std::string written(const Node& value) {
-  if (value.is_scalar()) return value.quoted ? nlohmann::json(value.text).dump() : value.text;
+  if (value.is_scalar()) return value.quoted ? Json(value.text).dump() : value.text;
   std::string words;
   for (std::size_t i = 0; i < value.items.size(); ++i)
     words += (i == 0 ? "" : ", ") + (value.is_map() ? value.keys[i].text + ": " : "") + written(value.items[i]);

@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "chimera/cli/live/answer_text.h"
@@ -16,11 +15,10 @@
 #include "chimera/cli/live/figures.h"
 #include "chimera/control/receipt_file.h"
 #include "chimera/control/state_folder.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr std::uint64_t kLast = 20, kMostLast = 200;
 
@@ -61,7 +59,7 @@ std::string asked_at(const Json& receipt) {
 }
 
 std::string asked_by(const Json& receipt) {
-  const Json& by = field(receipt, "asked_by");
+  const Json& by = receipt["asked_by"];
   const std::string role = text_of(by, "role"), reaction = text_of(by, "reaction"), task = text_of(by, "task");
   if (!role.empty()) return role + ":" + text_of(by, "user");
   if (!reaction.empty()) return reaction + " of " + task;
@@ -70,20 +68,20 @@ std::string asked_by(const Json& receipt) {
 
 std::string short_figure(const Json& number) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.4g", number.get<double>());
+  std::snprintf(text, sizeof text, "%.4g", number.as_double());
   return text;
 }
 
 /// "wanted 2 of 3 m/s, tau 0.1 N.m": the limit where there is one.
 std::string moves(const Json& receipt) {
   std::string text;
-  for (const Json& variable : field(receipt, "variables")) {
-    const Json &step = field(variable, "step"), &limit = field(variable, "limit");
+  for (const Json& variable : receipt["variables"]) {
+    const Json &step = variable["step"], &limit = variable["limit"];
     if (!step.is_number()) continue;
     const std::string unit = text_of(variable, "unit");
     text += (text.empty() ? "" : ", ") + text_of(variable, "variable") + " " + short_figure(step) +
             (limit.is_number() ? " of " + short_figure(limit) : "") + (unit == "1" ? "" : " " + unit) +
-            (truth_of(variable, "beyond") ? " (beyond)" : "");
+            (truth_at(variable, "beyond") ? " (beyond)" : "");
   }
   return text;
 }
@@ -93,11 +91,11 @@ std::string moves(const Json& receipt) {
 std::string receipts_text(const Json& answer) {
   Columns table({">number", "asked", "by", "from", "to", "end", ">change", ">lost", "moves"});
   std::string whys;
-  for (const Json& receipt : field(answer, "receipts")) {
+  for (const Json& receipt : answer["receipts"]) {
     const std::string number = std::to_string(whole_of(receipt, "number")), end = text_of(receipt, "end");
     const auto at = whole_or_none(receipt, "at_ns");
     std::int64_t lost = 0;
-    for (const Json& task : field(receipt, "tasks")) lost += whole_of(task, "lost");
+    for (const Json& task : receipt["tasks"]) lost += whole_of(task, "lost");
     const std::string from = text_of(receipt, "from"), to = text_of(receipt, "to");
     table.add({number, asked_at(receipt), asked_by(receipt), from.empty() ? "-" : from, to.empty() ? "-" : to, end,
                at ? duration_text(*at - whole_of(receipt, "asked_ns")) : "-",

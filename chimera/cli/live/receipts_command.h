@@ -3,10 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "chimera/cli/live/commands.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 
@@ -17,6 +17,6 @@ CommandResult receipts(Session& session, const Call& call, const Screen& screen)
 CommandResult filed_receipts(const Call& call, const std::string& subsystem, const Error& why);
 
 /// An answer of `receipts` as a table, with a line for each one that was not done.
-std::string receipts_text(const nlohmann::json& answer);
+std::string receipts_text(const Json& answer);
 
 }  // namespace chimera::cli

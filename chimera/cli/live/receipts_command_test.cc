@@ -6,14 +6,12 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "chimera/control/receipt_file.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 Json receipt(int number, const char* end) {
   const bool is_done = std::string(end) == "done";

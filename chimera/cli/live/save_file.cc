@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "chimera/base/hosted/ordinary_file.h"
@@ -15,14 +14,14 @@
 #include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/operator_text.h"
 #include "chimera/control/state_folder.h"
-#include "chimera/platform/file_state.h"
+#include "chimera/platform/clock.h"
+#include "chimera/platform/file.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
 
 constexpr std::size_t kMostBytes = 1 << 20;  // a description has at most 256 KiB
-
-using Json = nlohmann::json;
 
 Error refusal(const std::string& message, const std::string& where = {}) {
   return {ErrorCode::kRefused, std::string_view(message), std::string_view(where)};
@@ -75,7 +74,7 @@ std::int64_t started_wall_ns(const Json& status) {
 }
 
 std::string first_fault(const Json& report) {
-  for (const Json& fault : field(report, "faults"))
+  for (const Json& fault : report["faults"])
     if (text_of(fault, "severity") == "error") return text_of(fault, "message");
   return "not legal";
 }
@@ -84,12 +83,12 @@ Result<std::string> edited(Session& session, const DescriptionFile& file, const 
   const auto units = UnitSystem::load(session.surroundings().unit_files);
   if (!units) return units.error();
   std::map<std::string, std::string> words;
-  for (const auto& item : values.items()) words[item.key()] = text_of(values, item.key());
+  for (const auto& [name, value] : values.items()) words[name] = text_of(values, name);
   auto text = with_operator_values(file.text, words, units.value());
   if (!text || text.value() == file.text) return text;
   const control::RpcResponse checked = session.ask("check", {{"text", text.value()}, {"file", file.path}});
   if (!checked.is_good()) return refusal(checked.message);
-  if (!truth_of(*checked.result, "legal"))
+  if (!truth_at(*checked.result, "legal"))
     return refusal("with these values the description is not legal: " + first_fault(*checked.result), file.path);
   return text;
 }
@@ -101,7 +100,7 @@ CommandResult save_to_file(Session& session, const Call& call) {
   for (const control::RpcResponse* answer : {&hello, &status, &saved})
     if (!answer->is_good()) return refused(*answer, call.json);
   const std::string subsystem = text_of(*hello.result, "subsystem");
-  const Json& values = field(*saved.result, "operator");
+  const Json& values = (*saved.result)["operator"];
   auto file = read_file(file_of(*hello.result));
   if (!file) return refused(file.error(), call.json);
   if (!is_as_known(file.value(), started_wall_ns(*status.result), subsystem))

@@ -6,14 +6,12 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "chimera/cli/live/fields.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr Nanoseconds kForTheRest = seconds(1);
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
@@ -31,9 +29,7 @@ std::vector<ChannelNumber> numbers_in_row(const Json& row, const std::vector<std
   return numbers_of(is_list_of_one ? row[index][0] : row[index], channel.part);
 }
 
-bool is_row(const Json& row) {
-  return row.is_array() && row.size() >= 2 && row[0].is_number_integer() && row[1].is_number_integer();
-}
+bool is_row(const Json& row) { return row.is_array() && row.size() >= 2 && row[0].is_whole() && row[1].is_whole(); }
 
 std::string plural(std::uint64_t n, const char* word) {
   return std::to_string(n) + " " + word + (n == 1 ? "" : "s");
@@ -87,7 +83,7 @@ bool Scope::is_armed(Nanoseconds at) const {
 }
 
 void Scope::add_row(Stream& stream, const Json& row, const std::vector<std::string>& variables, std::uint64_t lost) {
-  Row kept{{row[0].get<std::int64_t>()}, row[1].get<std::uint64_t>(), lost, lost > 0, {}};
+  Row kept{{row[0].as_int64()}, row[1].as_uint64(), lost, lost > 0, {}};
   if (stream.next && stream.sequence > 0 && kept.sequence != stream.sequence + 1) {
     // Sequences count publications: a jump is a loss too, a step back is a task that was made anew.
     if (kept.sequence > stream.sequence) kept.lost = std::max(lost, kept.sequence - stream.sequence - 1);
@@ -124,7 +120,7 @@ void Scope::prune() {
 }
 
 void Scope::add(const Json& params) {
-  const Json& rows = field(params, "rows");
+  const Json& rows = params["rows"];
   if (!rows.is_array()) return;
   Stream& of = stream(text_of(params, "rtpu"), text_of(params, "task"));
   const std::vector<std::string> variables = texts_of(params, "variables");

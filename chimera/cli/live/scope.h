@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <deque>
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,6 +14,7 @@
 #include "chimera/cli/live/channel.h"
 #include "chimera/cli/live/trigger.h"
 #include "chimera/draw/plot.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 
@@ -42,7 +42,7 @@ class Scope {
   explicit Scope(ScopeRequest request) : request_(std::move(request)) {}
 
   /// Takes the parameters of a `tap` notification (docs/formats/control.md); others are passed over.
-  void add(const nlohmann::json& params);
+  void add(const Json& params);
   bool is_triggered() const noexcept { return begin_.has_value(); }
   /// Edges of the trigger that came before there was a whole pre-trigger, and so did not begin it.
   std::uint64_t early_edges() const noexcept { return early_edges_; }
@@ -94,9 +94,8 @@ class Scope {
 
   Places places(std::vector<std::string>& heading) const;
   Stream& stream(const std::string& rtpu, const std::string& task);
-  void add_row(Stream& stream, const nlohmann::json& row, const std::vector<std::string>& variables,
-               std::uint64_t lost);
-  void check_trigger(const nlohmann::json& row, const std::vector<std::string>& variables, Nanoseconds at);
+  void add_row(Stream& stream, const Json& row, const std::vector<std::string>& variables, std::uint64_t lost);
+  void check_trigger(const Json& row, const std::vector<std::string>& variables, Nanoseconds at);
   bool is_armed(Nanoseconds at) const;
   bool has_every_channel() const;
   void prune();

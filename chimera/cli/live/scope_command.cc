@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <nlohmann/json.hpp>
 
 #include "chimera/analysis/recorded_profile.h"
 #include "chimera/cli/live/answer_text.h"
@@ -16,14 +15,14 @@
 #include "chimera/cli/live/sketch.h"
 #include "chimera/cli/live/sparkline.h"
 #include "chimera/cli/live/terminal.h"
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
+#include "chimera/text/json.h"
 #include "chimera/text/nearest.h"
 #include "chimera/units/quantity.h"
 
 namespace chimera::cli {
 namespace {
 
-using Json = nlohmann::json;
 using By = Wakeup::By;
 
 constexpr Nanoseconds kGrace = seconds(2);  // for the last rows to come
@@ -46,10 +45,10 @@ struct Known {
 
 Result<Known> known(const Json& described, const std::string& name) {
   std::vector<std::string> names;
-  for (const Json& variable : field(described, "variables")) {
+  for (const Json& variable : described["variables"]) {
     names.push_back(text_of(variable, "variable"));
     if (names.back() != name) continue;
-    if (truth_of(variable, "constant")) return wrong("'" + name + "' is a constant: nobody publishes it");
+    if (truth_at(variable, "constant")) return wrong("'" + name + "' is a constant: nobody publishes it");
     return Known{text_of(variable, "unit"), text_of(variable, "shape").empty()};
   }
   const std::string near = nearest(name, names);

@@ -4,14 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "chimera/text/json.h"
 #include "chimera/units/testing/unit_samples.h"
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 ScopeChannel channel(const std::string& name, const std::string& unit, bool is_scalar = true) {
   return {read_channel(name).value(), unit, is_scalar};

@@ -3,13 +3,13 @@
 #include "chimera/cli/live/session.h"
 
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 
 #include "chimera/base/hosted/terminal_text.h"
 #include "chimera/cli/live/answer_text.h"
 #include "chimera/cli/live/commands.h"
 #include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/terminal.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
@@ -18,11 +18,11 @@ namespace {
 // manager gives a sign of life.
 constexpr Nanoseconds kWorkLimit = seconds(65);
 
-Nanoseconds limit_of(std::string_view method, const nlohmann::json& parameters) {
+Nanoseconds limit_of(std::string_view method, const Json& parameters) {
   if (method == "switch" || method == "drill")
-    return kWorkLimit + milliseconds(parameters.value("wait_ms", std::int64_t{10'000}));
+    return kWorkLimit + milliseconds(whole_at(parameters, "wait_ms", 10'000));
   if (method == "cancel") return kWorkLimit;
-  const bool runs_methods = method == "signal" && parameters.value("signal", "") != "off";
+  const bool runs_methods = method == "signal" && text_at(parameters, "signal") != "off";
   return runs_methods || method == "check" || method == "schedule" ? kWorkLimit : control::kCallLimit;
 }
 
@@ -39,10 +39,10 @@ std::string behind_name(const std::string& text, const std::string& subsystem) {
 
 /// With "subsystem" as its first key, where the text is one object.
 std::string with_subsystem(const std::string& text, const std::string& subsystem) {
-  nlohmann::json answer = nlohmann::json::parse(text, nullptr, false);
-  if (!answer.is_object()) return text;
-  answer["subsystem"] = subsystem;
-  return json_line(answer);
+  auto answer = Json::parse_or_none(text);
+  if (!answer || !answer->is_object()) return text;
+  (*answer)["subsystem"] = subsystem;
+  return json_line(*answer);
 }
 
 /// An act and its refusal tell whom they reached.
@@ -57,9 +57,9 @@ CommandResult named(CommandResult said, Session& session, const Call& call) {
 }  // namespace
 
 CommandResult refused(const control::RpcResponse& answer, bool json) {
-  const nlohmann::json data = answer.data ? *answer.data : nlohmann::json();
+  const Json data = answer.data ? *answer.data : Json();
   if (!json) return {"", refusal_text(answer.message, data) + "\n", kRefused};
-  nlohmann::json error = data.is_object() ? data : nlohmann::json::object();
+  Json error = data.is_object() ? data : Json::object();
   error["message"] = answer.message;
   error["code"] = answer.code;
   if (!error.contains("where")) error["where"] = "";
@@ -73,7 +73,7 @@ CommandResult refused(const Error& error, bool json, int code) {
 }
 
 CommandResult answered(const control::RpcResponse& answer, bool json,
-                       const std::function<std::string(const nlohmann::json&)>& show) {
+                       const std::function<std::string(const Json&)>& show) {
   if (!answer.is_good()) return refused(answer, json);
   return {json ? answer.result->dump() + "\n" : show(*answer.result), "", kOk};
 }
@@ -111,9 +111,9 @@ Result<void> Session::may_act() {
   return Error{ErrorCode::kRefused, std::string_view(message), {}};
 }
 
-control::RpcResponse Session::ask(std::string_view method) { return ask(method, nlohmann::json::object()); }
+control::RpcResponse Session::ask(std::string_view method) { return ask(method, Json::object()); }
 
-control::RpcResponse Session::ask(std::string_view method, const nlohmann::json& parameters) {
+control::RpcResponse Session::ask(std::string_view method, const Json& parameters) {
   return client_.call(method, parameters, limit_of(method, parameters), control::kCallLimit);
 }
 

@@ -5,7 +5,6 @@
 
 #include <cstdio>
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "chimera/cli/command/command_result.h"
 #include "chimera/control/client.h"
 #include "chimera/control/home.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 
@@ -30,7 +30,7 @@ CommandResult refused(const control::RpcResponse& answer, bool json);
 CommandResult refused(const Error& error, bool json, int code = kRefused);
 /// The answer as it came (`json`), or what `show` makes of it; or the refusal.
 CommandResult answered(const control::RpcResponse& answer, bool json,
-                       const std::function<std::string(const nlohmann::json&)>& show);
+                       const std::function<std::string(const Json&)>& show);
 
 /// Context: setup; calls block, never longer than their limit.
 class Session {
@@ -50,7 +50,7 @@ class Session {
   Result<void> may_act();
   /// As control::Client::call, with the time that the method may take.
   control::RpcResponse ask(std::string_view method);
-  control::RpcResponse ask(std::string_view method, const nlohmann::json& parameters);
+  control::RpcResponse ask(std::string_view method, const Json& parameters);
 
  private:
   Session(control::Client client, Surroundings surroundings)

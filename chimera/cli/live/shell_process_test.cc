@@ -18,7 +18,6 @@
 #include <filesystem>
 #include <fstream>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 #include <utility>
@@ -28,14 +27,14 @@
 #include "chimera/cli/live/interactive.h"
 #include "chimera/cli/live/testing/test_answers.h"
 #include "chimera/control/control_server.h"
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
 
 Result<Call> read_call(const std::vector<std::string>& words) { return cli::read_call(shell_words(), words); }
 
-using control::Json;
 using control::RpcResponse;
 
 /// Two tasks and the variables of test_answers.h; `error` rises by 1 mrad a row.

@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "chimera/cli/live/columns.h"
 #include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/figures.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 std::string or_dash(const std::string& text) { return text.empty() ? "-" : text; }
 
@@ -41,11 +39,11 @@ std::string memory_text(std::int64_t bytes) {
 
 Columns rtpu_table(const Json& status) {
   Columns table({"rtpu", ">cpu", "policy", "phase", ">pid", ">restarts", ">memory", "running", "flag"});
-  for (const Json& rtpu : field(status, "rtpus"))
-    table.add({text_of(rtpu, "name"), std::to_string(whole_of(rtpu, "cpu")), policy_of(rtpu),
-               text_of(rtpu, "phase"), std::to_string(whole_of(rtpu, "pid")),
-               std::to_string(whole_of(rtpu, "restarts")), memory_text(whole_of(rtpu, "resident_bytes")),
-               or_dash(text_of(rtpu, "running")), truth_of(rtpu, "flag") ? "UP" : "-"});
+  for (const Json& rtpu : status["rtpus"])
+    table.add({text_of(rtpu, "name"), std::to_string(whole_of(rtpu, "cpu")), policy_of(rtpu), text_of(rtpu, "phase"),
+               std::to_string(whole_of(rtpu, "pid")), std::to_string(whole_of(rtpu, "restarts")),
+               memory_text(whole_of(rtpu, "resident_bytes")), or_dash(text_of(rtpu, "running")),
+               truth_at(rtpu, "flag") ? "UP" : "-"});
   return table;
 }
 
@@ -53,7 +51,7 @@ Columns rtpu_table(const Json& status) {
 std::vector<std::string> that_count(const Json& answer, std::initializer_list<const char*> keys) {
   std::vector<std::string> found;
   for (const char* key : keys)
-    for (const Json& task : field(answer, "tasks"))
+    for (const Json& task : answer["tasks"])
       if (whole_of(task, key) > 0) {
         found.emplace_back(key);
         break;
@@ -68,14 +66,14 @@ std::string percent(double part) {
 }
 
 bool has_server(const Json& answer) {
-  for (const Json& task : field(answer, "tasks"))
-    if (field(task, "server").is_object()) return true;
+  for (const Json& task : answer["tasks"])
+    if (task["server"].is_object()) return true;
   return false;
 }
 
 /// "2.00 ms / 10.0 ms", and how much of that is used; both "-" without a server.
 std::vector<std::string> server_cells(const Json& task, double load) {
-  const Json& server = field(task, "server");
+  const Json& server = task["server"];
   if (!server.is_object()) return {"-", "-"};
   return {duration_text(whole_of(server, "capacity_ns")) + " / " + duration_text(whole_of(server, "period_ns")),
           percent(share_of_server(server, load))};
@@ -90,14 +88,14 @@ Columns task_table(const Json& status) {
   for (const std::string& key : seldom) heading.push_back(">" + key);
   heading.insert(heading.end(), {">faults", "oldest input"});
   Columns table(std::move(heading));
-  for (const Json& task : field(status, "tasks")) {
+  for (const Json& task : status["tasks"]) {
     std::vector<std::string> row = {text_of(task, "task"),
                                     text_of(task, "state"),
                                     text_of(task, "rtpu"),
                                     rate_text(number_of(task, "rate_hz")),
                                     count_of(task, "cycles"),
-                                    time_of(field(task, "execution_ns"), "mean"),
-                                    time_of(field(task, "execution_ns"), "max"),
+                                    time_of(task["execution_ns"], "mean"),
+                                    time_of(task["execution_ns"], "max"),
                                     time_of(task, "budget_ns"),
                                     time_of(task, "jitter_ns"),
                                     count_of(task, "missed")};
@@ -114,12 +112,12 @@ Columns task_table(const Json& status) {
 /// Execution time of the cycles as a part of the time that the task was ON; 0 before that.
 double load_of(const Json& task) {
   const auto on = static_cast<double>(whole_of(task, "on_ns"));
-  const Json& cycle = field(field(task, "execution_ns"), "cycle");
+  const Json& cycle = task["execution_ns"]["cycle"];
   return on <= 0 ? 0 : number_of(cycle, "mean") * static_cast<double>(whole_of(cycle, "count")) / on;
 }
 
 std::string load_text(const Json& task) {
-  return whole_of(field(field(task, "execution_ns"), "cycle"), "count") == 0 ? "-" : percent(load_of(task));
+  return whole_of(task["execution_ns"]["cycle"], "count") == 0 ? "-" : percent(load_of(task));
 }
 
 /// The counters of a table of tasks: some only where they say something.
@@ -135,8 +133,8 @@ std::vector<std::string> counters_of(const Json& answer) {
 /// Every method but cycle that was called.
 Columns method_table(const Json& answer) {
   Columns table({"task", "method", ">calls", ">mean", ">max"});
-  for (const Json& task : field(answer, "tasks")) {
-    const Json& methods = field(task, "execution_ns");
+  for (const Json& task : answer["tasks"]) {
+    const Json& methods = task["execution_ns"];
     if (!methods.is_object()) continue;
     for (const auto& [method, spread] : methods.items())
       if (method != "cycle" && whole_of(spread, "count") > 0)
@@ -148,15 +146,15 @@ Columns method_table(const Json& answer) {
 
 Columns transfer_table(const Json& answer) {
   Columns table({"task", ">groups a cycle", ">bytes a cycle"});
-  for (const Json& task : field(answer, "tasks"))
-    if (const Json& transfer = field(task, "transfer"); whole_of(transfer, "groups") > 0)
+  for (const Json& task : answer["tasks"])
+    if (const Json& transfer = task["transfer"]; whole_of(transfer, "groups") > 0)
       table.add({text_of(task, "task"), count_of(transfer, "groups"), count_of(transfer, "bytes")});
   return table;
 }
 
 Columns unit_table(const Json& answer) {
   std::vector<std::string> names;
-  for (const Json& task : field(answer, "tasks"))
+  for (const Json& task : answer["tasks"])
     if (const std::string name = text_of(task, "rtpu");
         !name.empty() && std::find(names.begin(), names.end(), name) == names.end())
       names.push_back(name);
@@ -168,7 +166,7 @@ Columns unit_table(const Json& answer) {
     double load = 0;
     std::int64_t tasks = 0;
     std::vector<std::int64_t> sums(counters.size());
-    for (const Json& task : field(answer, "tasks")) {
+    for (const Json& task : answer["tasks"]) {
       if (text_of(task, "rtpu") != name) continue;
       ++tasks;
       load += load_of(task);
@@ -191,8 +189,8 @@ std::string headline(const Json& status) {
   line += configuration.empty() ? "no configuration" : configuration;
   const auto started = whole_or_none(status, "started_ns");
   line += started ? ", up " + duration_text(whole_of(status, "now_ns") - *started) : ", starting";
-  return line + ", " + flag_words(field(status, "flag")) + (truth_of(status, "ending") ? ", ENDING" : "") +
-         (text_of(field(status, "face"), "lost_output").empty() ? "" : ", OUTPUT LOST");
+  return line + ", " + flag_words(status["flag"]) + (truth_at(status, "ending") ? ", ENDING" : "") +
+         (text_of(status["face"], "lost_output").empty() ? "" : ", OUTPUT LOST");
 }
 
 /// Of the process in whose terminal the run was typed: lines only when something happened to it.
@@ -209,7 +207,7 @@ static std::string face_text(const Json& face) {
 std::string flag_words(const Json& flag) {
   std::string by;
   for (const std::string& who : texts_of(flag, "by")) by += (by.empty() ? " by " : ", ") + who;
-  return (truth_of(flag, "up") ? "flag UP" : "flag down") + by;
+  return (truth_at(flag, "up") ? "flag UP" : "flag down") + by;
 }
 
 double share_of_server(const Json& server, double load) {
@@ -219,14 +217,14 @@ double share_of_server(const Json& server, double load) {
 
 std::string rtpu_remarks(const Json& rtpu) {
   std::string line = text_of(rtpu, "name") + " " +
-                     (truth_of(rtpu, "alive") || !text_of(rtpu, "hang").empty() ? text_of(rtpu, "phase")
-                      : truth_of(rtpu, "given_up")                              ? "GIVEN UP"
+                     (truth_at(rtpu, "alive") || !text_of(rtpu, "hang").empty() ? text_of(rtpu, "phase")
+                      : truth_at(rtpu, "given_up")                              ? "GIVEN UP"
                                                                                 : "DEAD");
   if (const std::int64_t n = whole_of(rtpu, "restarts"); n > 0)
     line += ", restarted " + (n == 1 ? std::string("once") : std::to_string(n) + " times");
   if (const std::string running = text_of(rtpu, "running"); !running.empty()) line += ", running " + running;
   if (const std::string hang = text_of(rtpu, "hang"); !hang.empty()) line += ", HANGS: " + hang;
-  if (truth_of(rtpu, "flag")) line += ", FLAG";
+  if (truth_at(rtpu, "flag")) line += ", FLAG";
   if (const std::int64_t bytes = whole_of(rtpu, "resident_bytes"); bytes > 0) line += ", " + memory_text(bytes);
   if (const std::string lost = text_of(rtpu, "lost_rights"); !lost.empty()) line += ", RIGHTS LOST: " + lost;
   if (const std::int64_t lost = whole_of(rtpu, "lost_events"); lost > 0)
@@ -237,7 +235,7 @@ std::string rtpu_remarks(const Json& rtpu) {
 
 OldestInput oldest_input(const Json& task) {
   OldestInput oldest;
-  for (const Json& input : field(task, "inputs")) {
+  for (const Json& input : task["inputs"]) {
     const auto age = whole_or_none(input, "age_ns");
     if (!age) return {-1, text_of(input, "variable")};  // never written is older than any age
     if (*age > std::max<std::int64_t>(oldest.age_ns, 0)) oldest = {*age, text_of(input, "variable")};
@@ -246,23 +244,23 @@ OldestInput oldest_input(const Json& task) {
 }
 
 std::string status_text(const Json& status) {
-  std::string text = headline(status) + "\n" + face_text(field(status, "face"));
+  std::string text = headline(status) + "\n" + face_text(status["face"]);
   if (const Columns rtpus = rtpu_table(status); !rtpus.empty()) text += "\n" + rtpus.text();
-  if (const std::string hang = text_of(field(status, "keeper"), "hang"); !hang.empty())
+  if (const std::string hang = text_of(status["keeper"], "hang"); !hang.empty())
     text += "keeper: HANGS: " + hang + "\n";
-  for (const Json& rtpu : field(status, "rtpus"))
+  for (const Json& rtpu : status["rtpus"])
     if (const std::string hang = text_of(rtpu, "hang"); !hang.empty())
       text += text_of(rtpu, "name") + ": HANGS: " + hang + "\n";
-  for (const Json& rtpu : field(status, "rtpus"))
+  for (const Json& rtpu : status["rtpus"])
     if (const std::string end = text_of(rtpu, "last_end"); !end.empty())
-      text += text_of(rtpu, "name") + ": " + (truth_of(rtpu, "given_up") ? "GIVEN UP; " : "") + "last end: " + end +
+      text += text_of(rtpu, "name") + ": " + (truth_at(rtpu, "given_up") ? "GIVEN UP; " : "") + "last end: " + end +
               (whole_of(rtpu, "restarts") > 0 ? "; its tasks count from their restart" : "") +
               (text_of(rtpu, "remedy").empty() ? "" : "\n  to bring it back type " + text_of(rtpu, "remedy")) + "\n";
-  for (const Json& rtpu : field(status, "rtpus"))
+  for (const Json& rtpu : status["rtpus"])
     if (const std::string lost = text_of(rtpu, "lost_rights"); !lost.empty())
       text += text_of(rtpu, "name") + ": RIGHTS LOST: " + lost + "\n";
   if (const Columns tasks = task_table(status); !tasks.empty()) text += "\n" + tasks.text();
-  for (const Json& task : field(status, "tasks"))
+  for (const Json& task : status["tasks"])
     if (const std::string fault = text_of(task, "fault"); !fault.empty())
       text += text_of(task, "task") + ": last fault: " + fault + "\n";
   return text;
@@ -276,9 +274,9 @@ std::string profile_text(const Json& answer) {
   for (const std::string& key : counters) heading.push_back(">" + key);
   Columns table(std::move(heading));
   std::string faults;
-  for (const Json& task : field(answer, "tasks")) {
-    const Json& cycle = field(field(task, "execution_ns"), "cycle");
-    const Json& delay = field(task, "start_delay_ns");
+  for (const Json& task : answer["tasks"]) {
+    const Json& cycle = task["execution_ns"]["cycle"];
+    const Json& delay = task["start_delay_ns"];
     const bool has_delay = whole_of(delay, "count") > 0;
     std::vector<std::string> row = {text_of(task, "task"),
                                     text_of(task, "state"),
@@ -286,12 +284,12 @@ std::string profile_text(const Json& answer) {
                                     time_of(cycle, "mean"),
                                     time_of(cycle, "max"),
                                     load_text(task),
-                                    time_of(field(task, "response_ns"), "max"),
+                                    time_of(task["response_ns"], "max"),
                                     has_delay ? duration_text(whole_of(delay, "max") - whole_of(delay, "min")) : "-"};
     if (const auto cells = server_cells(task, load_of(task)); serves) row.insert(row.end(), cells.begin(), cells.end());
     for (const std::string& key : counters) row.push_back(count_of(task, key));
     table.add(std::move(row));
-    const Json& fault = field(task, "last_fault");
+    const Json& fault = task["last_fault"];
     if (fault.is_object())
       faults += text_of(task, "task") + ": last fault in " + text_of(fault, "method") + " at " +
                 duration_text(whole_of(fault, "at_ns")) + ": " + text_of(fault, "text") + "\n";

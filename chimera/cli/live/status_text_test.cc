@@ -3,24 +3,23 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "chimera/cli/live/testing/test_answers.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
 
-nlohmann::json status() { return nlohmann::json::parse(test::kStatus); }
+Json status() { return Json::parse(test::kStatus); }
 
 TEST(OldestInput, IsNeverOneOfTheOperatorWhichHoldsUntilItIsSet) {
-  const auto oldest = [](const char* inputs) { return oldest_input(nlohmann::json::parse(inputs)); };
+  const auto oldest = [](const char* inputs) { return oldest_input(Json::parse(inputs)); };
   EXPECT_EQ(oldest(R"({"inputs": [{"variable": "kp", "age_ns": 0}, {"variable": "q", "age_ns": 7}]})").variable, "q");
   EXPECT_EQ(oldest(R"({"inputs": [{"variable": "kp", "age_ns": 0}]})").variable, "");
   EXPECT_EQ(oldest(R"({"inputs": [{"variable": "q", "age_ns": 7}, {"variable": "r", "age_ns": null}]})").age_ns, -1);
 }
 
 TEST(StatusText, OfAUnitThatWasGivenUpItSaysWhatToType) {
-  nlohmann::json status = chimera::cli::status();
+  Json status = chimera::cli::status();
   status["rtpus"][1]["given_up"] = true;
   status["rtpus"][1]["remedy"] = "`chimera clear trajectory`, then `chimera on trajectory`";
   const char* lines = "spare: GIVEN UP; last end: signal 11 in trajectory.cycle; its tasks count from their restart\n"
@@ -30,7 +29,7 @@ TEST(StatusText, OfAUnitThatWasGivenUpItSaysWhatToType) {
 }
 
 TEST(StatusText, TellsWhatAUnitTakesAndWhatItGaveUp) {
-  nlohmann::json status = chimera::cli::status();
+  Json status = chimera::cli::status();
   status["rtpus"][0]["resident_bytes"] = 255'400'000;
   status["rtpus"][0]["lost_rights"] = "thread 7 runs at SCHED_OTHER instead of SCHED_FIFO 80";
   EXPECT_NE(status_text(status).find("servo    1  muf     serving  4711         0  255 MB  pid.cycle  -\n"),
@@ -66,9 +65,8 @@ TEST(StatusText, TellsTheWholeTheUnitsAndTheTasks) {
 
 TEST(StatusText, ATaskBehindAServerShowsItAndHowMuchOfItIsUsed) {
   auto json = status();
-  json["rtpus"].clear();
-  json["tasks"].erase(2);
-  json["tasks"].erase(2);
+  json["rtpus"] = Json::array();
+  json["tasks"].elements().resize(2);
   auto& pid = json["tasks"][1];
   pid["server"] = {{"kind", "sporadic"}, {"capacity_ns", 2000000}, {"period_ns", 10000000}};
   pid["on_ns"] = 1000000000;
@@ -87,7 +85,7 @@ TEST(StatusText, ATaskBehindAServerShowsItAndHowMuchOfItIsUsed) {
 }
 
 TEST(StatusText, TheLoadOfATaskThatEventsReleaseIsMeasured) {
-  const std::string text = profile_text(nlohmann::json::parse(R"({"tasks": [
+  const std::string text = profile_text(Json::parse(R"({"tasks": [
       {"task": "lamp", "rtpu": "servo", "state": "ON", "period_ns": 10000000, "on_ns": 1000000000, "cycles": 3,
        "server": {"kind": "deferrable", "capacity_ns": 2000000, "period_ns": 10000000},
        "execution_ns": {"cycle": {"count": 3, "min": 1000000, "mean": 2000000, "max": 3000000}},
@@ -103,7 +101,7 @@ TEST(StatusText, TheLoadOfATaskThatEventsReleaseIsMeasured) {
 }
 
 TEST(StatusText, AnIdleSubsystemHasOnlyItsHeadline) {
-  EXPECT_EQ(status_text(nlohmann::json::parse(R"({"subsystem": "idle", "configuration": "", "started_ns": null,
+  EXPECT_EQ(status_text(Json::parse(R"({"subsystem": "idle", "configuration": "", "started_ns": null,
               "ending": true, "flag": {"up": false, "by": []}, "rtpus": [], "tasks": []})")),
             "idle: no configuration, starting, flag down, ENDING\n");
 }
@@ -116,7 +114,7 @@ TEST(StatusText, TheRemarksOnAnRtpu) {
 }
 
 TEST(StatusText, TheProfileHasALineForEachTaskAndItsFaults) {
-  EXPECT_EQ(profile_text(nlohmann::json::parse(R"({"tasks": [
+  EXPECT_EQ(profile_text(Json::parse(R"({"tasks": [
               {"task": "pid", "component": "pid_joint", "rtpu": "servo", "state": "ON", "period_ns": 1000000,
                "on_ns": 750000000000, "cycles": 750000,
                "execution_ns": {"init": {"count": 1, "min": 9, "mean": 9, "max": 9},

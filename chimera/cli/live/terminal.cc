@@ -7,8 +7,8 @@
 #include <string_view>
 #include <utility>
 
-#include "chimera/platform/linux_clock.h"
-#include "chimera/platform/readiness.h"
+#include "chimera/platform/clock.h"
+#include "chimera/platform/descriptor.h"
 
 namespace chimera::cli {
 

@@ -9,7 +9,7 @@
 
 #include "chimera/control/client.h"
 #include "chimera/platform/signal_queue.h"
-#include "chimera/platform/terminal.h"
+#include "chimera/platform/standard_streams.h"
 
 namespace chimera::cli {
 

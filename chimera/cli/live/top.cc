@@ -5,17 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "chimera/cli/live/columns.h"
 #include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/figures.h"
 #include "chimera/cli/live/status_text.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
 
-using Json = nlohmann::json;
 using LineLook = TopLine::Look;
 
 constexpr std::size_t kNarrow = 80;
@@ -38,7 +37,7 @@ struct Row {
 
 const Json& task_of(const Json& status, const std::string& name) {
   static const Json kNull;
-  for (const Json& task : field(status, "tasks"))
+  for (const Json& task : status["tasks"])
     if (text_of(task, "task") == name) return task;
   return kNull;
 }
@@ -70,11 +69,11 @@ void add_recent(Row& row, const Json& task, const Json& before, double seconds) 
   row.has_missed_since = row.missed > whole_of(before, "missed") ||
                          whole_of(task, "demoted") > whole_of(before, "demoted") ||
                          whole_of(task, "events_lost") > whole_of(before, "events_lost");
-  if (row.share >= 0) row.share = share_of_server(field(task, "server"), load_of(task, before));
+  if (row.share >= 0) row.share = share_of_server(task["server"], load_of(task, before));
   row.rate_hz = static_cast<double>(cycles - earlier) / seconds;
   if (cycles == earlier) return;
   const double sum = static_cast<double>(row.mean_ns) * static_cast<double>(cycles) -
-                     number_of(field(before, "execution_ns"), "mean") * static_cast<double>(earlier);
+                     number_of(before["execution_ns"], "mean") * static_cast<double>(earlier);
   // Means are whole nanoseconds: after billions of cycles their difference may fall outside what is possible.
   row.mean_ns = std::clamp<std::int64_t>(std::llround(sum / static_cast<double>(cycles - earlier)), 0, row.max_ns);
 }
@@ -82,13 +81,13 @@ void add_recent(Row& row, const Json& task, const Json& before, double seconds) 
 std::vector<Row> rows_of(const Json& status, const Json& previous) {
   const double seconds = static_cast<double>(whole_of(status, "now_ns") - whole_of(previous, "now_ns")) * 1e-9;
   std::vector<Row> rows;
-  for (const Json& task : field(status, "tasks")) {
-    const Json& execution = field(task, "execution_ns");
+  for (const Json& task : status["tasks"]) {
+    const Json& execution = task["execution_ns"];
     Row row{text_of(task, "task"), text_of(task, "state"), number_of(task, "rate_hz"), whole_of(execution, "mean"),
             whole_of(execution, "max"), whole_of(task, "budget_ns"), whole_of(task, "jitter_ns"),
             whole_of(task, "missed"), false, whole_of(task, "cycles") > 0, oldest_input(task), -1,
             remarks_on(task)};
-    if (const Json& server = field(task, "server"); server.is_object()) {
+    if (const Json& server = task["server"]; server.is_object()) {
       row.share = share_of_server(server, load_of(task, nullptr));
       row.budget_ns = whole_of(server, "capacity_ns");
     }
@@ -157,7 +156,7 @@ TopLine task_line(const Row& row, std::size_t width) {
 }
 
 TopLine rtpu_line(const Json& rtpu, std::size_t width) {
-  const bool is_dead = !truth_of(rtpu, "alive") || truth_of(rtpu, "flag") || !text_of(rtpu, "hang").empty() ||
+  const bool is_dead = !truth_at(rtpu, "alive") || truth_at(rtpu, "flag") || !text_of(rtpu, "hang").empty() ||
                        !text_of(rtpu, "lost_rights").empty();
   const std::string head = "cpu " + std::to_string(whole_of(rtpu, "cpu")) + " " + text_of(rtpu, "policy") +
                            (text_of(rtpu, "executor") == "preemptive" ? " preemptive" : "") + "  ";
@@ -166,7 +165,7 @@ TopLine rtpu_line(const Json& rtpu, std::size_t width) {
 
 /// Lines for tasks: what the headline, the rtpus, an empty line, the heading and the keys leave.
 std::size_t room_for_tasks(const Json& status, const TopView& view) {
-  const std::size_t taken = 4 + field(status, "rtpus").size();
+  const std::size_t taken = 4 + status["rtpus"].size();
   return view.height > taken ? view.height - taken : 0;
 }
 
@@ -180,7 +179,7 @@ std::optional<TopOrder> order_of_key(int key) {
 }
 
 std::size_t most_skipped(const Json& status, const TopView& view) {
-  const std::size_t tasks = field(status, "tasks").size(), room = room_for_tasks(status, view);
+  const std::size_t tasks = status["tasks"].size(), room = room_for_tasks(status, view);
   return tasks > room ? tasks - room : 0;
 }
 
@@ -206,9 +205,9 @@ std::vector<TopLine> help_lines(const TopView& view) {
 
 std::vector<TopLine> top_lines(const Json& status, const Json& previous, const TopView& view) {
   std::vector<TopLine> lines;
-  const bool is_alarm = truth_of(field(status, "flag"), "up") || truth_of(status, "ending");
+  const bool is_alarm = truth_at(status["flag"], "up") || truth_at(status, "ending");
   lines.push_back({fitted(headline(status), view.width), is_alarm ? LineLook::kAlarm : LineLook::kPlain});
-  for (const Json& rtpu : field(status, "rtpus")) lines.push_back(rtpu_line(rtpu, view.width));
+  for (const Json& rtpu : status["rtpus"]) lines.push_back(rtpu_line(rtpu, view.width));
   lines.push_back({std::string(view.width, ' ')});
   lines.push_back({cells({"TASK", "STATE", "RATE", "EXEC", "MAX", "BUDGET", "USED", "JITTER", "MISSED", "INPUT"},
                          view.width),

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 
@@ -37,12 +38,12 @@ std::optional<TopOrder> order_of_key(int key);
 /// start). A task in ERROR, or that missed a deadline since `previous`, is an alarm; so is an rtpu that is dead. What
 /// does not fit is counted. Below 80 columns the budget is left out, then jitter, rate and execution time. Context:
 /// setup.
-std::vector<TopLine> top_lines(const nlohmann::json& status, const nlohmann::json& previous, const TopView& view);
+std::vector<TopLine> top_lines(const Json& status, const Json& previous, const TopView& view);
 
 /// What the columns and keys mean: exactly `height` lines. Context: setup.
 std::vector<TopLine> help_lines(const TopView& view);
 
 /// How far one can scroll: the largest `skipped` that still shows a task on every line.
-std::size_t most_skipped(const nlohmann::json& status, const TopView& view);
+std::size_t most_skipped(const Json& status, const TopView& view);
 
 }  // namespace chimera::cli

@@ -3,15 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "chimera/cli/live/columns.h"
 #include "chimera/cli/live/testing/test_answers.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli::top_test {
 namespace {
-
-using Json = nlohmann::json;
 
 Json status() { return Json::parse(test::kStatus); }
 

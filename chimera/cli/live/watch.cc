@@ -6,16 +6,14 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "chimera/cli/live/columns.h"
 #include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/sparkline.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 std::string number_text(double value) {
   char text[40];
@@ -25,7 +23,7 @@ std::string number_text(double value) {
 
 /// The text of a reading; of a part its numbers with the unit.
 std::string text_of_part(const Json& reading, const std::string& part, const std::vector<ChannelNumber>& numbers) {
-  if (part.empty() || !truth_of(reading, "valid")) return text_of(reading, "text");
+  if (part.empty() || !truth_at(reading, "valid")) return text_of(reading, "text");
   if (numbers.empty()) return "no such element";
   std::string text;
   char number[40];
@@ -53,9 +51,9 @@ Watch::Watch(std::vector<ChannelName> channels) {
 
 void Watch::add(const Json& values) {
   for (Watched& watched : watched_) {
-    const Json& reading = field(values, watched.name.variable);
+    const Json& reading = values[watched.name.variable];
     if (!reading.is_object()) continue;
-    const auto numbers = numbers_of(field(reading, "value"), watched.name.part);
+    const auto numbers = numbers_of(reading["value"], watched.name.part);
     watched.text = text_of_part(reading, watched.name.part, numbers);
     const std::string producer = text_of(reading, "producer"), state = text_of(reading, "state");
     watched.remark = producer.empty() ? "no producer" : producer + " is " + state;

@@ -4,11 +4,11 @@
 
 #include <cstddef>
 #include <deque>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "chimera/cli/live/channel.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 
@@ -20,7 +20,7 @@ class Watch {
   explicit Watch(std::vector<ChannelName> channels);
 
   /// Takes the member `values` of a notification or of the answer `get`.
-  void add(const nlohmann::json& values);
+  void add(const Json& values);
   /// One line a channel, at most `width` columns: name, value, course, and the range of the course. Of a list the
   /// course is that of its first number. Why a value does not change stands behind it: its producer's state.
   std::vector<std::string> lines(std::size_t width, bool unicode) const;

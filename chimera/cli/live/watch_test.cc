@@ -3,14 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "chimera/cli/live/columns.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 Json readings(double error, double q0) {
   return {{"error", {{"value", error}, {"text", Json(error).dump() + " rad"}, {"unit", "rad"}, {"producer", "pid"},

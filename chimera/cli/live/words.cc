@@ -3,9 +3,9 @@
 #include "chimera/cli/live/words.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "chimera/cli/live/fields.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
@@ -66,15 +66,15 @@ Result<std::vector<std::string>> words_of(std::string_view line) {
   return words;
 }
 
-Names names_of(const nlohmann::json& described) {
+Names names_of(const Json& described) {
   Names names;
-  for (const auto& task : field(described, "tasks")) names.tasks.push_back(text_of(task, "task"));
-  for (const auto& variable : field(described, "variables")) {
-    if (truth_of(variable, "constant")) continue;
+  for (const auto& task : described["tasks"]) names.tasks.push_back(text_of(task, "task"));
+  for (const auto& variable : described["variables"]) {
+    if (truth_at(variable, "constant")) continue;
     names.variables.push_back(text_of(variable, "variable"));
-    if (truth_of(variable, "given")) names.operators.push_back(names.variables.back());
+    if (truth_at(variable, "given")) names.operators.push_back(names.variables.back());
   }
-  for (const auto& set : field(described, "configurations")) names.configurations.push_back(text_of(set, "name"));
+  for (const auto& set : described["configurations"]) names.configurations.push_back(text_of(set, "name"));
   return names;
 }
 

@@ -2,13 +2,13 @@
 // A line as somebody types it, cut into words; and what could stand where the cursor is.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "chimera/base/result.h"
 #include "chimera/cli/command/command.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 
@@ -20,7 +20,7 @@ Result<std::vector<std::string>> words_of(std::string_view line);
 struct Names {
   std::vector<std::string> tasks, variables, operators, configurations;
 };
-Names names_of(const nlohmann::json& described);
+Names names_of(const Json& described);
 
 /// What the last word of `before` (the line up to the cursor) could become, whole words in order: commands at the
 /// beginning, then what the command takes.

@@ -3,10 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "chimera/cli/live/commands.h"
 #include "chimera/cli/live/testing/test_answers.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
@@ -35,7 +34,7 @@ TEST(Words, AnOpenQuoteIsRefused) {
 }
 
 Words offered(const std::string& before) {
-  return completions(shell_words(), before, names_of(nlohmann::json::parse(test::kDescribed)));
+  return completions(shell_words(), before, names_of(Json::parse(test::kDescribed)));
 }
 
 TEST(Words, CommandsAreCompletedFirstThenWhatTheyTake) {

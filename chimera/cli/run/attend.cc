@@ -6,8 +6,8 @@
 #include <csignal>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "chimera/analysis/task_profile.h"
 #include "chimera/base/hosted/terminal_text.h"
@@ -21,15 +21,14 @@
 #include "chimera/cli/run/run_report.h"
 #include "chimera/cli/run/run_session.h"
 #include "chimera/cli/run/script_text.h"
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 #include "chimera/platform/process.h"
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/standard_streams.h"
+#include "chimera/text/json.h"
 #include "chimera/text/json_text.h"
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr Nanoseconds kLookEvery = milliseconds(100);  // for what has happened, and whether to stop
 constexpr Nanoseconds kStartLook = milliseconds(5);
@@ -45,13 +44,13 @@ std::string limit_text(Nanoseconds time) {
   return text;
 }
 
-Nanoseconds instant(const Json& json) { return json.is_number() ? Nanoseconds{json.get<std::int64_t>()} : kNever; }
+Nanoseconds instant(const Json& json) { return json.is_number() ? Nanoseconds{json.as_int64()} : kNever; }
 
 void add_numbers(const Json& value, std::vector<double>& numbers) {
   if (value.is_number())
-    numbers.push_back(value.get<double>());
-  else if (value.is_boolean())
-    numbers.push_back(value.get<bool>() ? 1 : 0);
+    numbers.push_back(value.as_double());
+  else if (value.is_bool())
+    numbers.push_back(value.as_bool() ? 1 : 0);
   else if (value.is_null())
     numbers.push_back(std::numeric_limits<double>::quiet_NaN());
   else if (value.is_array())
@@ -60,9 +59,9 @@ void add_numbers(const Json& value, std::vector<double>& numbers) {
 
 Seen seen_of(const Json& reading) {
   Seen seen;
-  seen.is_written = reading.value("valid", false);
-  seen.text = reading.value("text", "");
-  if (seen.is_written) add_numbers(reading.value("value", Json()), seen.numbers);
+  seen.is_written = truth_at(reading, "valid");
+  seen.text = text_at(reading, "text");
+  if (seen.is_written) add_numbers(reading["value"], seen.numbers);
   return seen;
 }
 
@@ -214,11 +213,11 @@ std::string in_one_line(const std::string& grant) {
 void RemoteTarget::print_grants(const Json& status) {
   const Json& rtpus = status["rtpus"];
   for (const Json& rtpu : rtpus) {
-    const std::string grant = for_terminal(rtpu.value("grant", ""));
+    const std::string grant = for_terminal(text_at(rtpu, "grant"));
     grants_ +=
-        (grants_.empty() ? "" : "; ") + (rtpus.size() == 1 ? "" : rtpu.value("name", "") + ": ") + in_one_line(grant);
+        (grants_.empty() ? "" : "; ") + (rtpus.size() == 1 ? "" : text_at(rtpu, "name") + ": ") + in_one_line(grant);
     if (run_.json || is_resumed_) continue;
-    std::fprintf(out_, "%s%s\n", rtpus.size() == 1 ? "" : (rtpu.value("name", "") + ": ").c_str(), grant.c_str());
+    std::fprintf(out_, "%s%s\n", rtpus.size() == 1 ? "" : (text_at(rtpu, "name") + ": ").c_str(), grant.c_str());
   }
   if (!run_.json && is_resumed_)
     std::fprintf(out_, "(the process that prints this died of %s and was replaced)\n",
@@ -257,17 +256,16 @@ void RemoteTarget::take_back_failure() {
 }
 
 void RemoteTarget::on_event(const Json& event) {
-  next_event_ = event["number"].get<std::uint64_t>() + 1;
-  const std::string kind = event.value("kind", ""), text = event.value("text", "");
-  const Json about = event.value("task", Json());
-  const std::string task = about.is_string() ? about.get<std::string>() : "";
+  next_event_ = event["number"].as_uint64() + 1;
+  const std::string kind = text_at(event, "kind"), text = text_at(event, "text");
+  const std::string task = text_at(event, "task");
   const bool is_refusal = kind == "refused" || kind == "fault" || kind == "rtpu-given-up";
   if (is_refusal && instant(event["at_ns"]) < started_ && !failure_)
     failed_ = event, failure_ = Error{ErrorCode::kRefused, std::string_view(text), std::string_view(task)};
   else if (kind == "refused")
     refused_ += "refused at " + since_start(instant(event["at_ns"])) + ": " + task + ": " + text + "\n";
   if (kind == "rtpu-restarted" && event.contains("rtpu") && event["rtpu"].is_string())
-    restarted_[event["rtpu"].get<std::string>()] = instant(event["at_ns"]);
+    restarted_[event["rtpu"].as_string()] = instant(event["at_ns"]);
   const bool is_news = next_event_ > page_.events_seen;
   if (kind == "note" && !run_.json && is_news) std::fprintf(out_, "%s\n", note_line(task, text).c_str());
   if (kind == "not-off") not_off_.push_back({task, text});
@@ -305,9 +303,9 @@ void RemoteTarget::switch_to(const TimedAct& timed) {
   if (!answer) {
     const std::string what = timed.has_lists() ? trimmed(timed.text.substr(timed.text.find(':') + 1)) + ": " : "";
     refused_ += "refused at " + since_start(clock_.now()) + ": " + what + answer.error().message.c_str() + "\n";
-  } else if (answer->value("end", "") == "nothing-to-do") {
-    const Json to = answer->value("to", Json());
-    const std::string what = to.is_string() ? "'" + to.get<std::string>() + "' is" : "these tasks are";
+  } else if (text_at(*answer, "end") == "nothing-to-do") {
+    const std::string to = text_at(*answer, "to");
+    const std::string what = to.empty() ? "these tasks are" : "'" + to + "' is";
     switches_ += "switch at " + since_start(clock_.now()) + ": " + what + " in force, nothing to do\n";
   }
 }
@@ -331,14 +329,13 @@ void RemoteTarget::act(const TimedAct& timed) {
 }
 
 std::vector<Reading> RemoteTarget::read(const std::vector<std::string>& names) {
-  Json values = Json::object();
+  Json values;
   if (!names.empty())
-    if (const auto answer = line_.ask("get", {{"variables", names}}); answer)
-      values = answer->value("values", Json::object());
+    if (const auto answer = line_.ask("get", {{"variables", names}}); answer) values = (*answer)["values"];
   std::vector<Reading> readings;
   for (const std::string& name : names) {
-    const Json reading = values.value(name, Json::object());
-    readings.push_back({seen_of(reading), reading.value("unit", "1"), reading.value("value", Json()).dump()});
+    const Json& reading = std::as_const(values)[name];
+    readings.push_back({seen_of(reading), text_at(reading, "unit", "1"), reading["value"].dump()});
   }
   return readings;
 }
@@ -372,9 +369,12 @@ std::optional<RunEnd> RemoteTarget::advance(Nanoseconds until) {
 
 std::vector<UnitFate> RemoteTarget::units_of(const Json& status) const {
   std::vector<UnitFate> units;
-  for (const Json& rtpu : status.value("rtpus", Json::array())) {
-    UnitFate unit{
-        rtpu.value("name", ""), rtpu.value("restarts", std::uint64_t{0}), kNever, rtpu.value("given_up", false), {}};
+  for (const Json& rtpu : status["rtpus"]) {
+    UnitFate unit{text_at(rtpu, "name"),
+                  static_cast<std::uint64_t>(whole_at(rtpu, "restarts")),
+                  kNever,
+                  truth_at(rtpu, "given_up"),
+                  {}};
     if (const auto at = restarted_.find(unit.name); at != restarted_.end() && started_ != kNever)
       unit.restarted = at->second - started_;
     units.push_back(std::move(unit));
@@ -385,13 +385,13 @@ std::vector<UnitFate> RemoteTarget::units_of(const Json& status) const {
 std::vector<TaskProfile> RemoteTarget::profiles(const Json& origin) {
   const auto answer = line_.ask("profile", Json::object());
   if (!answer) return {};
-  const auto parsed = parse_profiles((*answer)["tasks"].dump(), instant(origin));
-  return parsed ? *parsed : std::vector<TaskProfile>();
+  const auto tasks = read_profiles((*answer)["tasks"], instant(origin));
+  return tasks ? *tasks : std::vector<TaskProfile>();
 }
 
 bool any_lives(const Json& status) {
-  const Json rtpus = status.value("rtpus", Json::array());
-  return std::any_of(rtpus.begin(), rtpus.end(), [](const Json& rtpu) { return rtpu.value("alive", false); });
+  const Json& rtpus = status["rtpus"];
+  return std::any_of(rtpus.begin(), rtpus.end(), [](const Json& rtpu) { return truth_at(rtpu, "alive"); });
 }
 
 /// Has the tasks turned off and killed, and hears of everything that happens meanwhile: the status after that.
@@ -412,7 +412,7 @@ void RemoteTarget::judge_end(RunReport& report, const Json& before) {
   std::vector<UnitFate> units = units_of(before);
   std::vector<std::uint64_t> faults;
   for (const TaskProfile& task : report.profiles) faults.push_back(task.faults.count);
-  auto after = await_end();
+  const auto after = await_end();
   const auto ended = after ? profiles(before["origin_ns"]) : std::vector<TaskProfile>();
   for (std::size_t t = 0; t < std::min(ended.size(), report.profiles.size()); ++t) {
     TaskProfile& task = report.profiles[t];  // cycles and misses are those up to the end of the run
@@ -422,9 +422,9 @@ void RemoteTarget::judge_end(RunReport& report, const Json& before) {
   }
   for (std::size_t r = 0; after && r < units.size(); ++r) {
     const Json& was = before["rtpus"][r];
-    const Json end = (*after)["rtpus"][r].value("last_end", Json());
-    const bool is_new = was.value("alive", false) && end.is_string() && end != was.value("last_end", Json());
-    if (is_new && end != "ended with status 0") units[r].bad_end = end.get<std::string>();
+    const Json end = (*after)["rtpus"][r]["last_end"];
+    const bool is_new = truth_at(was, "alive") && end.is_string() && end != was["last_end"];
+    if (is_new && end != "ended with status 0") units[r].bad_end = end.as_string();
   }
   report.verdict = judge_run({report.profiles, faults, units, report.is_flag_up, run_.strict, not_off_});
   if (page_.deaths > 0)
@@ -457,7 +457,7 @@ void RemoteTarget::add_receipts(const Json& origin_ns, RunReport& report) {
   for (const Json& receipt : (*answer)["receipts"]) {
     if (receipt["origin_ns"] != origin_ns) continue;
     report.receipts += (n++ == 0 ? "" : ", ") + receipt.dump();
-    last = std::max(last, receipt["number"].get<std::uint64_t>());
+    last = std::max(last, receipt["number"].as_uint64());
   }
   report.receipts_left_out = last - n;
 }
@@ -465,7 +465,7 @@ void RemoteTarget::add_receipts(const Json& origin_ns, RunReport& report) {
 void RemoteTarget::finish(RunReport& report) {
   const auto status = line_.ask("status", Json::object());
   if (status) report.profiles = profiles((*status)["origin_ns"]);
-  report.is_flag_up = status && status->value(Json::json_pointer("/flag/up"), false);
+  report.is_flag_up = status && truth_at((*status)["flag"], "up");
   poll_events();
   report.subsystem = names_.subsystem;
   report.executor = grants_;

@@ -13,17 +13,16 @@
 #include <cstring>
 #include <filesystem>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <thread>
 #include <utility>
 
 #include "chimera/control/control_server.h"
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
 
-using control::Json;
 using control::RpcResponse;
 
 /// One task `pid` on two rtpus; what it answers may be changed before it is asked.
@@ -36,7 +35,7 @@ class MadeUp final : public control::ControlBackend {
     if (name == "status") return reply(RpcResponse::good(status()));
     if (name == "events") {
       if (starts_at != nullptr) started_ns = starts_at;
-      return reply(RpcResponse::good(news(parameters["since"].get<std::uint64_t>())));
+      return reply(RpcResponse::good(news(parameters["since"].as_uint64())));
     }
     if (name == "get") return reply(RpcResponse::good({{"values", values}}));
     if (name == "profile") return reply(RpcResponse::good({{"tasks", Json::array({profile()})}}));
@@ -51,8 +50,8 @@ class MadeUp final : public control::ControlBackend {
   void close(std::uint64_t) override {}
   std::shared_ptr<const Json> pull(std::uint64_t) override {
     if (records.empty()) return nullptr;
-    auto next = std::make_shared<const Json>(records.front());
-    records.erase(records.begin());
+    auto next = std::make_shared<const Json>(records[0]);
+    records.elements().erase(records.elements().begin());
     return next;
   }
 
@@ -79,7 +78,7 @@ class MadeUp final : public control::ControlBackend {
   Json news(std::uint64_t since) const {
     Json some = Json::array();
     for (const Json& event : events)
-      if (event["number"].get<std::uint64_t>() >= since) some.push_back(event);
+      if (event["number"].as_uint64() >= since) some.push_back(event);
     return {{"events", some}, {"first", 1}, {"last", events.size()}};
   }
   /// The first time it is asked for; after that how the end went.
@@ -274,7 +273,7 @@ TEST_F(Attend, WhatFailsWhenAllIsTurnedOffIsToldAndIsNoSuccess) {
 TEST_F(Attend, ARestartIsToldAndFailsAStrictRunOnly) {
   backend_.servo["restarts"] = 1;
   backend_.events = {{{"number", 1},
-                      {"at_ns", backend_.started_ns.get<std::int64_t>() + 30'000'000},
+                      {"at_ns", backend_.started_ns.as_int64() + 30'000'000},
                       {"kind", "rtpu-restarted"},
                       {"rtpu", "servo"},
                       {"text", "servo is restarted"}}};

@@ -3,13 +3,12 @@
 #include "chimera/cli/run/control_line.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 
-using control::Json;
 using control::RpcResponse;
 
 Result<Json> ControlLine::ask(std::string_view method, const Json& parameters, Nanoseconds limit) {

@@ -17,11 +17,10 @@ class ControlLine {
 
   /// The result of one request within `limit`. A refusal comes with its words, its `where` as place; without an answer
   /// the code is kSystem and the place the socket.
-  Result<control::Json> ask(std::string_view method, const control::Json& parameters,
-                            Nanoseconds limit = control::kCallLimit);
+  Result<Json> ask(std::string_view method, const Json& parameters, Nanoseconds limit = control::kCallLimit);
   /// The parameters of the next notification; nothing when none comes until `instant` (CLOCK_MONOTONIC), or when the
   /// connection is lost: is_connected() tells.
-  std::optional<control::Json> notification(Nanoseconds instant);
+  std::optional<Json> notification(Nanoseconds instant);
   bool is_connected() const noexcept { return client_.is_connected(); }
 
  private:

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/cli/run/not_ready.h"
+#include "chimera/text/json.h"
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 Json task(const char* name, const char* state, bool in_service) {
   return {{"task", name}, {"component", "csv_log"}, {"rtpu", "servo"}, {"state", state}, {"in_service", in_service}};

@@ -14,7 +14,7 @@
 #include <thread>
 #include <utility>
 
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/standard_streams.h"
 
 namespace chimera::cli {
 

@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/standard_streams.h"
 
 namespace chimera::cli {
 namespace {

@@ -16,7 +16,7 @@
 #include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/cli/run/under_way.h"
 #include "chimera/platform/process.h"
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/standard_streams.h"
 #include "chimera/text/not_off.h"
 
 namespace chimera::cli {

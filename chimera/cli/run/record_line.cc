@@ -3,14 +3,12 @@
 #include "chimera/cli/run/record_line.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
-
-using Json = nlohmann::json;
 
 constexpr Nanoseconds kLastRecords = milliseconds(50);  // those of the end are on their way
 
@@ -22,17 +20,17 @@ std::size_t index_of(const std::deque<std::string>& names, const std::string& na
 
 TaskNames TaskNames::of(const Json& status) {
   TaskNames made;
-  made.subsystem = status.value("subsystem", "");
-  for (const Json& task : status.at("tasks")) made.tasks.push_back(task.value("task", ""));
-  for (const Json& rtpu : status.at("rtpus")) made.rtpus.push_back(rtpu.value("name", ""));
+  made.subsystem = text_at(status, "subsystem");
+  for (const Json& task : status.at("tasks")) made.tasks.push_back(text_at(task, "task"));
+  for (const Json& rtpu : status.at("rtpus")) made.rtpus.push_back(text_at(rtpu, "name"));
   for (const std::string& name : made.tasks) made.task_specs_.emplace_back().name = name;
   for (const std::string& name : made.rtpus) made.rtpu_specs_.emplace_back().name = name;
   return made;
 }
 
 void TaskNames::add_configurations(const Json& described) {
-  for (const Json& set : described.value("configurations", Json::array()))
-    sets_.push_back({configurations.emplace_back(set.value("name", "")), {}});
+  for (const Json& set : described["configurations"])
+    sets_.push_back({configurations.emplace_back(text_at(set, "name")), {}});
 }
 
 ApplicationSpec TaskNames::spec() const noexcept {
@@ -59,21 +57,21 @@ void RecordLine::poll(Nanoseconds instant, RecordSink& sink) {
   }
   const auto heard = line_.notification(instant);
   if (!heard || !heard->contains("records")) return;
-  const bool is_first = heard->value("first", std::uint64_t{0}) == 0;
-  (is_first ? missed_ : lost_) += heard->value("lost", std::uint64_t{0});
+  const bool is_first = whole_at(*heard, "first") == 0;
+  (is_first ? missed_ : lost_) += static_cast<std::uint64_t>(whole_at(*heard, "lost"));
   std::vector<TapRecord> records;
   for (const Json& row : (*heard)["records"]) {
     TapRecord record;
-    const auto kind = std::find(kTapKinds.begin(), kTapKinds.end(), row[1].get<std::string>());
+    const auto kind = std::find(kTapKinds.begin(), kTapKinds.end(), row[1].as_string());
     if (kind == kTapKinds.end()) continue;
-    record.at = {row[0].get<std::int64_t>()};
+    record.at = {row[0].as_int64()};
     record.kind = static_cast<TapKind>(kind - kTapKinds.begin());
-    const std::string task = row[2].is_string() ? row[2].get<std::string>() : "";
+    const std::string task = row[2].is_string() ? row[2].as_string() : "";
     const std::size_t index = index_of(names_.tasks, task);
     if (index < names_.tasks.size()) record.task = TaskId(index);
-    record.a = row[3].get<std::uint32_t>();
-    record.b = row[4].get<std::int64_t>();
-    record.rtpu = static_cast<std::uint8_t>(index_of(names_.rtpus, heard->value("rtpu", "")));
+    record.a = static_cast<std::uint32_t>(row[3].as_uint64());
+    record.b = row[4].as_int64();
+    record.rtpu = static_cast<std::uint8_t>(index_of(names_.rtpus, text_at(*heard, "rtpu")));
     records.push_back(record);
   }
   sink.on_records(records);

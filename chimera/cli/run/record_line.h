@@ -16,9 +16,9 @@ namespace chimera::cli {
 class TaskNames {
  public:
   /// From the answer of `status`.
-  static TaskNames of(const nlohmann::json& status);
+  static TaskNames of(const Json& status);
   /// The configurations, too, from the answer of `describe`: their names, without tasks.
-  void add_configurations(const nlohmann::json& described);
+  void add_configurations(const Json& described);
   /// Points into this.
   ApplicationSpec spec() const noexcept;
 

@@ -21,7 +21,7 @@
 #include "chimera/cli/run/watch_plot.h"
 #include "chimera/control/receipt_json.h"
 #include "chimera/control/receipt_text.h"
-#include "chimera/platform/terminal.h"
+#include "chimera/platform/standard_streams.h"
 #include "chimera/runtime/tap_ring.h"
 
 namespace chimera::cli {

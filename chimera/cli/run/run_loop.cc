@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "chimera/control/switch_reason.h"
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/runtime/executive/counter_clock.h"
 #include "chimera/runtime/executive/executive.h"

@@ -10,7 +10,7 @@
 #include "chimera/cli/run/run.h"
 #include "chimera/cli/run/script_text.h"
 #include "chimera/platform/realtime.h"
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/standard_streams.h"
 #include "chimera/schedule/utilisation.h"
 #include "chimera/text/nearest.h"
 #include "chimera/verify/setting.h"

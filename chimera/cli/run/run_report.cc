@@ -55,8 +55,8 @@ void print_json(const RunReport& report, std::FILE* out) {
                "\"receipts_left_out\": %llu, \"verdict\": %s}\n",
                json_string(report.subsystem).c_str(), json_string(report.executor).c_str(),
                static_cast<long long>(report.ran.count), word(report.end), report.is_flag_up ? "true" : "false",
-               profile_json(report.profiles, report.origin).c_str(), variables.c_str(), expectations.c_str(),
-               report.receipts.c_str(), static_cast<unsigned long long>(report.receipts_left_out),
+               spaced_json(profile_json(report.profiles, report.origin)).c_str(), variables.c_str(),
+               expectations.c_str(), report.receipts.c_str(), static_cast<unsigned long long>(report.receipts_left_out),
                report.verdict.json().c_str());
 }
 

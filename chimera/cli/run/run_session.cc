@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "chimera/base/hosted/terminal_text.h"
-#include "chimera/platform/standard_output.h"
+#include "chimera/platform/standard_streams.h"
 
 namespace chimera::cli {
 

@@ -72,12 +72,6 @@ void add_end(RunVerdict& verdict, const TaskProfile& task, bool died_on_purpose,
     add_not_off(verdict, task.task, not_off_text(method, task.faults.last.text));
 }
 
-std::string json_array(const std::vector<std::string>& texts) {
-  std::string json;
-  for (const std::string& text : texts) json += (json.empty() ? "" : ", ") + json_string(text);
-  return "[" + json + "]";
-}
-
 }  // namespace
 
 RunVerdict judge_run(const RunFacts& facts) {
@@ -123,12 +117,16 @@ std::string RunVerdict::text() const {
 }
 
 std::string RunVerdict::json() const {
-  return std::string("{\"clean\": ") + (is_clean() ? "true" : "false") +
-         ", \"strict\": " + (is_strict ? "true" : "false") + ", \"missed\": " + std::to_string(missed) +
-         ", \"dropped\": " + std::to_string(dropped) + ", \"faults\": " + std::to_string(faults) +
-         ", \"restarts\": " + std::to_string(restarts) + ", \"remarks\": " + json_array(remarks) +
-         ", \"since\": " + json_array(since) + ", \"not_off\": " + json_array(not_off) +
-         ", \"failures\": " + json_array(failures) + "}";
+  return spaced_json({{"clean", is_clean()},
+                      {"strict", is_strict},
+                      {"missed", missed},
+                      {"dropped", dropped},
+                      {"faults", faults},
+                      {"restarts", restarts},
+                      {"remarks", remarks},
+                      {"since", since},
+                      {"not_off", not_off},
+                      {"failures", failures}});
 }
 
 }  // namespace chimera::cli

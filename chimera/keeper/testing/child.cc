@@ -13,12 +13,9 @@
 #include <fstream>
 #include <string>
 
-#include "chimera/platform/channel.h"
+#include "chimera/platform/local_socket.h"
 #include "chimera/platform/process.h"
-#include "chimera/platform/frozen_bytes.h"
-#include "chimera/platform/memory_region.h"
-#include "chimera/platform/process.h"
-#include "chimera/platform/shared_pages.h"
+#include "chimera/platform/shared_memory.h"
 #include "chimera/rtpu/keeper_message.h"
 #include "chimera/runtime/hosted/pages.h"
 

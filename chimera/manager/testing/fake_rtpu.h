@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "chimera/manager/peers.h"
-#include "chimera/platform/doorbell.h"
-#include "chimera/platform/linux_clock.h"
-#include "chimera/platform/owned_descriptor.h"
+#include "chimera/platform/clock.h"
+#include "chimera/platform/descriptor.h"
+#include "chimera/platform/wake.h"
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/task/fault_record.h"
 

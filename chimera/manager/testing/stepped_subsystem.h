@@ -19,7 +19,7 @@
 #include "chimera/load/shared_object.h"
 #include "chimera/manager/manager_backend.h"
 #include "chimera/manager/testing/test_bundle.h"
-#include "chimera/platform/owned_descriptor.h"
+#include "chimera/platform/descriptor.h"
 #include "chimera/rtpu/testing/test_units.h"
 
 namespace chimera::manager {
@@ -172,7 +172,7 @@ class SteppedSubsystem {
   /// The value of a variable of one number, as `get` answers it.
   double value(const std::string& variable) {
     const control::Json values = result("get", {{"variables", {variable}}})["values"];
-    return values[variable]["value"].get<double>();
+    return values[variable]["value"].as_double();
   }
   void set(const std::string& variable, double value) { (void)result("set", {{"values", {{variable, value}}}}); }
   control::Json receipts() { return result("receipts")["receipts"]; }
@@ -180,7 +180,7 @@ class SteppedSubsystem {
   std::string ends() {
     std::string text;
     for (const control::Json& one : receipts())
-      text += one["to"].get<std::string>() + " " + one["end"].get<std::string>() + "\n";
+      text += one["to"].as_string() + " " + one["end"].as_string() + "\n";
     return text;
   }
   /// The texts of all events of a kind, a line each, with the name of the task first if there is one.

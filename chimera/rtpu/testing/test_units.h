@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-#include "chimera/platform/virtual/virtual_clock.h"
+#include "chimera/platform/clock.h"
 #include "chimera/rtpu/rtpu_control.h"
 #include "chimera/rtpu/switch_links.h"
 #include "chimera/runtime/executive/executive.h"

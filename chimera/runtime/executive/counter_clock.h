@@ -3,7 +3,6 @@
 
 #include "chimera/platform/clock.h"
 #include "chimera/platform/cycle_counter.h"
-#include "chimera/platform/linux_clock.h"
 
 namespace chimera {
 

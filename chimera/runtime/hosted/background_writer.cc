@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "chimera/base/assert.h"
-#include "chimera/platform/ordinary_thread.h"
+#include "chimera/platform/thread.h"
 
 namespace chimera {
 namespace {

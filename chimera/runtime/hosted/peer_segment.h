@@ -6,9 +6,9 @@
 #include <cstdint>
 
 #include "chimera/base/result.h"
-#include "chimera/platform/memory_region.h"
-#include "chimera/runtime/peer_layout.h"
+#include "chimera/platform/shared_memory.h"
 #include "chimera/runtime/hosted/rtpu_block.h"
+#include "chimera/runtime/peer_layout.h"
 #include "chimera/table/group.h"
 
 namespace chimera {

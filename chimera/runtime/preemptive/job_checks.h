@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "chimera/platform/alarm.h"
+#include "chimera/platform/wake.h"
 #include "chimera/runtime/preemptive/job_thread.h"
 
 namespace chimera {

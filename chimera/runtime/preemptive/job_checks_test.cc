@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 #include "chimera/runtime/testing/ended_thread.h"
 
 namespace chimera {

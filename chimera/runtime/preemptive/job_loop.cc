@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "chimera/platform/switch_watch.h"
+#include "chimera/platform/thread.h"
 
 namespace chimera {
 namespace {

@@ -8,8 +8,8 @@
 #include <optional>
 #include <thread>
 
-#include "chimera/platform/doorbell.h"
-#include "chimera/platform/processor_level.h"
+#include "chimera/platform/thread.h"
+#include "chimera/platform/wake.h"
 #include "chimera/runtime/preemptive/job_phase.h"
 #include "chimera/runtime/preemptive/sporadic_thread.h"
 #include "chimera/schedule/ready_queue.h"

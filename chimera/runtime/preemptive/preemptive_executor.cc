@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "chimera/platform/thread_stack.h"
+#include "chimera/platform/thread.h"
 #include "chimera/runtime/hosted/refusal_text.h"
 
 namespace chimera {

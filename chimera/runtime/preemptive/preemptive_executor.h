@@ -6,7 +6,7 @@
 //   supervisor:        at the ceiling, woken by one alarm: budgets, deadlines, hanging jobs, capacities   supervisor.h
 //
 // [...] is the section (processor.h): what all share is touched there and nowhere else.
-// docs/decisions/0009-preemptive-executor.md; the figures behind it: labels cost 0.4 of a dispatcher thread.
+// docs/design/preemptive.md; the figures behind it: labels cost 0.4 of a dispatcher thread.
 #pragma once
 
 #include "chimera/runtime/preemptive/edge_access.h"

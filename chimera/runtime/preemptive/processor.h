@@ -4,13 +4,12 @@
 // Every thread that enters the section runs at the ceiling, on one CPU, and neither blocks nor faults in it, so the
 // kernel's own order excludes; the lock behind it is for threads without real-time rights. A job lowers itself to its
 // label as the last thing of the section: the order of labels is the order of urgency and the kernel dispatches.
-// docs/decisions/0009-preemptive-executor.md
+// docs/design/preemptive.md
 #pragma once
 
 #include <algorithm>
 
-#include "chimera/platform/doorbell.h"
-#include "chimera/platform/section.h"
+#include "chimera/platform/wake.h"
 #include "chimera/runtime/preemptive/job_checks.h"
 #include "chimera/runtime/preemptive/processor_share.h"
 #include "chimera/runtime/preemptive/ready_jobs.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much of the processor the jobs of a context have used lately, and which tasks are demoted first when that comes
 // near the share that the kernel grants all real-time threads together: beyond it the kernel takes the processor from
-// every one of them. Bookkeeping only. docs/decisions/0016-share-of-the-processor.md
+// every one of them. Bookkeeping only. docs/design/preemptive.md
 #pragma once
 
 #include <span>

@@ -3,9 +3,8 @@
 // of the thread, and a job that runs out of capacity is halted in the middle until some is back.
 #pragma once
 
-#include "chimera/platform/descriptor_bell.h"
-#include "chimera/platform/halt.h"
-#include "chimera/platform/processor_level.h"
+#include "chimera/platform/thread.h"
+#include "chimera/platform/wake.h"
 #include "chimera/runtime/sporadic_job.h"
 
 namespace chimera {

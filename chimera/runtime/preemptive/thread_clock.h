@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "chimera/platform/linux_clock.h"
-#include "chimera/platform/processor_level.h"
+#include "chimera/platform/clock.h"
+#include "chimera/platform/thread.h"
 #include "chimera/runtime/job_clock.h"
 
 namespace chimera {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "chimera/platform/linux_clock.h"
+#include "chimera/platform/clock.h"
 #include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/preemptive/edge_access.h"
 #include "chimera/runtime/preemptive/supervisor.h"

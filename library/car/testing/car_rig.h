@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: a car of either kind on a level road, nothing pressed.
+// For tests: a car of either kind on a level road, with released pedals.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ struct CarRig : Rig {
       set("fb", 0.0);
     }
   }
-  /// False as soon as a cycle fails.
+  /// Returns false after the first cycle that fails.
   bool drive(double seconds) {
     for (int i = 0; i < static_cast<int>(seconds * 100 + 0.5); ++i)
       if (!cycle(milliseconds(10))) return false;
@@ -31,7 +31,7 @@ struct CarRig : Rig {
   double speed() { return get<double>("speed") / 3.6; }
 };
 
-/// A value of a constant that a car refuses, and with what sentence.
+/// A value of a constant that a car refuses, and the text of the refusal.
 struct WrongConstant {
   const char* name;
   double value;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For the tests of components that learn how the arm is built: a Puma 560 behind their ports.
+// For tests of components that read the geometry of the arm: a Puma 560 at their ports.
 #pragma once
 
 #include <limits>
@@ -17,7 +17,7 @@ inline constexpr Puma560::Vector kBent{0.3, 0.8, -2.5, 0.4, 0.8, -0.2};  ///< ra
 struct ArmRig : Rig {
   using Rig::Rig;
 
-  /// The constants of the generic components.
+  /// Sets the constants of the generic components.
   void build_puma() {
     set("ndof", std::int32_t{6});
     for (std::size_t i = 0; i < 6; ++i) set("dh", Puma560::kRows[i], i);
@@ -39,7 +39,7 @@ struct ArmRig : Rig {
     return found;
   }
   Frame pose(const char* port) { return frame_of(get<Pose>(port)); }
-  /// True when `output` does not move under the illegal-configuration flag, whatever is wanted; the flag stays up.
+  /// Returns true if `output` holds under the illegal-configuration flag for any wanted value. The flag stays up.
   bool stands_while_illegal(const char* output) {
     if (!cycle()) return false;
     const Puma560::Vector stands = six(output);
@@ -47,7 +47,7 @@ struct ArmRig : Rig {
     illegal(true);
     return cycle() && six(output) == stands;
   }
-  /// The text of what init or cycle refuses; "accepted" when they do not.
+  /// Text of the refusal of init or cycle; "accepted" without one.
   std::string refusal() {
     RigAnswer answer = init();
     if (answer) answer = cycle();

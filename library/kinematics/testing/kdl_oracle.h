@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Orocos KDL says of a chain: a reference that nobody here wrote, for tests and the bench.
+// Kinematics of Orocos KDL, an independent reference for tests and the bench.
 #pragma once
 
 #include <array>
@@ -10,15 +10,15 @@
 
 namespace chimera::library {
 
-/// One chain in KDL's hands.
+/// One chain in KDL.
 class KdlArm {
  public:
   explicit KdlArm(const DhChain& chain);
   ~KdlArm();
 
-  /// Forward kinematics and Jacobian at `q` (rad, ndof of them) by KDL's recursive solvers, which keep the answer.
+  /// Computes tool frame and Jacobian at `q` (rad, ndof numbers) by KDL's recursive solvers, which store the results.
   void solve(std::span<const double> q);
-  /// The answer of the last solve().
+  /// Results of the last solve().
   Frame tool_frame(Jacobian& jacobian) const;
 
  private:

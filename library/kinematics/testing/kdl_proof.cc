@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kPoses = 20;
 constexpr double kSame = 1e-12;    // forward kinematics and Jacobians, m and rad
 constexpr double kAgreed = 1e-9;   // inverse kinematics
-constexpr double kStretched = 3e-7;  // where two solutions of a square root meet
+constexpr double kStretched = 3e-7;  // near a double root of a square root
 
 std::string wrong(unsigned seed, const char* what, std::size_t pose, double by) {
   char text[160];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the links of the Puma 560 weigh: Corke and Armstrong-Helouvry, ICRA 1994, as in library/puma_torque/puma560.xml.
+// Mass properties of the Puma 560: Corke and Armstrong-Helouvry, ICRA 1994, as in library/puma_torque/puma560.xml.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace chimera::library {
 
-/// Base to wrist. Of link 1 only the inertia about its axis is published and only that has an effect.
+/// Base to wrist. Of link 1 only the inertia about its axis is published, and only that has an effect.
 inline constexpr std::array<LinkMass, 6> kPuma560Links{
     LinkMass{0, {0, 0, 0}, {0, .35, 0, 0, 0, 0}, .78403, 5.801822},
     {17.4, {-.3638, .006, .2275}, {.13, .524, .539, 0, 0, 0}, 2.324815, 9.496869},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: arms and poses of every kind, and how far apart two answers are.
+// For tests: random arms and poses, and the distance between two results.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +27,7 @@ struct RandomArms {
     for (double& part : made.orientation) part /= std::sqrt(square);
     return made;
   }
-  /// A plain one has right angles and lengths of 0, as real arms have.
+  /// A plain arm has right angles and lengths of 0, as real arms have.
   DhChain chain(std::size_t joints, bool is_plain) {
     DhChain made;
     made.ndof = joints;
@@ -40,7 +40,7 @@ struct RandomArms {
     made.tool = place();
     return made;
   }
-  /// Each tenth stands at right angles and the next nearly so: where plain arms are singular, and near it.
+  /// Each tenth pose has right angles and the next nearly so: plain arms are singular there, and near it.
   Joints joints(std::size_t pose) {
     Joints q;
     for (double& angle : q) angle = pose % 10 > 1 ? rad() : right_angle() + (pose % 10 == 1 ? within(-1e-6, 1e-6) : 0);

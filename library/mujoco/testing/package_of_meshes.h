@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: a folder as a ROS package has it, with a robot of three joints and meshes for its links.
+// For tests: a folder in the form of a ROS package, with a robot of three joints and meshes of its links.
 #pragma once
 
 #include <unistd.h>
@@ -33,7 +33,7 @@ inline std::string stl_box(float half) {
 inline constexpr char kTetrahedron[] =
     "v 0 0 0\nv .1 0 0\nv 0 .1 0\nv 0 0 .1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
-/// DIR/ws/arm_description/{urdf,meshes}, gone with this.
+/// DIR/ws/arm_description/{urdf,meshes}, removed by the destructor.
 struct PackageOfMeshes {
   std::filesystem::path root =
       std::filesystem::temp_directory_path() / ("package_of_meshes_" + std::to_string(::getpid()));
@@ -54,8 +54,8 @@ struct PackageOfMeshes {
     const std::string geometry = "<geometry><mesh filename=\"" + name + "\"/></geometry>";
     return "<" + kind + ">\n<origin xyz='0 0 0.1'/>" + geometry + "\n</" + kind + ">";
   }
-  /// Four links that weigh something, the second and the tool on the fourth with `upper` and `tool` in them; the tool
-  /// has no <inertial>, as flanges in such packages have none.
+  /// Four links with mass. The second contains `upper`, the tool on the fourth contains `tool`. The tool has no
+  /// <inertial>, as flanges in such packages.
   static std::string robot(const std::string& upper, const std::string& tool) {
     const auto link = [](const std::string& name, const std::string& inside) {
       return "<link name='" + name + "'>" + inside +

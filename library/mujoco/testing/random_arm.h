@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: arms of any number of joints, told in our constants and as MJCF, and MuJoCo's inverse dynamics of them.
+// For tests: arms of any number of joints, in our constants and as MJCF, and MuJoCo's inverse dynamics of them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ struct RandomArm {
     }
     payload = within(0, 3);
   }
-  /// The body of joint i is the frame before it turned by the joint: what follows the turn is the place of the next.
+  /// Body i is the previous frame turned by joint i. The transform after the turn is the place of the next body.
   std::string mjcf() const {
     std::ostringstream text;
     text.precision(17);
@@ -76,7 +76,7 @@ struct RandomArm {
     for (double& part : made.orientation) part /= std::sqrt(square);
     return made;
   }
-  /// Inertia along the axes of the link, of moments about the principal axes.
+  /// Inertia along the axes of the link, from moments about the principal axes.
   LinkMass link(std::size_t i) {
     LinkMass made{within(0.5, 10), {}, {}, within(0, 1), within(0, 5)};
     std::copy_n(principal[i].origin.at, 3, made.centre);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For the tests of signal components: a rig whose signals have one element until said.
+// For tests of signal components: a rig whose signals have one element by default.
 #pragma once
 
 #include <cmath>
@@ -13,13 +13,13 @@ namespace chimera {
 struct SignalRig : Rig {
   explicit SignalRig(const char* component, std::uint32_t elements = 1) : Rig(component) { extent("n", elements); }
 
-  /// The output for the next input. A fault shows as NaN.
+  /// Sets the input, runs a cycle and returns the output; NaN after a fault.
   double step(double x, Nanoseconds dt = milliseconds(1)) {
     set("x", x);
     return cycle(dt) ? get<double>("y") : std::nan("");
   }
-  /// Of a linear filter at 1 kHz: by correlation over whole periods, once the transient has gone. `frequency` in whole
-  /// quarters of a hertz.
+  /// Gain of a linear filter at 1 kHz, by correlation over whole periods after the transient. `frequency` is a multiple
+  /// of 0.25 Hz.
   double gain(double frequency) {
     constexpr int kSettle = 4000, kSamples = 4000;
     std::complex<double> sum = 0;
