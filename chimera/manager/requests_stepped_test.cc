@@ -7,8 +7,6 @@
 namespace chimera::manager {
 namespace {
 
-using control::Json;
-
 // `asker` asks for what the operator variable `wish` says: 1 for `first`, 2 for `second`.
 const std::string kTasksAsk = R"(subsystem: subject
 rtpus: {first: {cpu: 0, policy: edf}, second: {cpu: 1, policy: edf}}

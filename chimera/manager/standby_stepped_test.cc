@@ -7,8 +7,6 @@
 namespace chimera::manager {
 namespace {
 
-using control::Json;
-
 // `wanted` comes from a task of the first rtpu or from its standby in the second one; `user` reads it in the second.
 const std::string kStandby = R"(subsystem: subject
 rtpus: {first: {cpu: 0, policy: edf}, second: {cpu: 1, policy: edf}}

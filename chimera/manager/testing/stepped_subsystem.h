@@ -89,7 +89,7 @@ class SteppedSubsystem {
   }
 
   /// Asks as a client with the right to configure would; the answer comes while time passes.
-  PendingAnswer ask(const std::string& method, const control::Json& parameters = control::Json::object()) {
+  PendingAnswer ask(const std::string& method, const Json& parameters = Json::object()) {
     auto answer = std::make_shared<std::optional<control::RpcResponse>>();
     const control::MethodRule* rule = control::find_method(method);
     EXPECT_NE(rule, nullptr) << method;
@@ -101,17 +101,21 @@ class SteppedSubsystem {
   }
   /// Asks and runs until the answer is there.
   control::RpcResponse call(const std::string& method,
-                            const control::Json& parameters = control::Json::object()) {
+                            const Json& parameters = Json::object()) {
     const PendingAnswer answer = ask(method, parameters);
     EXPECT_TRUE(until([&] { return answer->has_value(); }, seconds(30))) << method << " was not answered";
     return answer->value_or(control::RpcResponse::error(control::kNoAnswer, "no answer"));
   }
   /// The result of a call that must not be refused.
-  control::Json result(const std::string& method, const control::Json& parameters = control::Json::object()) {
+  Json result(const std::string& method, const Json& parameters = Json::object()) {
     const control::RpcResponse answer = call(method, parameters);
     EXPECT_TRUE(answer.is_good()) << method << ": " << answer.message;
-    if (answer.text) return control::Json::parse(*answer.text);
-    return answer.result ? *answer.result : control::Json();
+    std::string text = answer.text ? *answer.text : "";
+    if (answer.pieces)
+      while (answer.pieces->append_to(text)) {
+      }
+    if (!text.empty()) return Json::parse(text);
+    return answer.result ? *answer.result : Json();
   }
 
   /// The process of the rtpu dies by that signal. The manager has it started again.
@@ -171,15 +175,15 @@ class SteppedSubsystem {
   }
   /// The value of a variable of one number, as `get` answers it.
   double value(const std::string& variable) {
-    const control::Json values = result("get", {{"variables", {variable}}})["values"];
+    const Json values = result("get", {{"variables", Json::array({variable})}})["values"];
     return values[variable]["value"].as_double();
   }
   void set(const std::string& variable, double value) { (void)result("set", {{"values", {{variable, value}}}}); }
-  control::Json receipts() { return result("receipts")["receipts"]; }
+  Json receipts() { return result("receipts")["receipts"]; }
   /// "to end" of each receipt, a line each.
   std::string ends() {
     std::string text;
-    for (const control::Json& one : receipts())
+    for (const Json& one : receipts())
       text += one["to"].as_string() + " " + one["end"].as_string() + "\n";
     return text;
   }
@@ -275,7 +279,9 @@ class SteppedSubsystem {
                               .code = signal,
                               .by_signal = 1,
                               .at = now()};
-    if (channel_.is_open()) EXPECT_TRUE(channel_.send(bytes_of(ended_[r])));
+    if (channel_.is_open()) {
+      EXPECT_TRUE(channel_.send(bytes_of(ended_[r])));
+    }
   }
   void tell(KeeperMessage::Kind kind, std::uint32_t index, std::uint32_t incarnation, int passed = -1) {
     const KeeperMessage message{
@@ -287,7 +293,9 @@ class SteppedSubsystem {
     const std::uint32_t incarnation = segment.block.head().incarnation;
     if (!ended_.contains(r)) tell(KeeperMessage::Kind::kStarted, r, incarnation);
     tell(KeeperMessage::Kind::kPeer, r, incarnation, segment.region.descriptor());
-    if (ended_.contains(r)) EXPECT_TRUE(channel_.send(bytes_of(ended_[r])));
+    if (ended_.contains(r)) {
+      EXPECT_TRUE(channel_.send(bytes_of(ended_[r])));
+    }
   }
   /// Carries out what the manager asked the keeper for.
   void keep() {
