@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The face of a run as its keeper has it: replaced when it dies, because it is the one that ends the run in time.
-// docs/formats/processes.md, "The face".
+// docs/formats/processes.md, "The run client".
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The objects of an application as they were when its run began: docs/formats/processes.md, "Objects".
+// The objects of an application as they were when its run began: docs/formats/processes.md, "Shared segments".
 //
 //   files -> one sealed memory, made by the keeper -> every rtpu and each of its successors links from it
 #pragma once

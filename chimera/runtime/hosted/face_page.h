@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the face of a run has done so far, in memory that outlives it: the next one goes on from there.
-// docs/formats/processes.md, "The face".
+// docs/formats/processes.md, "The run client".
 #pragma once
 
 #include <atomic>
