@@ -2,6 +2,8 @@
 // Each request for a switch has one receipt, whatever its end, with a number and no gap.
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "chimera/manager/testing/stepped_subsystem.h"
 
 namespace chimera::manager {
@@ -98,6 +100,83 @@ TEST(SteppedReceipts, ADryRunSaysWhatWouldBeDoneAndChangesNothing) {
   EXPECT_EQ(refused["remedy"], "`chimera spawn fast`");
   EXPECT_EQ(system.on(), kGentle);
   EXPECT_EQ(system.receipts().size(), 0u);
+}
+
+/// A client that asks for switches at random instants.
+struct Operator {
+  std::string target;
+  Nanoseconds next = now(), asked{};
+  PendingAnswer answer;
+};
+struct Told {
+  std::string target;
+  Nanoseconds asked, answered;
+  control::RpcResponse answer;
+};
+
+std::vector<Told> random_requests(SteppedSubsystem& system, std::size_t n, unsigned seed) {
+  std::mt19937 random(seed);
+  const char* const targets[] = {"gentle", "quick", "wild"};
+  std::vector<Told> told;
+  for (std::vector<Operator> operators(4); told.size() < n; system.run(microseconds(100)))
+    for (Operator& one : operators) {
+      if (one.answer && one.answer->has_value()) {
+        told.push_back({one.target, one.asked, now(), **one.answer});
+        one.answer = nullptr;
+        one.next = now() + microseconds(random() % 20'000);
+      } else if (!one.answer && now() >= one.next) {
+        one.target = targets[random() % 3];
+        one.asked = now();
+        one.answer = system.ask("switch", to(one.target.c_str()));
+      }
+    }
+  return told;
+}
+
+/// Since when which configuration is in force, by the receipts; each switch begins in the one before it.
+std::vector<std::pair<Nanoseconds, std::string>> history_of(const Json& receipts) {
+  std::vector<std::pair<Nanoseconds, std::string>> history{{Nanoseconds{}, "gentle"}};
+  int number = 0;
+  for (const Json& receipt : receipts) {
+    EXPECT_EQ(receipt["number"], ++number);
+    if (receipt["end"] != "done") continue;
+    EXPECT_EQ(receipt["from"], history.back().second) << receipt;
+    history.push_back({Nanoseconds{whole_at(receipt, "origin_ns") + whole_at(receipt, "at_ns")}, text_at(receipt, "to")});
+  }
+  return history;
+}
+
+TEST(SteppedReceipts, OfFourOperatorsWhoAskAtRandomExplainEachAnswer) {
+  const unsigned seed = std::random_device()();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  SteppedSubsystem system(kReceipts);
+  ASSERT_TRUE(system.until_started());
+  const std::vector<Told> told = random_requests(system, 100, seed);
+  ASSERT_TRUE(system.until([&] { return system.result("plan", to("gentle"))["reason"] != "under-way"; }));
+  const Json receipts = system.result("receipts", {{"last", 200}})["receipts"];
+  const auto history = history_of(receipts);
+  EXPECT_EQ(system.on(), history.back().second == "quick" ? kQuick : kGentle);
+  for (const Told& one : told) {
+    if (!one.answer.is_good()) {
+      EXPECT_EQ(one.answer.detail("kind"), "under-way") << one.answer.message;
+      continue;
+    }
+    const Json& answer = *one.answer.result;
+    EXPECT_EQ(answer["to"], one.target);
+    bool is_explained = false;
+    if (answer["end"] == "nothing-to-do") {
+      for (std::size_t i = 0; i < history.size(); ++i)
+        is_explained = is_explained || (history[i].second == one.target && history[i].first <= one.answered &&
+                                        (i + 1 == history.size() || one.asked <= history[i + 1].first));
+    } else {
+      for (const Json& receipt : receipts) is_explained = is_explained || receipt == answer;
+      if (answer["end"] != "done") {
+        EXPECT_EQ(answer["reason"], "step-too-large") << answer;
+        EXPECT_EQ(one.target, "wild");
+      }
+    }
+    EXPECT_TRUE(is_explained) << answer;
+  }
 }
 
 }  // namespace

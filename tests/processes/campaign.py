@@ -26,8 +26,7 @@ CAMPAIGNS = {
     "standby": ((("standby_campaign.py", 20),), "kills"),
     "receipts": ((("receipts_campaign.py", 30),), "receipts"),
     "clocks": ((("clocks_test.py", 300),), "jumps"),
-    "operators": ((("operators_campaign.py", 200),), "answers"),
-    "numbers": ((("numbers_test.py", 1000),), "restarts"),
+    "numbers": ((("numbers_test.py", 50),), "restarts"),
 }
 # Of the script that runs.
 ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "1"))
