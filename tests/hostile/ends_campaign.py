@@ -5,8 +5,11 @@ last line counts them. `lost_cycles`: deadlines that the other rtpu, on another 
 usage: ends_campaign.py --build TREE --seconds N [--priority P]
 """
 import itertools
+import os
+import pathlib
 import random
 import signal
+import subprocess
 import sys
 import tempfile
 
@@ -18,10 +21,25 @@ EXECUTORS = ("executive", "preemptive", "virtual", "virtual preemptive")
 ENDLESS = ("loop", "sleep", "late")
 
 
+def start_virtual(place, where, how, arguments, component):
+    """A run in virtual time, with one task `bad`."""
+    import system
+    armed = pathlib.Path(place) / "armed"
+    armed.touch()
+    file = pathlib.Path(place) / f"{where}-{how}{''.join(arguments)}.yaml"
+    file.write_text("subsystem: subject\nrtpus: {one: {cpu: 0, policy: edf}}\ntasks:\n"
+                    f"  bad: {{component: {component}, rtpu: one, rate: 100 Hz, "
+                    f"constants: {{where: {where}, how: {how}}}, resources: {{armed: {armed}}}}}\n")
+    return subprocess.Popen([str(system.CHIMERA), "run", str(file), "--virtual", "--for", "100 ms", *arguments],
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                            env=dict(os.environ, ASAN_OPTIONS=system.QUIET))
+
+
 class Ends:
     def __init__(self, arguments):
         import ends_test
-        self.ends, self.priority, self.lost, self.cases = ends_test, arguments.priority, 0, []
+        import system
+        self.ends, self.system, self.priority, self.lost, self.cases = ends_test, system, arguments.priority, 0, []
 
     def once(self, _):
         if not self.cases:
@@ -47,8 +65,8 @@ class Ends:
             if self.where == "clear":
                 words += ["--at", "50 ms: clear bad"]
             component = "t_ends_event" if self.where == "sync" else "t_ends"
-            process = self.ends.start_virtual(place, self.where, self.how, words, component)
-            out, err = process.communicate(timeout=self.ends.HANG)
+            process = start_virtual(place, self.where, self.how, words, component)
+            out, err = process.communicate(timeout=self.system.HANG)
         assert process.returncode in (0, 1), (process.returncode, out, err)
         dies = self.how in ("segv", "abort", "kill", "exit")
         if dies or self.where in ("init", "on", "off", "kill"):  # an `on` that error() recovers from is OFF and refused
@@ -62,7 +80,7 @@ class Ends:
         component = "t_ends_event" if self.where == "sync" else "t_ends"
         text = self.ends.application([(self.executor, self.where, self.how)])
         text = text.replace("component: t_ends,", f"component: {component},").replace("u0: {cpu: 0", "u0: {cpu: 1")
-        with self.ends.System(text, ["--priority", self.priority]) as system:
+        with self.system.System(text, ["--priority", self.priority]) as system:
             before = system.task("steady")
             self.misbehave(system)
             after = system.await_cycles("steady")
@@ -83,13 +101,13 @@ class Ends:
         if word is not None:
             try:
                 system.signal(word, "t0")
-            except self.ends.Refused:
+            except self.system.Refused:
                 pass
         text = system.await_event(since, "fault" if self.how in ("throw", "fault") else "rtpu-ended")["text"]
         if self.how in ENDLESS:
             assert "did not return within" in text and f"t0.{self.where}" in text, text
         system.disarm()
-        self.ends.await_that(lambda: (u := system.rtpu("u0"))["phase"] == "serving" or u["given_up"], "recovery")
+        self.system.await_that(lambda: (u := system.rtpu("u0"))["phase"] == "serving" or u["given_up"], "recovery")
 
     def end(self, system):
         if at_end := self.where in ("off", "kill"):

@@ -201,16 +201,6 @@ class ThePrintingProcessDies(unittest.TestCase):
         self.assertIn("holds: count >= 1", said)
         self.assertIn("died 1 time", said)
 
-    def test_one_that_dies_again_and_again_ends_everything_in_order(self):
-        with System(TWO_RTPUS, ("--for", "600 s"), wait=False) as system:
-            await_that(system.socket.exists, "the socket")
-            for _ in range(2):
-                self.kill_printing(system)
-            self.assertTrue(system.kill(self.printing(system)))
-            self.assertEqual(system.wait(), 1)
-            self.assertIn("3 times in 10 s, the last time of signal 9 (SIGKILL): the run ends", system.said())
-            system.await_nothing_left()
-
 
 class TheStartHangs(unittest.TestCase):
     def test_it_ends_and_names_what_was_not_ready(self):

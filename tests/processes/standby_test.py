@@ -4,7 +4,7 @@ import signal
 import sys
 import unittest
 
-from descriptions import STANDBY
+from descriptions import DEVICE_STANDBY, STANDBY
 from system import RTPUS, Refused, System, await_that, duration
 
 # The reader in the second rtpu reports that what comes from the first is too old.
@@ -117,6 +117,15 @@ class Standby(unittest.TestCase):
             system.await_state("reference", "ON")
             self.assertEqual(system.value("seen"), 3)
             self.switch_back(system)
+
+    def test_a_standby_opens_the_device_that_the_kernel_closed(self):
+        with System(DEVICE_STANDBY) as system:
+            system.await_value("seen", 1)
+            self.assertTrue(system.kill(system.pids()["first"]))
+            system.await_value("seen", 2)
+            await_that(lambda: system.rtpu("first")["phase"] == "serving", "the rtpu of the primary")
+            self.assertEqual((system.state("hand"), system.state("drill")), ("NOT-CREATED", "ON"))
+            self.assertNotIn("another user", str(system.events()))
 
     def test_an_input_that_is_too_old_is_not_valid(self):
         """Its producer is stopped and goes on, and is killed and comes back."""
