@@ -11,7 +11,7 @@ import time
 import tty
 import unittest
 
-from system import BUILD, RTPUS, System, await_that, duration
+from system import BUILD, RTPUS, System, await_that
 
 TEXT = RTPUS + """
 tasks:
@@ -118,10 +118,10 @@ class ModbusDevice:
 
 
 class Frames(unittest.TestCase):
-    def start(self, axes=1, rate="100 Hz", more=""):
+    def start(self, axes=1, rate="100 Hz"):
         self.drive = Drive(axes)
         self.addCleanup(self.drive.end)
-        text = TEXT.replace("LINE", self.drive.name).replace("RATE", rate).replace("rtpu: second,", "rtpu: second," + more)
+        text = TEXT.replace("LINE", self.drive.name).replace("RATE", rate)
         system = System(text.replace("TORQUE", str([3] * axes)))
         system.await_state("drive", "ON")
         await_that(self.drive.turns, "the drive to turn")
@@ -174,25 +174,6 @@ class Frames(unittest.TestCase):
             self.drive.is_deaf = False
             await_that(self.drive.stands, "the safe frame")
 
-    def test_a_drill_kills_and_tells_when_the_frame_was_written(self):
-        with self.start() as system:
-            answer = system.call("drill", kill="second")
-            self.assertEqual([(t["task"], t["verdict"]) for t in answer["tasks"]], [("drive", "safe")])
-            self.assertEqual((answer["killed"]["written"], answer["killed"]["lost"]), (1, 0))
-            self.assertGreater(answer["killed"]["after_ns"], 0)
-            self.assertTrue(answer["safe"])
-            await_that(lambda: self.drive.fills == 1, "the safe frame")
-            self.await_turning_again(system)
-
-    def test_a_task_that_is_silent_for_too_long_is_ended_and_its_frame_written(self):
-        with self.start(more=" safe_after: 20,") as system:
-            pid, began = system.pids()["second"], time.monotonic()
-            system.kill(pid, signal.SIGSTOP)  # it publishes nothing any more
-            await_that(lambda: self.drive.fills >= 1, "the safe frame")
-            duration("until the frame of a task that is silent for 20 periods", time.monotonic() - began)
-            system.await_event(0, "safe", "safe_after", task="drive")
-            system.await_state("drive", "ON")
-
     @unittest.skipUnless((BUILD / "components/modbus_io.so").exists(), "modbus_io is not built")
     def test_a_modbus_device_is_told_over_a_connection_of_its_own(self):
         device = ModbusDevice()
@@ -211,14 +192,6 @@ class Frames(unittest.TestCase):
             self.assertEqual({value for _, value in device.writes[:safe]}, {7})
             system.await_state("drive", "ON")
             await_that(lambda: device.writes[-1][1] == 7, "the device to turn again")
-
-    def test_a_task_that_was_turned_off_leaves_nothing_to_write(self):
-        with self.start() as system:
-            system.signal("off", "drive")
-            await_that(self.drive.stands, "the frame of off")
-            system.kill(system.pids()["second"])
-            system.await_state("drive", "OFF")
-            self.assertEqual(self.drive.fills, 0)
 
 
 if __name__ == "__main__":
