@@ -64,7 +64,7 @@ def once(system, with_memory_holder):
     signal.pidfd_send_signal(pidfd, signal.SIGKILL)
     os.close(pidfd)
     time.sleep(QUIET_S)
-    ended = await_that(lambda: [e for e in system.events(since + 1) if e["kind"] == "rtpu-ended"], 5)[0]
+    ended = await_that(lambda: [e for e in system.events(since + 1) if e["kind"] == "rtpu-ended"])[0]
     if any(e["kind"] == "rtpu-given-up" for e in system.events(since + 1)):
         system.signal("clear", "victim")
         system.signal("on", "victim")

@@ -109,7 +109,7 @@ def once(main, spare, strike, who):
             assert began > subscribed, "the client came too late"
             took.extend(at and (at - began) / 1e3 for at in follow(system, kept, who, began, spare != NONE))
 
-        await_that(lambda: system.call("get", variables=["seen"])["values"]["seen"]["value"], 5)
+        await_that(lambda: system.call("get", variables=["seen"])["values"]["seen"]["value"])
         without = lost_in_window(system, lambda: None)
         with_it = lost_in_window(system, take_over)
         assert system.state(who) == "ON"

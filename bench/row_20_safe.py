@@ -81,7 +81,7 @@ def once(system, line):
     signal.pidfd_send_signal(pidfd, signal.SIGKILL)
     took = (line.await_fill() - began) / 1e3
     os.close(pidfd)
-    await_that(lambda: [e for e in system.events(since + 1) if e["kind"] == "rtpu-ended"], 5)
+    await_that(lambda: [e for e in system.events(since + 1) if e["kind"] == "rtpu-ended"])
     time.sleep(QUIET_S)
     if any(e["kind"] == "rtpu-given-up" for e in system.events(since + 1)):
         system.signal("clear", "drive")

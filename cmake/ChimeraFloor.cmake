@@ -96,7 +96,7 @@ function(_chimera_test_properties name label)
   # The leak check of g++ 12 follows thread-local memory of objects that were unloaded, and crashes now and then.
   set(environment ASAN_OPTIONS=intercept_tls_get_addr=0 GTEST_OUTPUT=xml:${CMAKE_BINARY_DIR}/results/${name}.xml
     CHIMERA_BUILD=${CMAKE_BINARY_DIR} CHIMERA_SOURCE=${CMAKE_SOURCE_DIR})
-  set_tests_properties(${name} PROPERTIES LABELS "${label}" TIMEOUT 300 SKIP_RETURN_CODE 77
+  set_tests_properties(${name} PROPERTIES LABELS "${label}" TIMEOUT 900 SKIP_RETURN_CODE 77
     ENVIRONMENT "${environment}")
   if(label STREQUAL "realtime")
     set_tests_properties(${name} PROPERTIES RUN_SERIAL TRUE)

@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lesson 17 with a hand that switches it at random instants instead of the task that watches for singular poses: one
-receipt each, no cycle lost, no step above its limit. In virtual time, and who stays publishes bit for bit what it
-publishes without any switch; with --real in real-time processes, beside a busy program on each processor. Its last
-line says how many switches and how many faults.
+"""Lesson 17 with switches at random instants instead of the task that watches for singular poses: one receipt each, no
+cycle lost, no step above its limit. In virtual time, where tasks that stay publish bit for bit what they publish without
+a switch; with --real in real-time processes, beside a busy program on each processor. The last line counts switches.
 
-A switch in real time is judged where a witness above everything on the same processor was never later than a tenth of
-the robot's period meanwhile; else it is not judged, and there is another one, at most five for each that is.
+A switch in real time is judged if a witness above everything on the same processor was never later than a tenth of the
+robot's period during the switch.
 
-usage: switch_campaign.py --build TREE [--real] [--seconds N | --switches N] [--seed N]
+usage: switch_campaign.py --build TREE [--real] --seconds N
 """
-import argparse
 import json
 import os
 import pathlib
@@ -17,10 +15,10 @@ import random
 import subprocess
 import sys
 import tempfile
-import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "processes"))
+sys.path.insert(0, str(ROOT / "tests" / "hostile"))
+import campaigns  # noqa: E402
 from host_witness import HostWitness, any_stall  # noqa: E402
 
 LESSON = ROOT / "examples" / "17_switch"
@@ -34,7 +32,7 @@ STAY = "ball, feature, is_in_picture, in_sight, received"
 
 
 def description(folder):
-    """The lesson, without who asks, with a log of who stays."""
+    """The lesson without the task that asks, with a log of the tasks that stay."""
     text = (LESSON / "switch.yaml").read_text()
     text = text.replace("forward_kinematics, singularity, monitor", "forward_kinematics, monitor, log")
     text = text.replace("\nconfigurations:", f"""
@@ -48,7 +46,7 @@ configurations:""")
 
 
 def run(program, path, seconds, acts, is_real=False):
-    """(report, what who stays published)"""
+    """(report, what the tasks that stay published)"""
     words = [program, "run", str(path), "--for", f"{seconds} s", "--json"] + ([] if is_real else ["--virtual"])
     for at, target in acts:
         words += ["--at", f"{at:.3f} ms: switch {target}"]
@@ -101,80 +99,49 @@ class Load:
             one.wait()
 
 
-def real_trial(program, path, n, seed):
-    """(faults, how many were judged)"""
-    acts, seconds = schedule(n, seed)
-    witness = HostWitness(CPU)
-    report, _ = run(program, path, seconds, acts, is_real=True)
-    stalls, found, judged = witness.stalls(), [], 0
-    if len(report["receipts"]) != len(acts):
-        found.append(f"{len(report['receipts'])} receipts of {len(acts)} switches")
-    for number, (receipt, act) in enumerate(zip(report["receipts"], acts), 1):
-        begin, end = ((receipt["origin_ns"] + receipt[key]) / 1e9 for key in ("asked_ns", "ended_ns"))
-        if not any_stall(stalls, begin - AROUND_S, end + AROUND_S):
-            judged += 1
-            found += faults_of(number, receipt, act)
-    return found, judged
+class Switches:
+    """Each number is one run, with some switches."""
 
+    def __init__(self, arguments):
+        build = pathlib.Path(arguments.build).resolve()
+        self.program, self.folder, self.is_real = str(build / "bin/chimera"), tempfile.TemporaryDirectory(), arguments.real
+        os.environ.setdefault("CHIMERA_PATH", str(build / "components"))
+        os.environ["XDG_RUNTIME_DIR"] = os.environ["XDG_STATE_HOME"] = self.folder.name
+        self.path, self.n, self.unjudged = description(self.folder.name), 0, 0
 
-def trial(program, path, n, seed):
-    acts, seconds = schedule(n, seed)
-    report, switched = run(program, path, seconds, acts)
-    found = faults(report, acts)
-    alone = run(program, path, seconds, [])[1]
-    if switched != alone or switched.count(b"\n") < seconds * 900:
-        found.append(f"who stays published something else, or not all: {switched.count(10)} and {alone.count(10)} rows")
-    return found
+    def once(self, _):
+        acts, seconds = schedule(A_REAL_RUN if self.is_real else A_RUN, random.randrange(1 << 32))
+        return self.in_real_time(acts, seconds) if self.is_real else self.in_virtual_time(acts, seconds)
 
+    def in_real_time(self, acts, seconds):
+        with Load():
+            witness = HostWitness(CPU)
+            report, _ = run(self.program, self.path, seconds, acts, is_real=True)
+            stalls, found = witness.stalls(), []
+        if len(report["receipts"]) != len(acts):
+            found.append(f"{len(report['receipts'])} receipts of {len(acts)} switches")
+        for number, (receipt, act) in enumerate(zip(report["receipts"], acts), 1):
+            begin, end = ((receipt["origin_ns"] + receipt[key]) / 1e9 for key in ("asked_ns", "ended_ns"))
+            if any_stall(stalls, begin - AROUND_S, end + AROUND_S):
+                self.unjudged += 1
+            else:
+                self.n += 1
+                found += faults_of(number, receipt, act)
+        return found
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--build", type=pathlib.Path, required=True, help="the tree whose programs are tried")
-    parser.add_argument("--real", action="store_true", help="in real time")
-    parser.add_argument("--seconds", type=float, default=0)
-    parser.add_argument("--switches", type=int, default=0, help="so many, in one run; in real time in several")
-    parser.add_argument("--seed", type=int, default=random.SystemRandom().randrange(1 << 32))
-    arguments = parser.parse_args()
-    build = arguments.build.resolve()
-    os.environ.setdefault("CHIMERA_PATH", str(build / "components"))
-    with tempfile.TemporaryDirectory() as folder:
-        os.environ["XDG_RUNTIME_DIR"] = os.environ["XDG_STATE_HOME"] = folder
-        done = (in_real_time if arguments.real else in_virtual_time)(arguments, str(build / "bin" / "chimera"),
-                                                                     description(folder))
-    print(json.dumps({"name": "switching_lesson" + "_real" * arguments.real, "counted": "switches", **done}))
-    return 1 if done["faults"] else 0
+    def in_virtual_time(self, acts, seconds):
+        report, switched = run(self.program, self.path, seconds, acts)
+        self.n += len(acts)
+        alone = run(self.program, self.path, seconds, [])[1]
+        if switched == alone and switched.count(b"\n") >= seconds * 900:
+            return faults(report, acts)
+        return faults(report, acts) + ["the tasks that stay published something else, or not all: "
+                                       f"{switched.count(10)} and {alone.count(10)} rows"]
 
-
-def told(seed, found):
-    if found:
-        print(f"seed {seed}:\n" + "\n".join(found[:20]), flush=True)
-    return len(found)
-
-
-def in_virtual_time(arguments, program, path):
-    n = wrong = rounds = 0
-    end = time.monotonic() + arguments.seconds
-    while rounds == 0 or time.monotonic() < end:
-        seed = arguments.seed + rounds
-        rounds += 1
-        wrong += told(seed, trial(program, path, arguments.switches or A_RUN, seed))
-        n += arguments.switches or A_RUN
-    return {"n": n, "faults": wrong, "runs": rounds}
-
-
-def in_real_time(arguments, program, path):
-    n = wrong = runs = unjudged = 0
-    end = time.monotonic() + arguments.seconds
-    with Load():
-        while n < arguments.switches or (not arguments.switches and time.monotonic() < end):
-            found, judged = real_trial(program, path, A_REAL_RUN, arguments.seed + runs)
-            wrong += told(arguments.seed + runs, found)
-            n, unjudged, runs = n + judged, unjudged + A_REAL_RUN - judged, runs + 1
-            if unjudged > 5 * (n + A_REAL_RUN):
-                print(f"not judged: host stalled in {unjudged} of {n + unjudged} switches")
-                break
-    return {"n": n, "faults": wrong, "runs": runs, "not_judged": unjudged}
+    def figures(self):
+        return {"n": self.n, "counted": "switches", **({"not_judged": self.unjudged} if self.is_real else {})}
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(campaigns.run("switching_lesson" + "_real" * ("--real" in sys.argv), __doc__, Switches,
+                           ("--real", {"action": "store_true", "help": "in real time"})))

@@ -30,6 +30,7 @@ struct Lock {
     if (descriptor_ >= 0) ::close(descriptor_);
     descriptor_ = -1;
   }
+  ~Lock() { kill(); }
   int descriptor_ = -1;
   int asked_ = 0;
 };

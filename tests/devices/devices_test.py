@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A device that goes away while its task is ON, and comes back: the task is in ERROR with a sentence that says what to
-do, its outputs are what its data sheet says, nobody else notices, and `clear` and `on` bring it back."""
+do, its outputs are what its data sheet says, other tasks go on, and `clear` and `on` bring it back."""
 import os
 import pathlib
 import select
@@ -11,9 +11,9 @@ import tty
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "processes"))
-from system import BUILD, UNITS, Refused, System, await_that  # noqa: E402
+from system import BUILD, RTPUS, Refused, System, await_that  # noqa: E402
 
-APPLICATION = UNITS + """
+APPLICATION = RTPUS + """
 tasks:
   steady: {component: t_counter, rtpu: first, rate: 200 Hz}
   driver: {component: COMPONENT, rtpu: second, rate: 100 Hz, MORE}
@@ -72,12 +72,6 @@ class Devices(unittest.TestCase):
         self.line = Line(self.name, True)
         self.addCleanup(self.line.end)
 
-    def value(self, system, name):
-        return system.call("get", variables=[name])["values"][name]["value"]
-
-    def await_value(self, system, name, wanted):
-        await_that(lambda: self.value(system, name) == wanted, 5, f"{name} = {wanted}")
-
     def goes_and_comes_back(self, system, go, fault, come, while_gone=lambda: None):
         before, driver = system.task("steady"), system.task("driver")
         go()
@@ -98,42 +92,41 @@ class Devices(unittest.TestCase):
             except Refused:
                 return False
             return system.state("driver") == "OFF"
-        await_that(is_cleared, 5, "clear")
+        await_that(is_cleared, "clear")
         system.signal("on", "driver")
         system.await_state("driver", "ON")
         self.assertEqual(system.task("driver")["incarnation"], driver["incarnation"])
-        after = system.task("steady")
+        after = system.await_cycles("steady")
         self.assertEqual((after["state"], after["faults"], after["incarnation"]), ("ON", 0, before["incarnation"]))
-        self.assertGreater(after["cycles"], before["cycles"])
 
     def test_a_serial_device_that_is_unplugged(self):
         self.line.plug()
         text = APPLICATION.replace("COMPONENT", "serial_frame").replace(
             "MORE", f"constants: {{timeout: 1 s}}, resources: {{device: {self.name}}}")
         with System(text + "operator: {command: [0.5]}\n") as system:
-            self.await_value(system, "state", [0.5])
+            system.await_value("state", [0.5])
             self.goes_and_comes_back(
                 system, self.line.unplug, "is gone", self.line.plug,
-                lambda: (self.assertEqual(self.value(system, "state"), [0.5]),
-                         self.assertFalse(self.value(system, "connected"))))
+                lambda: (self.assertEqual(system.value("state"), [0.5]),
+                         self.assertFalse(system.value("connected"))))
             system.call("set", values={"command": [0.25]})
-            self.await_value(system, "state", [0.25])
+            system.await_value("state", [0.25])
 
     def test_a_serial_device_that_falls_silent_is_told_to_idle(self):
         self.line.plug()
         text = APPLICATION.replace("COMPONENT", "serial_frame").replace(
             "MORE", f"constants: {{timeout: 2 s}}, resources: {{device: {self.name}}}")
         with System(text + "operator: {command: [0.5]}\n") as system:
-            self.await_value(system, "state", [0.5])
+            system.await_value("state", [0.5])
             self.line.echo = False
             system.await_state("driver", "ERROR")
             self.assertIn("is silent", system.task("driver")["fault"])
             idle = bytes([0xA5, 4, 0, 0, 0, 0])
-            await_that(lambda: self.line.heard[-8:].startswith(idle), 5, "idle")
+            await_that(lambda: self.line.heard[-8:].startswith(idle), "idle")
             self.line.echo = True
             system.signal("clear", "driver")
             system.signal("on", "driver")
-            self.await_value(system, "connected", True)
+            system.await_value("connected", True)
 
     def test_a_terminal_that_hangs_up(self):
         self.line.echo = False
@@ -142,11 +135,11 @@ class Devices(unittest.TestCase):
             "MORE", f"alias: {{xm: []}}, constants: {{hold: 10 s}}, resources: {{device: {self.name}}}")
         with System(text) as system:
             self.line.say(b"d")
-            self.await_value(system, "motion", [1, 0, 0, 0, 0, 0])
+            system.await_value("motion", [1, 0, 0, 0, 0, 0])
             self.goes_and_comes_back(system, self.line.unplug, "is gone", self.line.plug,
-                                     lambda: self.assertEqual(self.value(system, "motion"), [0] * 6))
+                                     lambda: self.assertEqual(system.value("motion"), [0] * 6))
             self.line.say(b"s")
-            self.await_value(system, "motion", [0, -1, 0, 0, 0, 0])
+            system.await_value("motion", [0, -1, 0, 0, 0, 0])
 
     @unittest.skipUnless((BUILD / "components/modbus_io.so").exists(), "modbus_io is not built")
     def test_a_modbus_device_that_is_switched_off(self):
@@ -167,11 +160,11 @@ class Devices(unittest.TestCase):
             device = subprocess.Popen([partner, port], stdout=subprocess.PIPE, text=True)
         try:
             with System(text + "operator: {speed: 7}\n") as system:
-                self.await_value(system, "level", 7)
+                system.await_value("level", 7)
                 self.goes_and_comes_back(system, go, "does not answer", come,
-                                         lambda: self.assertFalse(self.value(system, "connected")))
+                                         lambda: self.assertFalse(system.value("connected")))
                 system.call("set", values={"speed": 9})
-                self.await_value(system, "level", 9)
+                system.await_value("level", 9)
         finally:
             go()
 

@@ -1,19 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The most costly questions that the limits of the control protocol allow, asked without a pause."""
 import json
-import pathlib
 import random
 import select
 import socket
-import sys
 import threading
-
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "processes"))
-from system import await_that  # noqa: E402, F401
 
 TASKS = 256
 
-# Two units, and in a third values of 3.9 MiB: nearly what all outputs of an application together may have.
+# Two rtpus, and in a third values of 3.9 MiB: nearly what all outputs of an application together may have.
 LARGE_VALUES = """
 subsystem: subject
 rtpus:

@@ -1,26 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random deaths of any process of a subsystem beside two clients that ask all the time: each call of a client ends
-within its limit, each process but the keeper has a successor, the tasks of the others go on, and in the end nothing is
-left. Now and then it is the keeper that dies; another subsystem is then started. Its last line counts the deaths.
+"""Random deaths of any process of a subsystem beside two clients that ask all the time: each call of a client ends, each
+process but the keeper has a successor, the tasks of the others go on, and in the end nothing is left. A subsystem ends
+with its twentieth death, or with its keeper. The last line counts the deaths and has the longest call.
 
-usage: deaths_campaign.py --build TREE --seconds N [--most N]
+usage: deaths_campaign.py --build TREE --seconds N
 """
-import argparse
-import json
-import os
-import pathlib
+import collections
 import random
-import subprocess
 import sys
 import threading
 import time
 
-PROCESSES = pathlib.Path(__file__).resolve().parents[1] / "processes"
-CALL_LIMIT = 5.0  # s, of one question over the protocol, connection included
-COMMAND_LIMIT = 20.0  # s, of one `chimera status`: 10 s for a manager that is replaced, twice
-SUCCESSOR = 5.0  # s
-BUDGET, SPAN = 3, 10.0  # an rtpu is started again at most 3 times in 10 s
+import campaigns
 
+BUDGET, SPAN = 3, 12.0  # an rtpu is started again at most 3 times in 10 s
+TASK_OF = {"first": "a", "second": "b", "third": "c", "fourth": "d"}
 TEXT = """
 subsystem: subject
 rtpus:
@@ -39,208 +33,108 @@ start: all
 """
 QUESTIONS = (("status", {}), ("get", {"variables": ["x4"]}), ("why", {"variable": "x4"}),
              ("check", {"text": "subsystem: a", "file": "a.yaml"}))  # the last one is the analyst's
-TASK_OF = {"first": "a", "second": "b", "third": "c", "fourth": "d"}
 
 
 class Asker(threading.Thread):
-    """Asks until the end; counts answers, and those that took longer than `limit`."""
+    """Calls `ask` until the end. An OSError is no fault: the process that answers may be dead."""
 
-    def __init__(self, name, limit, ask):
-        super().__init__(name=name, daemon=True)
-        self.limit, self.ask, self.answers, self.unanswered, self.longest = limit, ask, 0, 0, 0.0
-        self.faults, self.over = [], threading.Event()
+    def __init__(self, ask):
+        super().__init__(daemon=True)
+        self.ask, self.longest, self.faults, self.over = ask, 0.0, [], threading.Event()
+        self.start()
 
     def run(self):
         while not self.over.is_set():
             begun = time.monotonic()
             try:
                 self.ask()
-                self.answers += 1
-            except Exception as wrong:  # noqa: BLE001 - the subject may be gone; what counts is how long that took
-                self.unanswered += 1
-                if not isinstance(wrong, OSError):
-                    self.faults.append(f"{self.name}: {wrong!r}")
+            except Exception as wrong:  # noqa: BLE001
+                if not isinstance(wrong, OSError) or isinstance(wrong, TimeoutError):
+                    self.faults.append(repr(wrong))
                 time.sleep(0.01)
-            took = time.monotonic() - begun
-            self.longest = max(self.longest, took)
-            if took > self.limit:
-                self.faults.append(f"{self.name}: a call took {took:.1f} s, its limit is {self.limit} s")
-
-    def end(self):
-        self.over.set()
-        self.join(2 * self.limit)
-        if self.is_alive():
-            self.faults.append(f"{self.name}: its last call has not ended after {2 * self.limit} s")
+            self.longest = max(self.longest, time.monotonic() - begun)
 
 
-def answered_in_its_turn(client, method, parameters):
-    while True:
-        try:
-            return client.call(method, **parameters)
-        except processes.Refused as refusal:
-            if "the analysis failed: its process ended by signal 9" in str(refusal):
-                return None  # the analyst was killed, and that is said
-            if refusal.code != processes.TOO_FAST:
-                raise
-            time.sleep(refusal.data["retry_ms"] / 1e3)
+class Deaths:
+    def __init__(self, _):
+        import system
+        self.system, self.deaths, self.longest = system, collections.Counter(), 0.0
 
-
-def by_protocol(system):
-    def ask():
-        client = processes.Client(system.socket, CALL_LIMIT)
+    def by_protocol(self, subject):
+        client = self.system.Client(subject.socket)
         try:
             for method, parameters in QUESTIONS:
-                answered_in_its_turn(client, method, parameters)
+                client.call(method, **parameters)
+        except self.system.Refused as refusal:
+            is_told = "the analysis failed: its process ended by signal 9" in str(refusal)
+            if not is_told and refusal.code != self.system.TOO_FAST:
+                raise
         finally:
             client.close()
-    return ask
 
+    def by_command(self, subject):
+        if subject.chimera("status", "--json", code=None).returncode != 0:
+            raise OSError("the manager is being replaced")
 
-def by_command(system):
-    def ask():
-        words = [str(processes.CHIMERA), "status", "--subsystem", "subject", "--json"]
-        done = subprocess.run(words, capture_output=True, text=True, env=system.environment, timeout=2 * COMMAND_LIMIT)
-        if done.returncode != 0:
-            raise OSError(json.loads(done.stdout)["error"]["message"])  # else it says nothing, or not in JSON
-        json.loads(done.stdout)
-    return ask
-
-
-class Subject:
-    """One subsystem, until its keeper dies or `until`."""
-
-    def __init__(self, campaign):
-        self.campaign, self.dice = campaign, campaign.dice
-        self.deaths_of = {name: [] for name in TASK_OF}
-
-    def victims(self, pids):
-        now = time.monotonic()
-        found = ["manager", "manager"]
-        for name, instants in self.deaths_of.items():
-            if name in pids and sum(now - instant < 1.2 * SPAN for instant in instants) < BUDGET:
-                found.append(name)
-        if self.analyst(pids):
-            found.append("analyst")
-        return found
-
-    def analyst(self, pids):
-        for pid in processes.processes_of(self.system.marker):
+    def once(self, _):
+        """One subsystem."""
+        faults, last = [], {name: [] for name in TASK_OF}
+        with self.system.System(TEXT) as subject:
+            askers = [Asker(lambda: self.by_protocol(subject)), Asker(lambda: self.by_command(subject))]
             try:
-                if pid not in pids.values() and "analyst" in pathlib.Path(f"/proc/{pid}/cmdline").read_text():
-                    return pid
-            except OSError:  # it has just ended
-                pass
-        return None
-
-    def run(self):
-        with processes.System(TEXT) as self.system:
-            askers = [Asker("protocol", CALL_LIMIT, by_protocol(self.system)),
-                      Asker("command", COMMAND_LIMIT, by_command(self.system))]
-            for asker in askers:
-                asker.start()
-            try:
-                while self.campaign.goes_on() and self.death():
+                while sum(self.deaths.values()) % 20 != 19 and self.death(subject, last, faults):
                     pass
-            finally:
-                for asker in askers:
-                    asker.end()
-            self.campaign.note(askers)
-            if self.system.process.poll() is None:
-                self.system.process.terminate()
-                self.system.process.wait(20)
-            self.await_nothing_left()
+                self.death(subject, last, faults)
+            except AssertionError as wrong:
+                faults.append(str(wrong))
+            for asker in askers:
+                asker.over.set()
+            for asker in askers:
+                asker.join(self.system.HANG)
+                faults += asker.faults + (["a call has not ended"] if asker.is_alive() else [])
+                self.longest = max(self.longest, asker.longest)
+        return faults
 
-    def death(self):
-        """One death and what follows; False when it was that of the keeper."""
-        pids = self.system.pids()
-        before = {t["task"]: t for t in self.system.call("status")["tasks"]}
-        if self.dice.random() < 0.02:
-            return self.keeper_dies(pids["keeper"])
-        victim = self.dice.choice(self.victims(pids))
-        pid = self.analyst(pids) if victim == "analyst" else pids[victim]
-        time.sleep(self.dice.random() * 0.05)
-        if pid is None or not processes.kill(pid, self.system.marker):
+    def victims(self, subject, pids, last):
+        now, analyst = time.monotonic(), subject.named("chimera-analyst")
+        found = {"manager": pids["manager"], "analyst": analyst[0] if analyst else None}
+        for name, instants in last.items():
+            if sum(now - instant < SPAN for instant in instants) < BUDGET:
+                found[name] = pids.get(name)
+        return [(name, pid) for name, pid in found.items() if pid]
+
+    def death(self, subject, last, faults):
+        """One death and what follows. False when it was that of the keeper."""
+        if subject.process.poll() is not None:
+            return False
+        pids = subject.pids()
+        before = {t["task"]: t for t in subject.call("status")["tasks"]}
+        if random.random() < 0.02:
+            self.deaths["keeper"] += subject.kill(pids["keeper"])
+            subject.wait()
+            return False
+        victim, pid = random.choice(self.victims(subject, pids, last))
+        time.sleep(random.random() * 0.05)
+        if not subject.kill(pid):
             return True
-        self.campaign.deaths[victim if victim in ("manager", "analyst") else "rtpu"] += 1
-        if victim in self.deaths_of:
-            self.deaths_of[victim].append(time.monotonic())
+        self.deaths[victim if victim in ("manager", "analyst") else "rtpu"] += 1
+        if victim in last:
+            last[victim].append(time.monotonic())
         if victim != "analyst":
-            self.system.disconnect()
-            processes.await_that(lambda: self.system.pids().get(victim, pid) != pid, SUCCESSOR, f"another {victim}")
+            subject.disconnect()
+            self.system.await_that(lambda: subject.pids().get(victim, pid) != pid, f"another {victim}")
         for task in TASK_OF.values():
-            self.system.await_state(task, "ON", SUCCESSOR)
-        self.judge(before, TASK_OF.get(victim))
+            subject.await_state(task, "ON")
+        after = {t["task"]: t for t in subject.call("status")["tasks"]}
+        for task in set(TASK_OF.values()) - {TASK_OF.get(victim)}:
+            if after[task]["incarnation"] != before[task]["incarnation"] or \
+                    after[task]["cycles"] < before[task]["cycles"]:
+                faults.append(f"{task} began anew when {victim} died")
         return True
 
-    def judge(self, before, died):
-        """Tasks of the others went on, without a new beginning."""
-        after = {t["task"]: t for t in self.system.call("status")["tasks"]}
-        for name in TASK_OF.values():
-            if name == died:
-                continue  # it began anew in another process
-            if after[name]["incarnation"] != before[name]["incarnation"]:
-                self.campaign.faults.append(f"{name} began anew though {died or 'no task'} died")
-            if after[name]["cycles"] < before[name]["cycles"]:
-                self.campaign.faults.append(f"{name} lost count of its cycles")
-
-    def keeper_dies(self, pid):
-        processes.kill(pid, self.system.marker)
-        self.campaign.deaths["keeper"] += 1
-        self.system.process.wait(20)
-        return False
-
-    def await_nothing_left(self):
-        processes.await_that(lambda: not processes.processes_of(self.system.marker), 20, "the end of all processes")
-
-
-class Campaign:
-    def __init__(self, seconds, most, seed):
-        self.end, self.most, self.dice = time.monotonic() + seconds, most, random.Random(seed)
-        self.deaths = {"manager": 0, "rtpu": 0, "analyst": 0, "keeper": 0}
-        self.faults, self.answers, self.unanswered, self.longest = [], [0, 0], [0, 0], [0.0, 0.0]
-        self.subjects = 0
-
-    def n(self):
-        return sum(self.deaths.values())
-
-    def goes_on(self):
-        return self.n() < self.most and time.monotonic() < self.end and len(self.faults) < 20
-
-    def note(self, askers):
-        for i, asker in enumerate(askers):
-            self.answers[i] += asker.answers
-            self.unanswered[i] += asker.unanswered
-            self.longest[i] = max(self.longest[i], asker.longest)
-            self.faults += asker.faults
-
-    def run(self):
-        while self.subjects == 0 or self.goes_on():
-            self.subjects += 1
-            try:
-                Subject(self).run()
-            except AssertionError as wrong:
-                self.faults.append(str(wrong))
-        for fault in self.faults[:50]:
-            print(fault, flush=True)
-        print(json.dumps({"name": "hostile_deaths", "n": self.n(), "faults": len(self.faults), "counted": "deaths",
-                          **self.deaths, "subsystems": self.subjects, "answers": self.answers,
-                          "unanswered": self.unanswered, "longest_s": [round(s, 2) for s in self.longest]}))
-        return 1 if self.faults else 0
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--build", required=True, help="the tree whose programs are killed")
-    parser.add_argument("--seconds", type=float, required=True)
-    parser.add_argument("--most", type=int, default=1 << 30, help="deaths, after which it ends")
-    parser.add_argument("--seed", type=int, default=random.SystemRandom().randrange(1 << 32))
-    arguments = parser.parse_args()
-    os.environ["CHIMERA_BUILD"] = arguments.build
-    sys.path.insert(0, str(PROCESSES))
-    global processes
-    import system as processes
-    return Campaign(arguments.seconds, arguments.most, arguments.seed).run()
+    def figures(self):
+        return {"n": sum(self.deaths.values()), "counted": "deaths", **self.deaths, "longest_s": round(self.longest, 2)}
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(campaigns.run("hostile_deaths", __doc__, Deaths))

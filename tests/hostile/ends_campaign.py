@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""All bad ends in all methods in all executors, in random order: told, judged, and nothing to others. Its last line
-counts them. `lost_cycles`: deadlines that the other unit, on another CPU, missed and releases it lost meanwhile; at
---priority 0 that is the machine's own, with another it is a fault.
+"""All bad ends in all methods in all executors, in random order: reported, judged, and without an effect on others. The
+last line counts them. `lost_cycles`: deadlines that the other rtpu, on another CPU, missed and releases it lost.
 
 usage: ends_campaign.py --build TREE --seconds N [--priority P]
 """
-import argparse
 import itertools
-import json
 import os
+import pathlib
 import random
 import signal
+import subprocess
 import sys
 import tempfile
-import time
+
+import campaigns
 
 METHODS = ("init", "reinit", "on", "cycle", "off", "kill", "error", "clear", "sync")
 WAYS = ("throw", "fault", "segv", "abort", "kill", "exit", "loop", "sleep", "late")
@@ -21,22 +21,39 @@ EXECUTORS = ("executive", "preemptive", "virtual", "virtual preemptive")
 ENDLESS = ("loop", "sleep", "late")
 
 
-def parse():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--build", required=True, help="the tree whose programs are tested")
-    parser.add_argument("--seconds", type=float, required=True)
-    parser.add_argument("--seed", type=int, default=random.SystemRandom().randrange(1 << 32))
-    parser.add_argument("--priority", default="0")
-    return parser.parse_args()
+def start_virtual(place, where, how, arguments, component):
+    """A run in virtual time, with one task `bad`."""
+    import system
+    armed = pathlib.Path(place) / "armed"
+    armed.touch()
+    file = pathlib.Path(place) / f"{where}-{how}{''.join(arguments)}.yaml"
+    file.write_text("subsystem: subject\nrtpus: {one: {cpu: 0, policy: edf}}\ntasks:\n"
+                    f"  bad: {{component: {component}, rtpu: one, rate: 100 Hz, "
+                    f"constants: {{where: {where}, how: {how}}}, resources: {{armed: {armed}}}}}\n")
+    return subprocess.Popen([str(system.CHIMERA), "run", str(file), "--virtual", "--for", "100 ms", *arguments],
+                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                            env=dict(os.environ, ASAN_OPTIONS=system.QUIET))
 
 
-class Case:
-    def __init__(self, where, how, executor, priority):
-        self.where, self.how, self.executor, self.priority = where, how, executor, priority
-        self.lost = 0
+class Ends:
+    def __init__(self, arguments):
+        import ends_test
+        import system
+        self.ends, self.system, self.priority, self.lost, self.cases = ends_test, system, arguments.priority, 0, []
 
-    def run(self):
-        return self.in_virtual_time() if self.executor.startswith("virtual") else self.in_real_time()
+    def once(self, _):
+        if not self.cases:
+            self.cases = list(itertools.product(METHODS, WAYS, EXECUTORS))
+            random.shuffle(self.cases)
+        self.where, self.how, self.executor = self.cases.pop()
+        try:
+            self.in_virtual_time() if self.executor.startswith("virtual") else self.in_real_time()
+        except Exception as fault:  # noqa: BLE001 - the campaign goes on
+            return [f"{self.where} {self.how} {self.executor}: {fault!r}"]
+        return []
+
+    def figures(self):
+        return {"lost_cycles": self.lost}
 
     def in_virtual_time(self):
         if self.how in ENDLESS and self.where not in ("off", "kill"):
@@ -48,8 +65,8 @@ class Case:
             if self.where == "clear":
                 words += ["--at", "50 ms: clear bad"]
             component = "t_ends_event" if self.where == "sync" else "t_ends"
-            process = ends.start_virtual(place, self.where, self.how, words, component)
-            out, err = process.communicate(timeout=30)
+            process = start_virtual(place, self.where, self.how, words, component)
+            out, err = process.communicate(timeout=self.system.HANG)
         assert process.returncode in (0, 1), (process.returncode, out, err)
         dies = self.how in ("segv", "abort", "kill", "exit")
         if dies or self.where in ("init", "on", "off", "kill"):  # an `on` that error() recovers from is OFF and refused
@@ -61,83 +78,49 @@ class Case:
 
     def in_real_time(self):
         component = "t_ends_event" if self.where == "sync" else "t_ends"
-        text = ends.application([(self.executor, self.where, self.how)]).replace("component: t_ends,",
-                                                                                f"component: {component},")
-        text = text.replace("u0: {cpu: 0", "u0: {cpu: 1")
-        with ends.System(text, ["--priority", self.priority]) as system:
+        text = self.ends.application([(self.executor, self.where, self.how)])
+        text = text.replace("component: t_ends,", f"component: {component},").replace("u0: {cpu: 0", "u0: {cpu: 1")
+        with self.system.System(text, ["--priority", self.priority]) as system:
             before = system.task("steady")
             self.misbehave(system)
-            after = ends.await_that(
-                lambda: (t := system.task("steady"))["cycles"] > before["cycles"] + 5 and t, 5, "cycles")
+            after = system.await_cycles("steady")
             assert (after["state"], after["incarnation"]) == ("ON", before["incarnation"]), after
-            self.lost = sum(after[key] - before[key] for key in ("missed", "dropped"))
+            self.lost += sum(after[key] - before[key] for key in ("missed", "dropped"))
             self.end(system)
 
     def misbehave(self, system):
-        first = {"init": ("off", "kill"), "on": ("off",), "kill": ("off",)}.get(self.where, ())
-        for word in first:
+        for word in {"init": ("off", "kill"), "on": ("off",), "kill": ("off",)}.get(self.where, ()):
             system.signal(word, "t0")
-        told = system.events()[-1]["number"]
+        since = system.next_event()
         system.arm()
         if self.where == "clear":
             system.await_state("t0", "ERROR")
         word = {"init": "spawn", "on": "on", "reinit": "reinit", "clear": "clear", "off": "off"}.get(self.where)
         if self.where == "kill" or (self.where == "init" and self.how in ENDLESS):
-            return system.disarm()  # kill is judged at the end; an init that takes long is only told
+            return system.disarm()  # kill is judged at the end; an init that takes long is only reported
         if word is not None:
             try:
                 system.signal(word, "t0")
-            except ends.Refused:
+            except self.system.Refused:
                 pass
-        kinds = ("rtpu-ended",) if self.how not in ("throw", "fault") else ("fault",)
-        ends.await_that(lambda: [e for e in system.events(told + 1) if e["kind"] in kinds], 10, f"{kinds}")
+        text = system.await_event(since, "fault" if self.how in ("throw", "fault") else "rtpu-ended")["text"]
         if self.how in ENDLESS:
-            text = next(e["text"] for e in system.events(told + 1) if e["kind"] == "rtpu-ended")
             assert "did not return within" in text and f"t0.{self.where}" in text, text
         system.disarm()
-        ends.await_that(lambda: (u := system.rtpu("u0"))["phase"] == "serving" or u["given_up"], 10, "recovery")
+        self.system.await_that(lambda: (u := system.rtpu("u0"))["phase"] == "serving" or u["given_up"], "recovery")
 
     def end(self, system):
-        at_end = self.where in ("off", "kill")
-        if at_end:
+        if at_end := self.where in ("off", "kill"):
             if self.where == "off" and system.state("t0") == "OFF":
                 system.signal("on", "t0")
             system.await_state("t0", "ON" if self.where == "off" else "OFF")
             system.arm()
         system.disconnect()
         system.process.send_signal(random.choice((signal.SIGTERM, signal.SIGINT)))
-        code = system.process.wait(20)
+        code, said = system.wait(), system.said()
         if at_end:
-            said = system.said()
             assert code == 1 and "FAILED: t0: " in said and "may not be off" in said, (code, said)
 
 
-def main():
-    arguments = parse()
-    os.environ["CHIMERA_BUILD"] = arguments.build
-    global ends
-    import ends_test as ends  # knows the tree when it is read
-    random.seed(arguments.seed)
-    cases = list(itertools.product(METHODS, WAYS, EXECUTORS))
-    n = faults = lost = 0
-    end = time.monotonic() + arguments.seconds
-    while n == 0 or time.monotonic() < end:
-        random.shuffle(cases)
-        for where, how, executor in cases:
-            if n and time.monotonic() >= end:
-                break
-            case = Case(where, how, executor, arguments.priority)
-            n += 1
-            try:
-                case.run()
-                lost += case.lost
-                assert arguments.priority == "0" or case.lost == 0, f"{case.lost} cycles lost"
-            except Exception as fault:  # the campaign goes on
-                faults += 1
-                print(f"seed {arguments.seed}, {where} {how} {executor}: {fault!r}", flush=True)
-    print(json.dumps({"name": "hostile_ends", "n": n, "faults": faults, "lost_cycles": lost}))
-    return 1 if faults else 0
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(campaigns.run("hostile_ends", __doc__, Ends, ("--priority", {"default": "0"})))

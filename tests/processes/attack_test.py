@@ -10,7 +10,7 @@ import sys
 import unittest
 
 from protocol_test import FORMATS, GOOD, METHODS
-from system import System, TWO_UNITS
+from system import HANG, TWO_RTPUS, System
 
 NOBODY, STRANGERS = 65534, 65534
 OPERATORS = next(g for g in grp.getgrall() if g.gr_gid not in (0, STRANGERS))
@@ -41,7 +41,7 @@ def read_memory(pid):
     return libc.process_vm_readv(pid, ctypes.byref(here), 1, ctypes.byref(there), 1, 0) == 16
 def talk():
     s = socket.socket(socket.AF_UNIX)
-    s.settimeout(2)
+    s.settimeout(60)
     s.connect(path)
     s.sendall(b'{"jsonrpc":"2.0","id":1,"method":"status"}\n')
     said = b""
@@ -59,7 +59,7 @@ for name in os.listdir("/dev/shm"):
         attempt("shared memory", lambda: open("/dev/shm/" + name))
 for line in open("/proc/net/unix").read().splitlines()[1:]:
     name = line.split()[-1]
-    # The claim of a CPU answers nobody: who connects learns who holds it.
+    # The claim of a CPU answers no request: a connection shows which process holds it.
     if name.startswith("@") and "chimera" in name and "chimera-cpu-" not in name:
         attempt("abstract socket", lambda: socket.socket(socket.AF_UNIX).connect("\0" + name[1:]))
 for pid in pids:
@@ -86,8 +86,8 @@ for pid in pids:
 print(json.dumps(sorted(set(won))))
 '''
 
-# Run as the user of the system itself: seals do not ask who knocks. The decision page is writable for all processes of
-# the system by design: a wrong value there costs a look (docs/formats/processes.md).
+# Run as the user of the system: seals hold for every user. The decision page is writable for all processes of the
+# system by design: a wrong value there costs a check (docs/formats/processes.md).
 OWN_USER = r'''
 import json, mmap, os, sys
 won, seen = [], 0
@@ -132,7 +132,7 @@ ROLES = roles()
 CALL = r'''
 import json, socket, sys
 s = socket.socket(socket.AF_UNIX)
-s.settimeout(5)
+s.settimeout(60)
 s.connect(sys.argv[1])
 request = {"jsonrpc": "2.0", "id": 1, "method": sys.argv[2], "params": json.loads(sys.argv[3])}
 try:
@@ -153,7 +153,7 @@ print(json.dumps("good" if error["code"] in (-32000, -32005, -32602)
 class Attack(unittest.TestCase):
     def as_stranger(self, code, *arguments, groups=()):
         done = subprocess.run(["/usr/bin/python3", "-c", code, *map(str, arguments)], user=NOBODY, group=STRANGERS,
-                              extra_groups=list(groups), capture_output=True, text=True, timeout=60, cwd="/")
+                              extra_groups=list(groups), capture_output=True, text=True, timeout=HANG, cwd="/")
         self.assertEqual(done.returncode, 0, done.stderr)
         return done.stdout.strip()
 
@@ -164,7 +164,7 @@ class Attack(unittest.TestCase):
 
     def test_row_23_a_stranger_gets_nowhere(self):
         for arguments in ((), ("--observe-group", OPERATORS.gr_name)):
-            with self.subTest(arguments), System(TWO_UNITS, arguments) as system:
+            with self.subTest(arguments), System(TWO_RTPUS, arguments) as system:
                 self.open_folders(system)
                 before = {t["task"]: t for t in system.call("status")["tasks"]}
                 pids = system.pids().values()
@@ -172,7 +172,7 @@ class Attack(unittest.TestCase):
                 for task in system.call("status")["tasks"]:
                     self.assertEqual((task["state"], task["incarnation"], task["faults"]),
                                      ("ON", before[task["task"]]["incarnation"], 0))
-                # Somebody who may do it all succeeds with each: the attempts are real ones.
+                # A user with all rights succeeds with each: the attempts are real ones.
                 with open(system.file) as held, subprocess.Popen(["sleep", "60"], pass_fds=[held.fileno()]) as victim:
                     done = subprocess.run(["/usr/bin/python3", "-c", ATTACK, str(system.socket), str(victim.pid)],
                                           capture_output=True)
@@ -184,9 +184,9 @@ class Attack(unittest.TestCase):
                                   "unlink the socket"])
 
     def test_seals_hold_against_the_systems_own_user(self):
-        with System(TWO_UNITS) as system:
+        with System(TWO_RTPUS) as system:
             done = subprocess.run([sys.executable, "-c", OWN_USER, *map(str, system.pids().values())],
-                                  capture_output=True, text=True, timeout=60)
+                                  capture_output=True, text=True, timeout=HANG)
             won, seen = json.loads(done.stdout)
             self.assertGreater(seen, 5)
             self.assertEqual(won, [])
@@ -196,7 +196,7 @@ class Attack(unittest.TestCase):
         self.assertEqual(sorted(ROLES), sorted(METHODS))
         for has in (None, "observe", "operate", "configure"):
             arguments = (f"--{has}-group", OPERATORS.gr_name) if has else ()
-            with self.subTest(has), System(TWO_UNITS, arguments) as system:
+            with self.subTest(has), System(TWO_RTPUS, arguments) as system:
                 self.open_folders(system)
                 if has is None:  # the administrator opened the way, the system did not
                     system.socket.parent.chmod(0o711)

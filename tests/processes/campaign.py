@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Repeats tests of this folder for a time, each round with another seed; its last line says how often and what failed.
+"""Repeats scripts of this folder for a time, each round with another seed; the last line says how often and what
+failed.
 
 usage: campaign.py NAME --build TREE --seconds N      (NAME: a line of CAMPAIGNS)
 """
@@ -13,23 +14,36 @@ import subprocess
 import sys
 import time
 
-# Of each campaign: its tests with the rounds of each, and the word of the count they print; none: rounds are counted.
+# The scripts of each campaign with CHIMERA_ROUNDS for each, and the word of the count that they print; without a word
+# the rounds are counted.
 CAMPAIGNS = {
-    "faults": ((("faults_test.py", 3),), None),
-    "ending": ((("ending_test.py", 1), ("kills_test.py", 20)), "kills"),
+    "faults": ((("faults_test.py", 1), ("kills_campaign.py", 7)), None),
+    "ending": ((("ending_test.py", 1), ("kills_campaign.py", 20)), "kills"),
     "exhaustion": ((("exhaustion_test.py", 0),), "failed calls"),
-    "logging": ((("logging_test.py", 5),), None),
-    "preemptive": ((("preemptive_test.py", 5),), "bad jobs"),
-    "switch": ((("switch_test.py", 40), ("slow_switch_test.py", 5), ("resource_test.py", 5)), "kills"),
-    "standby": ((("standby_test.py", 20),), "kills"),
-    "receipts": ((("receipts_test.py", 30),), "receipts"),
+    "logging": ((("logging_test.py", 1),), None),
+    "preemptive": ((("preemptive_test.py", 1),), "bad jobs"),
+    "switch": ((("switch_campaign.py", 10),), "kills"),
+    "standby": ((("standby_campaign.py", 20),), "kills"),
+    "receipts": ((("receipts_campaign.py", 30),), "receipts"),
     "clocks": ((("clocks_test.py", 300),), "jumps"),
-    "operators": ((("operators_test.py", 200),), "answers"),
     "numbers": ((("numbers_test.py", 50),), "restarts"),
 }
+# Of the script that runs.
+ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "1"))
+SEED = int(os.environ.get("CHIMERA_SEED", str(random.SystemRandom().randrange(1 << 32))))
 
 
-def counted(word, output):
+def begin():
+    """Before a test that draws random numbers."""
+    random.seed(SEED)
+    print(f"seed {SEED}", file=sys.stderr)
+
+
+def counted(word, n=1):
+    print(f"{word}: {int(n)}", file=sys.stderr)
+
+
+def total(word, output):
     return sum(int(n) for n in re.findall(rf"\b{word}: (\d+)\b", output))
 
 
@@ -38,23 +52,23 @@ def main():
     parser.add_argument("name", choices=CAMPAIGNS)
     parser.add_argument("--build", required=True, help="the tree whose programs are tested")
     parser.add_argument("--seconds", type=float, required=True)
-    parser.add_argument("--seed", type=int, default=random.SystemRandom().randrange(1 << 32))
+    parser.add_argument("--seed", type=int, default=SEED)
     arguments = parser.parse_args()
-    tests, word = CAMPAIGNS[arguments.name]
+    scripts, word = CAMPAIGNS[arguments.name]
     n = rounds = faults = 0
     end = time.monotonic() + arguments.seconds
     while rounds == 0 or time.monotonic() < end:
         seed = arguments.seed + rounds
         rounds += 1
-        for test, repeats in tests:
+        for script, repeats in scripts:
             environment = dict(os.environ, CHIMERA_BUILD=arguments.build, CHIMERA_SEED=str(seed),
                                CHIMERA_ROUNDS=str(repeats))
-            done = subprocess.run([sys.executable, str(pathlib.Path(__file__).with_name(test))], env=environment,
+            done = subprocess.run([sys.executable, str(pathlib.Path(__file__).with_name(script))], env=environment,
                                   capture_output=True, text=True)
-            n += counted(word, done.stderr) if word else 0
+            n += total(word, done.stderr) if word else 0
             if done.returncode != 0:
                 faults += 1
-                print(f"round {rounds}, seed {seed}, {test}:\n{done.stdout}{done.stderr}", flush=True)
+                print(f"round {rounds}, seed {seed}, {script}:\n{done.stdout}{done.stderr}", flush=True)
     print(json.dumps({"name": f"process_{arguments.name}", "n": n if word else rounds, "faults": faults,
                       "counted": word or "rounds", "rounds": rounds}))
     return 1 if faults else 0

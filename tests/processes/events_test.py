@@ -1,46 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Events from one rtpu for a task behind a server in another: each is counted, answered in turn, lost only while the
-task is not ON."""
+"""Events over real processes: a pipe rings a task behind a server, which rings a task of another rtpu, which rings a task
+of the first one. Each event is counted and answered by one job."""
 import os
 import pathlib
-import subprocess
 import tempfile
 import unittest
 
-from protocol_test import Judged
-from system import CHIMERA, System, await_that
-
-APPLICATION = """
-subsystem: subject
-rtpus:
-  served: {cpu: 1, policy: edf, executor: preemptive}
-  other: {cpu: 0, policy: edf}
-tasks:
-  steady: {component: t_counter, rtpu: served, rate: 100 Hz}
-  button: {component: ringer, rtpu: other, rate: 200 Hz, constants: {target: alarm, burst: 2}}
-  neighbour: {component: ringer, rtpu: served, rate: 100 Hz, alias: {rung: again}, constants: {target: alarm}}
-  alarm:
-    component: on_event
-    rtpu: served
-    server: {kind: deferrable, capacity: 4 ms, period: 20 ms}
-    constants: {time: 100 us}
-configurations: {all: [steady, button, neighbour, alarm]}
-start: all
-"""
-
-
-OF_A_PIPE = """
-subsystem: subject
-rtpus:
-  served: {cpu: 1, policy: edf, executor: preemptive}
-tasks:
-  steady: {component: t_counter, rate: 100 Hz}
-  reader:
-    component: t_pipe
-    resources: {pipe: PIPE}
-    server: {kind: sporadic, capacity: 1 ms, period: 20 ms}
-"""
-
+from system import System, await_that
 
 IN_C = """
 subsystem: subject
@@ -66,90 +32,27 @@ tasks:
     rtpu: served
     server: {kind: deferrable, capacity: 1 ms, period: 20 ms}
 """
+TASKS = ("first", "second", "third")
 
 
 class Events(unittest.TestCase):
-    def test_in_c_come_from_a_descriptor_and_ring_doorbells_here_and_there(self):
+    def test_come_from_a_descriptor_and_ring_doorbells_here_and_there(self):
         with tempfile.TemporaryDirectory(prefix="chimera-events-") as place:
             pipe = pathlib.Path(place) / "pipe"
             os.mkfifo(pipe)
             with System(IN_C.replace("PIPE", str(pipe))) as system:
-                for task in ("first", "second", "third"):
+                for task in TASKS:
                     system.await_state(task, "ON")
                 with open(pipe, "wb", buffering=0) as end:
-                    end.write(b"12345")
-                    for task in ("first", "second", "third"):
-                        await_that(lambda: system.task(task)["cycles"] == 5, 10, f"five events of {task}")
-                for task in ("first", "second", "third"):
+                    for total, written in ((5, b"12345"), (8, b"678")):
+                        end.write(written)
+                        for task in TASKS:
+                            await_that(lambda: system.task(task)["cycles"] == total, f"{total} events of {task}")
+                for task in TASKS:
                     seen = system.task(task)
-                    self.assertEqual((seen["events"], seen["events_lost"], seen["faults"]), (5, 0, 0), task)
-
-    def test_of_a_descriptor_that_a_resource_port_names_are_answered_as_long_as_there_are_some(self):
-        with tempfile.TemporaryDirectory(prefix="chimera-events-") as place:
-            pipe = pathlib.Path(place) / "pipe"
-            os.mkfifo(pipe)
-            text = OF_A_PIPE.replace("PIPE", str(pipe))
-            with System(text) as system:
-                system.await_state("reader", "ON")
-                with open(pipe, "wb", buffering=0) as end:
-                    end.write(b"12345")
-                    await_that(lambda: system.task("reader")["cycles"] == 5, 10, "five events")
-                    end.write(b"678")
-                    reader = await_that(lambda: (t := system.task("reader"))["cycles"] == 8 and t, 10, "three more")
-                self.assertEqual((reader["events"], reader["events_lost"], reader["faults"]), (8, 0, 0))
-            file = pathlib.Path(place) / "subject.yaml"
-            file.write_text(text)
-            refused = subprocess.run([str(CHIMERA), "run", str(file), "--virtual", "--for", "1 s"], text=True,
-                                     capture_output=True, timeout=30, stdin=subprocess.DEVNULL)
-            self.assertEqual(refused.returncode, 1)
-            self.assertIn("events of task 'reader' from a descriptor, in virtual time: run cannot do this yet",
-                          refused.stderr)
-
-    def test_of_a_person_are_one_for_each_ring_and_refused_where_nobody_would_answer(self):
-        quiet = APPLICATION.replace("all: [steady, button, neighbour, alarm]", "all: [steady, alarm]")
-        with System(quiet) as system:
-            system.await_state("alarm", "ON")
-            client = Judged(system.socket)
-            self.addCleanup(client.close)
-            for n in range(1, 4):
-                self.assertEqual(client.exchange("ring", tasks=["alarm"]), {"tasks": ["alarm"]})
-                await_that(lambda: client.exchange("status")["tasks"][3]["cycles"] == n, 10, "an answer")
-            self.assertEqual(client.exchange("ring", tasks=["alarm"] * 5), {"tasks": ["alarm"] * 5})
-            await_that(lambda: system.task("alarm")["cycles"] == 8, 10, "five more")
-
-            def refusal(task):
-                self.assertIsNone(client.exchange("ring", tasks=["alarm", task]))
-                return client.last["error"]
-
-            self.assertEqual(refusal("steady"), {
-                "code": -32000, "message": "steady is not behind a server: it has no doorbell",
-                "data": {"kind": "no-server", "where": "steady", "remedy": "give it 'server:' in the description"}})
-            system.signal("off", "alarm")
-            self.assertEqual(refusal("alarm"), {
-                "code": -32000, "message": "alarm is OFF: no job would answer the event",
-                "data": {"kind": "state", "where": "alarm", "remedy": "turn it ON first"}})
-            alarm = system.task("alarm")
-            self.assertEqual((alarm["events"], alarm["events_lost"], alarm["cycles"]), (8, 0, 8))
-            self.assertEqual(client.faults, [])
-            told = [e["text"] for e in client.exchange("events")["events"] if e["kind"] == "command"]
-            self.assertEqual(told[0], "ring alarm: done")
-            self.assertEqual(told[-1], "ring alarm, alarm: refused: alarm is OFF: no job would answer the event")
-
-    def test_of_other_rtpus_are_answered_each_by_one_job(self):
-        with System(APPLICATION) as system:
-            system.await_state("alarm", "ON")
-            alarm = await_that(lambda: (t := system.task("alarm"))["cycles"] > 200 and t, 20, "events")
-            self.assertEqual(alarm["faults"], 0)
-            self.assertGreaterEqual(alarm["events"], alarm["cycles"])
-            self.assertEqual(system.task("steady")["faults"], 0)
-
-            lost = alarm["events_lost"]
-            system.signal("off", "alarm")
-            system.await_state("alarm", "OFF")
-            off = await_that(lambda: (t := system.task("alarm"))["events_lost"] > lost + 20 and t, 20, "lost events")
-            self.assertLessEqual(off["cycles"], off["events"])
-            system.signal("on", "alarm")
-            await_that(lambda: system.task("alarm")["cycles"] > off["cycles"] + 50, 20, "events again")
+                    self.assertEqual((seen["events"], seen["events_lost"], seen["faults"]), (8, 0, 0), task)
+                refused = system.chimera("run", system.file, "--virtual", "--for", "1 s", code=1).stderr
+                self.assertIn("from a descriptor, in virtual time: run cannot do this yet", refused)
 
 
 if __name__ == "__main__":

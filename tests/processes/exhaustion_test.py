@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Row 19: there is no more memory, no descriptor, no thread, no process, at the n-th time somebody asks for one. The
-start then says what failed and ends with nothing left behind, or copes. CHIMERA_ROUNDS=0: every n until nobody asks
-any more, of every program, once and in each process of it; else as many, spread evenly."""
+"""Row 19: the n-th call for memory, a descriptor, a thread or a process fails. The start then says what failed and ends
+with nothing left behind, or copes. CHIMERA_ROUNDS=0: every n that a program reaches, of every program, once and in each
+of its processes; else that many, spread evenly."""
 import collections
 import itertools
 import os
 import re
 import sys
-import time
 import unittest
 
-from system import BUILD, QUIET, System, TWO_UNITS, await_that
+from system import BUILD, QUIET, TWO_RTPUS, System
 
 ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "3"))
 REASON = re.compile("Cannot allocate memory|Too many open files|Resource temporarily unavailable|"
@@ -29,14 +28,12 @@ class Exhaustion(unittest.TestCase):
     def attempt(self, program, n, once):
         """One start in which the n-th call fails; what failed, None when there was none."""
         shim = BUILD / "tests/processes/libfailing_calls.so"
-        with System(TWO_UNITS, ("--for", "0.1 s"), wait=False, environment={
+        with System(TWO_RTPUS, ("--for", "0.1 s"), wait=False, environment={
                 "LD_PRELOAD": str(shim), "CHIMERA_FAIL": f"{program} {n}{' once' if once else ''}",
                 "CHIMERA_FAILED": "FAILED", "ASAN_OPTIONS": QUIET + ":verify_asan_link_order=0"}) as system:
-            begun = time.monotonic()
-            await_that(lambda: system.process.poll() is not None, 40, f"an end of the run ({system.said()})")
-            code, said = system.process.returncode, system.said()
-            self.assertNotIn("did not end in time", said, f"{program} {n}: {time.monotonic() - begun:.1f} s")
-            system.await_nothing_left(10)
+            code, said = system.wait(), system.said()
+            self.assertNotIn("did not end in time", said, f"{program} {n}")
+            system.await_nothing_left()
             record = system.place / "FAILED"
             failed = sorted({line.split()[2] for line in record.read_text().splitlines()}) if record.exists() else None
             if failed:

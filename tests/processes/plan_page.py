@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How far the switch that is under way has come, as the processes see it."""
+"""How far the switch that is under way has come, as the processes see it, for the campaigns that kill in a switch."""
 import mmap
 import os
 import pathlib
-import time
+
+from system import await_that
 
 
 class PlanPage:
-    """The words of the switch on the decision page, read while the units write them. Requires: one switch was made, and
+    """The words of the switch on the decision page, read while the rtpus write them. Requires: one switch was made, and
     committed."""
 
     def __init__(self, system):
@@ -19,7 +20,7 @@ class PlanPage:
                 self.words = mmap.mmap(held, os.fstat(held).st_size, prot=mmap.PROT_READ)
                 os.close(held)
                 break
-        # That switch has a small number, not always 1: on a busy machine one before it may have been aborted.
+        # That switch has a small number, not always 1: one before it may have been aborted.
         self.at = next(at for at in range(0, len(self.words) - 128, 64)
                        if self.word(at) >> 16 & 3 == 3 and 0 < self.word(at) & 0xffff < 16
                        and self.word(at + 64) & 0xffff == self.word(at) & 0xffff)
@@ -33,22 +34,22 @@ class PlanPage:
         return word & 0xffff, ("aborted", "prepared", "proposed", "committed")[word >> 16 & 3]
 
     def step(self):
-        """Of a slow switch: so many of its steps are done, or "back, N left"."""
+        """Of a slow switch: the number of steps that are done, or "back, N left"."""
         turn = self.word(self.at + 64) >> 16 & 0xffff
         return f"back, {turn & 0x7fff} left" if turn & 0x8000 else turn
 
-    def await_step(self, last, step, limit=5):
-        """Until a slow plan after `last` has done so many steps, or is over; without a pause."""
-        end = time.monotonic() + limit
-        while time.monotonic() < end:
+    def await_step(self, last, step):
+        """Until a slow plan after `last` has done that many steps, or is over."""
+        def is_there():
             number, phase = self.plan()
-            if number != last and (phase in ("committed", "aborted") or self.step() == step):
-                return
+            return number != last and (phase in ("committed", "aborted") or self.step() == step)
+        await_that(is_there, f"step {step}", pause=0)
 
-    def await_phase(self, last, phase, limit=5):
-        """Until a plan after `last` has come so far, or further; without a pause."""
-        order, end = ("prepared", "proposed", "committed", "aborted"), time.monotonic() + limit
-        while time.monotonic() < end:
+    def await_phase(self, last, phase):
+        """Until a plan after `last` has come that far, or further."""
+        order = ("prepared", "proposed", "committed", "aborted")
+
+        def is_there():
             number, now = self.plan()
-            if number != last and order.index(now) >= order.index(phase):
-                return
+            return number != last and order.index(now) >= order.index(phase)
+        await_that(is_there, phase, pause=0)

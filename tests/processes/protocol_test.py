@@ -11,7 +11,7 @@ import unittest
 
 import jsonschema
 
-from system import UNITS, Client, System, await_that
+from system import RTPUS, TOO_FAST, Client, System, await_that
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(SOURCE / "tests/install"))
@@ -22,7 +22,7 @@ SCHEMA = json.loads((FORMATS / "control.schema.json").read_text())
 BASE = "file:///control.schema.json"
 STORE = {BASE: SCHEMA, "file:///run.schema.json": json.loads((FORMATS / "run.schema.json").read_text())}
 METHODS = [name.removesuffix("_parameters") for name in SCHEMA["definitions"] if name.endswith("_parameters")]
-BAD_REQUEST, NO_METHOD, BAD_PARAMETERS, TOO_FAST = -32600, -32601, -32602, -32003
+BAD_REQUEST, NO_METHOD, BAD_PARAMETERS = -32600, -32601, -32602
 
 APPLICATION = """
 subsystem: subject
@@ -48,8 +48,8 @@ start: all
 """
 
 
-# One unit that can be held up in its cycle, one whose end takes a second.
-SLOW = UNITS + """
+# One rtpu whose task can hang in its cycle, one whose end takes a second.
+SLOW = RTPUS + """
 tasks:
   steady: {component: t_recorder, rtpu: first, rate: 100 Hz, alias: {x: level}, constants: {slow: 1000000000 ns}}
   stuck:
@@ -197,19 +197,11 @@ class Protocol(unittest.TestCase):
         self.assertEqual(self.client.exchange("why", variable="y_victim")["chain"][0]["verdict"], "producer-error")
         self.read_all()
         self.system.kill(self.system.pids()["first"])
-        await_that(lambda: self.client.exchange("status")["rtpus"][0]["restarts"] == 1, 10, "a restart")
+        await_that(lambda: self.client.exchange("status")["rtpus"][0]["restarts"] == 1, "a restart")
         self.system.await_state("steady", "ON")
         self.read_all()
         kinds = {event["kind"] for event in self.client.exchange("events")["events"]}
         self.assertLessEqual({"manager-started", "started", "state", "fault", "rtpu-ended", "rtpu-restarted"}, kinds)
-
-    def switched(self, configuration):
-        """As System.switch()."""
-        for _ in range(5):
-            receipt = self.client.exchange("switch", configuration=configuration)
-            if receipt.get("reason") != "late":
-                break
-        return receipt
 
     def test_acts_and_their_refusals_are_within_the_schema(self):
         self.assertIsNone(self.client.exchange("signal", signal="off", tasks=["stedy"]))
@@ -223,21 +215,23 @@ class Protocol(unittest.TestCase):
         self.assertEqual(self.client.exchange("set", values={"level": 4})["values"]["level"]["value"], 4)
         for wrong in ({"level": "3 m"}, {"level": [1, 2]}, {"count": 1}, {"lvel": 1}):
             self.assertIsNone(self.client.exchange("set", values=wrong))
-        self.assertEqual(self.switched("less")["end"], "done")
-        self.assertEqual(self.client.exchange("plan", configuration="all")["end"], "possible")
+        self.assertIn("end", self.client.exchange("switch", configuration="less"))
+        self.assertIn("end", self.client.exchange("plan", configuration="all"))
         self.assertIsNone(self.client.exchange("plan", configuration="al"))
         self.assertIsNone(self.client.exchange("cancel"))
         self.assertGreaterEqual(len(self.client.exchange("receipts")["receipts"]), 1)
-        self.assertEqual(self.switched("all")["end"], "done")
         self.assertIsNotNone(self.client.exchange("flag", up=True))
         self.assertEqual(self.client.exchange("status")["flag"], {"up": True, "by": ["operator"]})
         self.assertIsNotNone(self.client.exchange("flag", up=False))
         for text in ("no json", "[]", "7", '{"jsonrpc":"2.0","id":1,"method":"helo"}'):
             self.client.raw(text)
-        flood = b'{"jsonrpc":"2.0","id":1,"method":"cancel"}\n' * 400  # 100 acts a second: no machine is slow enough
-        self.client.raw(flood)
-        for _ in range(399):
-            self.client.codes.add(self.client.line().get("error", {}).get("code"))
+        flood, asked = b'{"jsonrpc":"2.0","id":1,"method":"cancel"}\n' * 100, 0
+        while -32003 not in self.client.codes:  # until they come faster than 100 acts a second
+            self.client.socket.sendall(flood)
+            asked += 100
+            for _ in range(100):
+                self.client.codes.add(self.client.line().get("error", {}).get("code"))
+            self.assertLess(asked, 100_000, "no act came too fast")
         self.client.raw("[" * 33)
         self.assertLessEqual({-32700, -32600, -32601, -32602, -32000, -32001, -32003, -32005}, self.client.codes)
 
@@ -259,7 +253,7 @@ class Protocol(unittest.TestCase):
             follows[of] = note["first"] + note["lost"] + len(numbered)
             rows += len(note.get("rows", []))
 
-    def test_a_request_is_taken_exactly_when_it_is_within_the_schema(self):
+    def test_a_request_is_accepted_exactly_when_it_is_within_the_schema(self):
         judged = refused = 0
         for request in almost_right():
             if ends(request):
@@ -278,38 +272,38 @@ class Protocol(unittest.TestCase):
         self.assertGreater(refused, 200)
         self.assertGreater(judged - refused, 30)
 
-    def test_a_unit_that_does_not_answer_is_named_with_what_it_does(self):
+    def test_an_rtpu_that_does_not_answer_is_named_with_what_it_does(self):
         with System(SLOW) as system:
             client = Judged(system.socket)
             self.addCleanup(client.close)
             system.arm()
-            system.await_running("second", "stuck.cycle")
+            await_that(system.armed.read_text, "the method that hangs")
             self.assertIsNone(client.exchange("signal", signal="off", tasks=["stuck"]))
             system.disarm()
             self.assertEqual(client.faults, [])
-            # It has 2 s for an answer, and for a method before it ends itself: which is over first is open.
+            # The rtpu has 2 s for an answer, and 2 s for a method before it is ended: either may be over first.
             self.assertIn(client.last["error"], (
                 {"code": -32006, "message": "no answer from rtpu second",
                  "data": {"rtpu": "second", "running": "stuck.cycle"}},
                 {"code": -32000, "message": "second was ended: stuck.cycle did not return within 2 s",
                  "data": {"kind": "ended", "where": "stuck"}}))
 
-    def test_while_everything_ends_no_signal_is_taken(self):
+    def test_while_everything_ends_no_signal_is_accepted(self):
         with System(SLOW) as system:
             client, other = Judged(system.socket), Judged(system.socket)
             self.addCleanup(client.close)
             self.addCleanup(other.close)
-            await_that(lambda: "second: WARNING: not real time" in system.said(), 5, "the face of the run")
+            await_that(lambda: "second: WARNING: not real time" in system.said(), "the printing process")
             self.assertEqual(client.exchange("end"), {})
-            await_that(lambda: other.exchange("status")["ending"], 5, "the end")
+            await_that(lambda: other.exchange("status")["ending"], "the end")
             self.assertIsNone(other.exchange("signal", signal="on", tasks=["steady"]))
             self.assertEqual(other.last["error"], {"code": -32007, "message": "the subsystem is ending"})
             self.assertEqual(client.faults + other.faults, [])
-            self.assertEqual(system.process.wait(15), 0, system.said())
+            self.assertEqual(system.wait(), 0, system.said())
 
     def test_end_is_the_last_answer(self):
         self.assertEqual(self.client.exchange("end", code=3), {})
-        self.assertEqual(self.system.process.wait(15), 3)
+        self.assertEqual(self.system.wait(), 3)
 
 
 class Schema(unittest.TestCase):
@@ -329,7 +323,7 @@ class Schema(unittest.TestCase):
             for parameter in SCHEMA["definitions"][f"{method}_parameters"].get("properties", {}):
                 self.assertIn(f'"{parameter}"', told[method], method)
 
-    def test_whatever_is_missing_is_noticed(self):
+    def test_the_schema_misses_each_key_that_is_left_out(self):
         with System(APPLICATION) as system:
             client = Judged(system.socket)
             for method in ("hello", "status", "describe", "get", "events", "why", "library"):

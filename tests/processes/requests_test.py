@@ -1,21 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Requests and reactions of tasks over real processes: carried out by the manager, or by the one that follows it; and
 `safe_when`, which holds a switch up."""
-import os
-import random
 import signal
-import sys
-import threading
 import time
 import unittest
 
-from system import Client, Refused, System, UNITS, await_that
+from descriptions import mixed, preemptive
+from system import RTPUS, System, await_that
 
-ROUNDS = int(os.environ.get("CHIMERA_ROUNDS", "1"))
-SEED = int(os.environ.get("CHIMERA_SEED", str(random.SystemRandom().randrange(1 << 32))))
-
-# `asker` of the second unit asks for what the operator variable `wish` says.
-TEXT = UNITS + """
+# `asker` of the second rtpu asks for what the operator variable `wish` says.
+TEXT = RTPUS + """
 tasks:
   steady: {component: t_counter, rtpu: first, rate: 100 Hz}
   asker: {component: t_asker, rtpu: second, rate: 100 Hz, constants: {first: low, second: high}}
@@ -29,12 +23,10 @@ configurations:
 start: low
 """
 LISTS = TEXT.replace("{first: low, second: high}", "{first: --on one, second: --on two --off one}")
-PREEMPTIVE = TEXT.replace("policy: edf}", "policy: edf, executor: preemptive}")
-MIXED = TEXT.replace("cpu: 1, policy: edf}", "cpu: 1, policy: edf, executor: preemptive}")
 SETS = {"low": {"steady", "asker", "one", "reader"}, "high": {"steady", "asker", "two", "reader"}}
 
-# The task that fails is left behind, in the other unit than its reader.
-FAILS = UNITS + """
+# The task that fails is left behind, in another rtpu than its reader.
+FAILS = RTPUS + """
 tasks:
   steady: {component: t_counter, rtpu: first, rate: 100 Hz, alias: {count: counted}}
   thrower:
@@ -50,9 +42,8 @@ configurations:
 start: all
 """
 
-
-# The task of the second unit uses up to 9 ms of each 10.
-LATE = UNITS + """
+# The task of the second rtpu uses up to 9 ms of each 10.
+LATE = RTPUS + """
 tasks:
   steady: {component: t_counter, rtpu: first, rate: 100 Hz}
   bad: {component: t_overrun, rtpu: second, rate: 100 Hz, constants: {allowed: 3000000 ns}, REACTION}
@@ -63,158 +54,84 @@ start: all
 """
 
 
-def on(system):
-    return {task["task"] for task in system.call("status")["tasks"] if task["state"] == "ON"}
-
-
 def set_to(system, **values):
     system.call("set", values=values)
 
 
-def told(system, kind="switch"):
-    return [event["text"] for event in system.events() if event["kind"] == kind]
-
-
 class Requests(unittest.TestCase):
-    def await_set(self, system, name, limit=10):
-        await_that(lambda: on(system) == SETS[name], limit, f"{name}; {on(system)}; {told(system)}")
+    def await_on(self, system, tasks):
+        await_that(lambda: system.on() == tasks, lambda: f"{tasks}: {system.told()}")
 
-    def await_less(self, system):
-        try:
-            await_that(lambda: on(system) == {"steady"}, 10, "less")
-        except AssertionError as failure:
-            states = [(task["task"], task["state"]) for task in system.call("status")["tasks"]]
-            events = [f"{event['kind']}: {event['text']}" for event in system.events()]
-            raise AssertionError(f"{failure}: {states}, {system.call('receipts')['receipts']}, {events}") from None
+    def ends(self, system, *keys):
+        return [tuple(one[key] for key in keys) for one in system.call("receipts")["receipts"]]
 
     def test_a_task_asks_and_is_named(self):
-        for text in (TEXT, MIXED, PREEMPTIVE, LISTS):
+        for text in (TEXT, mixed(TEXT), preemptive(TEXT), LISTS):
             with self.subTest(preemptive=text.count("executor: preemptive"), lists=text.count("--on")):
                 self.a_task_asks_and_is_named(text)
 
     def a_task_asks_and_is_named(self, text):
         with System(text) as system:
             set_to(system, wish=2)
-            self.await_set(system, "high")
+            self.await_on(system, SETS["high"])
             set_to(system, wish=1)
-            self.await_set(system, "low")
-            time.sleep(0.3)  # thirty cycles that ask for what is in force
-            lines = told(system)
+            self.await_on(system, SETS["low"])
+            system.await_cycles("asker", 30)  # all of them ask for what is in force
+            lines = system.texts("switch")
             self.assertEqual(sum("asked for by task asker: begun" in line for line in lines), 2, lines)
             self.assertTrue(any("by task asker from 'low' to 'high'" in line for line in lines), lines)
-            self.assertEqual(system.call("get", variables=["refused"])["values"]["refused"]["value"], 0)
-            receipts = await_that(lambda: (filed := system.call("receipts")["receipts"])[1:] and filed, 5,
-                                  "two receipts")
-            self.assertEqual([(one["to"], one["end"], one["asked_by"]) for one in receipts],
-                             [("high", "done", {"task": "asker"}), ("low", "done", {"task": "asker"})])
+            self.assertEqual(system.value("refused"), 0)
+            await_that(lambda: self.ends(system, "to", "end", "asked_by") == [
+                ("high", "done", {"task": "asker"}), ("low", "done", {"task": "asker"})], system.told)
 
     def test_tasks_that_are_no_legal_set_are_refused_by_name(self):
         with System(LISTS.replace("--on two --off one", "--off one two")) as system:
             set_to(system, wish=2)
-            await_that(lambda: told(system), 5, "the refusal")
-            self.assertEqual(told(system)[0], "switch --off one two, asked for by task asker, is refused: "
-                                              "level would have no producer")
+            event = system.await_event(0, "switch")
+            self.assertEqual(event["text"], "switch --off one two, asked for by task asker, is refused: "
+                                            "level would have no producer")
             set_to(system, wish=1)  # in force
-            def is_silent():  # a refusal is told ten times a second
-                n = len(told(system))
-                time.sleep(0.5)
-                return len(told(system)) == n
-            await_that(is_silent, 5, "the end of the refusals")
-            self.assertEqual((on(system), system.call("receipts")["receipts"]), (SETS["low"], []))
+            system.await_cycles("asker", 50)
+            self.assertEqual((system.on(), self.ends(system, "to")), (SETS["low"], []))
 
     def test_safe_when_holds_it_up_and_is_told_by_name(self):
         with System(TEXT) as system:
             set_to(system, given=9)
-            await_that(lambda: system.call("get", variables=["seen"])["values"]["seen"]["value"] == 9, 5, "seen")
-            for _ in range(3):  # a unit that stalls at the deadline gives no reason
-                receipt = system.call("switch", configuration="high", wait_ms=300)
-                if receipt["reason"] == "not-safe":
-                    break
+            system.await_value("seen", 9)
+            receipt = system.call("switch", configuration="high", wait_ms=300)
             self.assertEqual((receipt["end"], receipt["reason"]), ("aborted", "not-safe"))
             self.assertEqual(receipt["why"], "'seen' is 9, and safe_when of 'high' asks for seen < 8")
-            self.assertEqual(on(system), SETS["low"])
-            answers = []
-
-            def ask():
-                client = Client(system.socket, 30)
-                answers.append(client.call("switch", configuration="high"))
-                client.close()
-
-            asking = threading.Thread(target=ask)
-            asking.start()
-            time.sleep(0.3)
-            self.assertEqual(on(system), SETS["low"])
+            self.assertEqual(system.on(), SETS["low"])
+            asking = system.ask("switch", configuration="high")
+            await_that(lambda: system.call("plan", configuration="high")["reason"] == "under-way", "the switch")
             set_to(system, given=5)
-            asking.join(10)
-            self.assertEqual(answers[0]["end"], "done", answers)
-            self.assertEqual(on(system), SETS["high"])
-
-    def test_a_wish_waits_for_the_next_manager(self):
-        """The manager is killed around the instant at which a task begins to ask."""
-        random.seed(SEED)
-        print(f"seed {SEED}", file=sys.stderr)
-        with System(TEXT) as system:
-            present = "low"
-            for _ in range(ROUNDS):
-                target = "high" if present == "low" else "low"
-                pid = system.pids()["manager"]
-                delay = random.random() * 0.03
-                killer = threading.Thread(target=lambda: (time.sleep(delay), system.kill(pid)))
-                killer.start()
-                try:
-                    set_to(system, wish=2 if target == "high" else 1)
-                except (Refused, OSError, ConnectionError):  # killed before it took it: ask again
-                    killer.join()
-                    await_that(lambda: self.answers(system), 10, "a manager")
-                    set_to(system, wish=2 if target == "high" else 1)
-                killer.join()
-                await_that(lambda: self.answers(system), 10, "a manager")
-                self.await_set(system, target, 15)
-                present = target
-                time.sleep(4)  # three deaths in 10 s and it is given up
-
-    @staticmethod
-    def answers(system):
-        try:
-            system.disconnect()
-            return bool(system.call("status"))
-        except (Refused, OSError, ConnectionError):
-            return False
+            self.assertEqual(asking.answer()["end"], "done")
+            self.assertEqual(system.on(), SETS["high"])
 
     def test_on_fault_leads_to_another_configuration(self):
-        for text in (FAILS, FAILS.replace("cpu: 1, policy: edf}", "cpu: 1, policy: edf, executor: preemptive}")):
-            with self.subTest(preemptive=text.count("executor: preemptive")):
-                self.on_fault_leads_to_another_configuration(text)
-
-    def on_fault_leads_to_another_configuration(self, text):
-        with System(text.replace("REACTION", "{switch: less}")) as system:
-            self.await_less(system)
-            self.assertEqual(system.state("thrower"), "ERROR")
-            lines = await_that(lambda: [line for line in told(system) if "on_fault of thrower" in line and
-                                        "to 'less' after" in line], 5, f"a receipt; {told(system)}")
-            self.assertEqual(len(lines), 1)
+        for text in (FAILS, mixed(FAILS)):
+            with self.subTest(preemptive=text.count("executor: preemptive")), \
+                    System(text.replace("REACTION", "{switch: less}")) as system:
+                self.await_on(system, {"steady"})
+                self.assertEqual(system.state("thrower"), "ERROR")
+                self.assertIn("on_fault of thrower", system.await_event(0, "switch", "to 'less' after")["text"])
 
     def test_on_miss_and_on_overrun_lead_to_another_configuration(self):
         reactions = {"on_miss": "deadline: 1 ms, on_miss: {switch: less}",
                      "on_overrun": "budget: 500 us, on_overrun: {switch: less}"}
-        for reaction, executor in (("on_miss", "preemptive"), ("on_overrun", "executive")):
-            with self.subTest(reaction=reaction):
-                self.leads_to_another_configuration(reaction, LATE.replace("REACTION", reactions[reaction]).replace(
-                    "cpu: 1, policy: edf}", f"cpu: 1, policy: edf, executor: {executor}}}"))
-
-    def leads_to_another_configuration(self, reaction, text):
-        with System(text) as system:
-            self.await_less(system)
-            receipts = await_that(lambda: system.call("receipts")["receipts"], 5, "a receipt")
-            self.assertEqual([(one["to"], one["end"], one["asked_by"]) for one in receipts],
-                             [("less", "done", {"reaction": reaction, "task": "bad"})])
-            self.assertEqual(system.state("bad"), "OFF")
+        for reaction, form in (("on_miss", mixed), ("on_overrun", str)):
+            with self.subTest(reaction), System(form(LATE.replace("REACTION", reactions[reaction]))) as system:
+                self.await_on(system, {"steady"})
+                await_that(lambda: self.ends(system, "to"), "a receipt")
+                self.assertEqual(self.ends(system, "to", "end", "asked_by"),
+                                 [("less", "done", {"reaction": reaction, "task": "bad"})])
+                self.assertEqual(system.state("bad"), "OFF")
 
     def test_a_reaction_asks_again_for_the_same_although_the_manager_is_dead(self):
         """The first fault was answered by the manager that dies; the second one comes before its successor."""
         with System(FAILS.replace("REACTION", "{switch: less}")) as system:
-            self.await_less(system)
-            await_that(lambda: system.call("receipts")["receipts"], 5, "its receipt: the switch is over")
+            self.await_on(system, {"steady"})
+            await_that(lambda: self.ends(system, "to"), "its receipt: the switch is over")
             for what in ("kill", "spawn"):  # made anew: it fails in its cycle 100 again
                 system.signal(what, "thrower")
             self.assertEqual(system.call("switch", configuration="all")["end"], "done")
@@ -222,26 +139,25 @@ class Requests(unittest.TestCase):
             self.assertTrue(system.kill(keeper, signal.SIGSTOP))  # starts no successor
             try:
                 self.assertTrue(system.kill(manager))
-                time.sleep(1.5)
+                system.disconnect()
+                time.sleep(1.5)  # the time of the second fault, which no living process reports; later is right, too
             finally:
                 self.assertTrue(system.kill(keeper, signal.SIGCONT))
-            await_that(lambda: self.answers(system), 10, "a manager")
-            await_that(lambda: on(system) == {"steady"}, 10, "less, once more")
-            ends = lambda: [(one["to"], one["end"]) for one in system.call("receipts")["receipts"]]
-            await_that(lambda: ends() == [("less", "done"), ("all", "done"), ("less", "done")], 5,
-                       f"a receipt of each, filed after the tasks are seen OFF; {ends()}")
+            await_that(lambda: self.ends(system, "to", "end") == [("less", "done"), ("all", "done"), ("less", "done")],
+                       system.told)
+            self.assertEqual(system.on(), {"steady"})
 
-    def test_on_fault_flag_is_seen_in_the_other_unit_until_it_is_cleared(self):
+    def test_on_fault_flag_is_seen_in_the_other_rtpu_until_it_is_cleared(self):
         with System(FAILS.replace("REACTION", "flag")) as system:
             system.await_state("thrower", "ERROR")
-            await_that(lambda: system.call("status")["flag"]["up"], 5, "the flag")
-            self.assertEqual(on(system), {"steady", "beside"})
+            await_that(lambda: system.call("status")["flag"]["up"], "the flag")
+            self.assertEqual(system.on(), {"steady", "beside"})
             system.signal("clear", "thrower")
-            await_that(lambda: not system.call("status")["flag"]["up"], 5, "the flag down")
+            await_that(lambda: not system.call("status")["flag"]["up"], "the flag down")
 
-    def test_on_fault_stop_turns_the_unit_off(self):
+    def test_on_fault_stop_turns_the_rtpu_off(self):
         with System(FAILS.replace("REACTION", "stop")) as system:
-            await_that(lambda: on(system) == {"steady"}, 10, "the other unit alone")
+            self.await_on(system, {"steady"})
             self.assertEqual((system.state("thrower"), system.state("beside")), ("ERROR", "OFF"))
 
 

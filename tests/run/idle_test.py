@@ -9,7 +9,7 @@ import os
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "processes"))
-from system import CHIMERA, Client, Refused, await_that  # noqa: E402
+from system import CHIMERA, HANG, Client, Refused, await_that  # noqa: E402
 
 
 class Idle(unittest.TestCase):
@@ -20,18 +20,18 @@ class Idle(unittest.TestCase):
         self.process = subprocess.Popen([str(CHIMERA), "idle"], env=self.environment, stdin=subprocess.DEVNULL,
                                         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         self.addCleanup(lambda: self.process.poll() is None and (self.process.kill(), self.process.communicate()))
-        self.client = await_that(self.connected, 10, "the socket")
+        self.client = await_that(self.connected, "the socket")
 
     def connected(self):
         try:
             return Client(self.socket)
-        except OSError:  # it is not there, or nobody listens yet
+        except OSError:  # it is not there, or no process listens yet
             return None
 
     def tearDown(self):
         self.client.close()
         self.process.send_signal(signal.SIGINT)
-        self.process.communicate(timeout=10)
+        self.process.communicate(timeout=HANG)
         self.assertFalse(self.socket.exists())
         self.place.cleanup()
 
@@ -52,7 +52,8 @@ class Idle(unittest.TestCase):
         self.assertIn("no task 'pid'", str(refused.exception))
 
     def test_a_second_one_of_its_name_is_refused(self):
-        second = subprocess.run([str(CHIMERA), "idle"], env=self.environment, capture_output=True, text=True)
+        second = subprocess.run([str(CHIMERA), "idle"], env=self.environment, capture_output=True, text=True,
+                                timeout=HANG)
         self.assertEqual(second.returncode, 1)
         self.assertIn("a subsystem 'idle' runs already", second.stderr)
 

@@ -29,17 +29,14 @@ class Trace(unittest.TestCase):
         text = APPLICATION.replace("POLICY", policy).replace("REACTION", reaction)
         with System(text, ("--for", "0.4 s", "--trace", "trace.json", "--json", "--may-miss", "c", *arguments),
                     wait=False) as system:
-            code = system.process.wait(30)
-            if "is in use by another real-time subsystem" in system.said():
-                self.skipTest("not judged: somebody else has the CPU")
-            self.assertEqual(code, 0, system.said())
-            self.has_levels = "--virtual" in arguments or "Real-time OK" in system.said()
+            self.assertEqual(system.wait(), 0, system.said())
             trace = json.loads((system.place / "trace.json").read_text())
             tasks = {t["task"]: t for t in json.loads(system.said())["tasks"]}
         self.assertEqual(trace["otherData"]["lost_records"], 0)
         return [e for e in trace["traceEvents"] if e["ph"] != "M"], tasks
 
-    def judge(self, events, tasks):
+    def judge(self, events, tasks, is_virtual):
+        """In real time the machine decides when a job runs, and without real-time rights how many run at once."""
         self.assertEqual([e["args"]["ns"] for e in events], sorted(e["args"]["ns"] for e in events))
         by = collections.defaultdict(list)
         for event in events:
@@ -47,7 +44,7 @@ class Trace(unittest.TestCase):
         slices = [(e["args"]["ns"], e["args"]["ns"] + e["args"]["dur_ns"], e["tid"]) for e in events
                   if e["name"] == "cycle"]
         for (_, end, _), (start, _, _) in zip(slices, slices[1:]):
-            self.assertTrue(end <= start or not self.has_levels, f"two jobs on one processor: {end} {start}")
+            self.assertTrue(end <= start or not is_virtual, f"two jobs on one processor: {end} {start}")
         for name, task in tasks.items():
             releases = {args["cycle"]: args["ns"] for args in by["release", name]}
             self.assertTrue(releases)
@@ -55,11 +52,11 @@ class Trace(unittest.TestCase):
                              {r["cycle"]: r["ns"] + r["deadline_ns"] for r in by["release", name]})
             ends = {end for _, end, tid in slices if "abc"[tid - 1] == name}
             for preempted in by["preempt", name]:
-                self.assertIn(preempted["ns"], ends, "the processor is taken from whoever has it")
+                self.assertIn(preempted["ns"], ends, "the processor is taken from the job that has it")
             self.assertEqual(len(by["hang", name]), 0)
             first = min(releases.values())
             self.assertTrue(all(start >= first for start, _, tid in slices if "abc"[tid - 1] == name))
-        self.assertGreater(tasks["b"]["preempted"], 0)
+        self.assertTrue(tasks["b"]["preempted"] > 0 or not is_virtual)
         return by
 
     def all_is_told(self, by, tasks):
@@ -73,12 +70,12 @@ class Trace(unittest.TestCase):
         for policy in ("rm", "edf", "muf"):
             with self.subTest(policy):
                 events, tasks = self.traced(policy, "continue", "--virtual")
-                by = self.judge(events, tasks)
+                by = self.judge(events, tasks, True)
                 self.all_is_told(by, tasks)
                 self.assertEqual(len(by["overrun", "c"]), tasks["c"]["overrun"])
                 self.assertEqual(by["overrun", "c"][0]["used_ns"], 12_000_000)
                 events, tasks = self.traced(policy, "demote", "--virtual")
-                by = self.judge(events, tasks)
+                by = self.judge(events, tasks, True)
                 self.all_is_told(by, tasks)
                 self.assertEqual(len(by["overrun", "c"]), tasks["c"]["demoted"])
 
@@ -86,7 +83,7 @@ class Trace(unittest.TestCase):
         for policy in ("rm", "edf"):
             with self.subTest(policy):
                 events, tasks = self.traced(policy, "demote", "--priority", "40")
-                by = self.judge(events, tasks)
+                by = self.judge(events, tasks, False)
                 for name, task in tasks.items():  # from the first cycle on, and so all that the profile counts
                     releases = by["release", name]
                     self.assertEqual(releases[0]["cycle"], 0, name)

@@ -112,7 +112,11 @@ class SteppedSubsystem {
   Json result(const std::string& method, const Json& parameters = Json::object()) {
     const control::RpcResponse answer = call(method, parameters);
     EXPECT_TRUE(answer.is_good()) << method << ": " << answer.message;
-    if (answer.text) return Json::parse(*answer.text);
+    std::string text = answer.text ? *answer.text : "";
+    if (answer.pieces)
+      while (answer.pieces->append_to(text)) {
+      }
+    if (!text.empty()) return Json::parse(text);
     return answer.result ? *answer.result : Json();
   }
 
@@ -183,7 +187,7 @@ class SteppedSubsystem {
   }
   /// The value of a variable of one number, as `get` answers it.
   double value(const std::string& variable) {
-    const Json values = result("get", {{"variables", {variable}}})["values"];
+    const Json values = result("get", {{"variables", Json::array({variable})}})["values"];
     return values[variable]["value"].as_double();
   }
   void set(const std::string& variable, double value) { (void)result("set", {{"values", {{variable, value}}}}); }

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two tasks of two rtpus open one device that accepts one user: in a switch, and as primary and standby.
+#include <gtest/gtest.h>
+
+#include "tests/stepped/stepped_kills.h"
+
+namespace chimera::manager {
+namespace {
+
+const std::string kDevice = R"(subsystem: subject
+rtpus: {first: {cpu: 0, policy: edf}, second: {cpu: 1, policy: edf}}
+tasks:
+  hand: {component: t_lock, rtpu: first, rate: 1 kHz, resources: {device: LOCK}, constants: {value: 1}}
+  drill: {component: t_lock, rtpu: second, rate: 1 kHz, resources: {device: LOCK}, constants: {value: 2, late: 3}}
+  user: {component: gain, rtpu: second, rate: 1 kHz, alias: {x: y, y: seen}, constants: {k: 1}}
+)";
+const std::string kSwitch = "configurations: {with_hand: [hand, user], with_drill: [drill, user]}\nstart: with_hand\n";
+const std::string kWithHand = "hand user ", kWithDrill = "drill user ";
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, text.npos) << what;
+  return at == text.npos ? text : text.replace(at, what.size(), with);
+}
+std::string with_device(std::string text) {
+  const std::string lock = ::testing::TempDir() + "chimera_" + std::to_string(::getpid()) + ".lock";
+  return replaced(replaced(std::move(text), "LOCK", lock), "LOCK", lock);
+}
+std::string with_standby(const std::string& text) {
+  return with_device(replaced(text, "late: 3}", "late: 3}, standby_for: hand")) +
+         "configurations: {run: [hand, user]}\n";
+}
+bool sees_hand(SteppedSubsystem& system) { return system.value("seen") == 1; }
+bool sees_drill(SteppedSubsystem& system) { return system.value("seen") == 2; }
+/// No task found the device with another user.
+bool had_one_user(SteppedSubsystem& system) { return system.events("fault").find("another user") == std::string::npos; }
+
+TEST(SteppedSameDevice, IsClosedBeforeItIsOpenedInASwitch) {
+  SteppedSubsystem system(with_device(kDevice + kSwitch));
+  ASSERT_TRUE(system.until_started());
+  EXPECT_EQ(system.state("drill"), State::kNotCreated);
+  const Json plan = system.result("plan", {{"configuration", "with_drill"}});
+  EXPECT_EQ(plan["way"], "slow");
+  EXPECT_EQ(plan["slow_because"], Json::array({"resource"}));
+  EXPECT_EQ(plan["slow_why"], "task 'drill' is NOT-CREATED: task 'hand' has its resource");
+  for (const char* target : {"with_drill", "with_hand", "with_drill"}) {
+    const Json receipt = system.result("switch", {{"configuration", target}});
+    EXPECT_EQ(receipt["end"], "done") << receipt;
+    EXPECT_EQ(receipt["slow_because"], Json::array({"resource"}));
+    EXPECT_GT(whole_at(receipt, "flag_ns"), 0);
+    const bool is_drill = receipt["to"] == "with_drill";
+    EXPECT_EQ(system.on(), is_drill ? kWithDrill : kWithHand);
+    EXPECT_EQ(system.state(is_drill ? "hand" : "drill"), State::kNotCreated);
+    EXPECT_TRUE(system.until([&] { return is_drill ? sees_drill(system) : sees_hand(system); }));
+  }
+  const control::RpcResponse refused =
+      system.call("signal", {{"signal", "spawn"}, {"tasks", Json::array({"hand"})}});
+  EXPECT_NE(refused.message.find("hand has the resource '"), std::string::npos) << refused.message;
+  EXPECT_NE(refused.message.find("of drill, which is ON"), std::string::npos) << refused.message;
+  EXPECT_NE(refused.message.find("chimera switch with_hand"), std::string::npos) << refused.message;
+  EXPECT_TRUE(had_one_user(system));
+}
+
+TEST(SteppedSameDevice, TheStartWaitsForADeviceThatIsNotReady) {
+  SteppedSubsystem system(with_device(replaced(kDevice, "constants: {value: 1}", "constants: {value: 1, late: 20}") + kSwitch));
+  EXPECT_TRUE(system.until_started());
+  EXPECT_EQ(system.on(), kWithHand);
+}
+
+TEST(SteppedSameDevice, AStandbyOpensItWhenTheProcessOfThePrimaryIsDead) {
+  SteppedSubsystem system(with_standby(kDevice));
+  ASSERT_TRUE(system.until_started());
+  ASSERT_TRUE(system.until([&] { return sees_hand(system); }));
+  system.die("first");
+  EXPECT_TRUE(system.until([&] { return system.on() == kWithDrill && sees_drill(system); })) << system.on();
+  EXPECT_TRUE(system.until([&] { return system.rtpu("first").segment.block.head().incarnation == 2; }));
+  system.run(milliseconds(300));
+  EXPECT_EQ(system.on(), kWithDrill);
+  EXPECT_EQ(system.state("hand"), State::kNotCreated);
+  EXPECT_EQ(system.result("switch", {{"configuration", "run"}})["end"], "done");
+  EXPECT_TRUE(system.until([&] { return sees_hand(system); }));
+  EXPECT_TRUE(had_one_user(system)) << system.events("fault");
+}
+
+TEST(SteppedSameDevice, AStandbyOpensItWhenThePrimaryIsInErrorAndKilled) {
+  SteppedSubsystem system(with_standby(replaced(kDevice, "constants: {value: 1}", "constants: {value: 1, fails_at: 30}")));
+  EXPECT_TRUE(system.until([&] { return system.on() == kWithDrill && sees_drill(system); })) << system.on();
+  EXPECT_EQ(system.state("hand"), State::kNotCreated);
+  EXPECT_TRUE(had_one_user(system)) << system.events("fault");
+}
+
+class SteppedSameDeviceKills : public ::testing::TestWithParam<std::vector<std::string>> {};
+
+TEST_P(SteppedSameDeviceKills, AtEveryStepOfASwitchLeaveItWithOneUser) {
+  KillsInASwitch{with_device(kDevice + kSwitch), {"with_hand", kWithHand, sees_hand},
+                 {"with_drill", kWithDrill, sees_drill}}
+      .at_every_step(GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, SteppedSameDeviceKills,
+                         ::testing::Values(std::vector<std::string>{"first"}, std::vector<std::string>{"second"},
+                                           std::vector<std::string>{"manager"}));
+
+}  // namespace
+}  // namespace chimera::manager
