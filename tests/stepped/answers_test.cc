@@ -4,7 +4,7 @@
 
 #include "tests/stepped/stepped_subsystem.h"
 
-namespace chimera::manager {
+namespace chimera::manager::answers_test {
 namespace {
 
 const std::string kTwo = R"(subsystem: subject
@@ -44,4 +44,4 @@ TEST(SteppedAnswers, RefuseSignalsWhileEverythingEnds) {
 }
 
 }  // namespace
-}  // namespace chimera::manager
+}  // namespace chimera::manager::answers_test

@@ -4,7 +4,7 @@
 
 #include "tests/stepped/stepped_subsystem.h"
 
-namespace chimera::manager {
+namespace chimera::manager::deaths_test {
 namespace {
 
 // `steady` must not notice what happens in the second rtpu.
@@ -136,4 +136,4 @@ start: all
 }
 
 }  // namespace
-}  // namespace chimera::manager
+}  // namespace chimera::manager::deaths_test

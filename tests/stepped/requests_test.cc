@@ -4,7 +4,7 @@
 
 #include "tests/stepped/stepped_subsystem.h"
 
-namespace chimera::manager {
+namespace chimera::manager::requests_test {
 namespace {
 
 // `asker` asks for what the operator variable `wish` says: 1 for `first`, 2 for `second`.
@@ -23,12 +23,6 @@ configurations:
 start: low
 )";
 const std::string kLow = "steady asker one reader ", kHigh = "steady asker two reader ";
-
-std::string replaced(std::string text, const std::string& what, const std::string& with) {
-  const std::size_t at = text.find(what);
-  EXPECT_NE(at, text.npos) << what;
-  return at == text.npos ? text : text.replace(at, what.size(), with);
-}
 
 TEST(SteppedRequests, CarryOutWhatATaskAsksForAndNameTheTask) {
   for (const std::string& lists : {std::string("{first: low, second: high}"),
@@ -179,4 +173,4 @@ TEST(SteppedReactions, StopTurnsTheTasksOfTheRtpuOff) {
 }
 
 }  // namespace
-}  // namespace chimera::manager
+}  // namespace chimera::manager::requests_test

@@ -4,7 +4,7 @@
 
 #include "tests/stepped/stepped_kills.h"
 
-namespace chimera::manager {
+namespace chimera::manager::same_device_test {
 namespace {
 
 const std::string kDevice = R"(subsystem: subject
@@ -17,11 +17,6 @@ tasks:
 const std::string kSwitch = "configurations: {with_hand: [hand, user], with_drill: [drill, user]}\nstart: with_hand\n";
 const std::string kWithHand = "hand user ", kWithDrill = "drill user ";
 
-std::string replaced(std::string text, const std::string& what, const std::string& with) {
-  const std::size_t at = text.find(what);
-  EXPECT_NE(at, text.npos) << what;
-  return at == text.npos ? text : text.replace(at, what.size(), with);
-}
 std::string with_device(std::string text) {
   const std::string lock = ::testing::TempDir() + "chimera_" + std::to_string(::getpid()) + ".lock";
   return replaced(replaced(std::move(text), "LOCK", lock), "LOCK", lock);
@@ -102,4 +97,4 @@ INSTANTIATE_TEST_SUITE_P(Of, SteppedSameDeviceKills,
                                            std::vector<std::string>{"manager"}));
 
 }  // namespace
-}  // namespace chimera::manager
+}  // namespace chimera::manager::same_device_test

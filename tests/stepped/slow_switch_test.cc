@@ -4,7 +4,7 @@
 
 #include "tests/stepped/stepped_kills.h"
 
-namespace chimera::manager {
+namespace chimera::manager::slow_switch_test {
 namespace {
 
 const std::string kSlow = R"(subsystem: subject
@@ -63,4 +63,4 @@ INSTANTIATE_TEST_SUITE_P(Of, SteppedSlowSwitchKills,
                                            std::vector<std::string>{"manager"}));
 
 }  // namespace
-}  // namespace chimera::manager
+}  // namespace chimera::manager::slow_switch_test

@@ -4,7 +4,7 @@
 
 #include "tests/stepped/stepped_subsystem.h"
 
-namespace chimera::manager {
+namespace chimera::manager::standby_test {
 namespace {
 
 // `wanted` comes from a task of the first rtpu or from its standby in the second one; `user` reads it in the second.
@@ -26,8 +26,7 @@ class SteppedStandby : public ::testing::Test {
     return system.until([&] { return system.value("seen") == value; }, seconds(5));
   }
   static std::string with(const std::string& what, const std::string& instead) {
-    std::string text = kStandby;
-    return text.replace(text.find(what), what.size(), instead);
+    return replaced(kStandby, what, instead);
   }
   static void kill(SteppedSubsystem& system, const std::string& name) {
     if (name == "manager") system.kill_manager();
@@ -195,4 +194,4 @@ TEST_F(SteppedStandby, ExactlyOneIsOnWhicheverTwoProcessesDie) {
 }
 
 }  // namespace
-}  // namespace chimera::manager
+}  // namespace chimera::manager::standby_test

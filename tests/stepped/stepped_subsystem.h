@@ -26,6 +26,13 @@
 
 namespace chimera::manager {
 
+/// `text` with the first `what` replaced; `what` must occur.
+inline std::string replaced(std::string text, const std::string& what, const std::string& with) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, text.npos) << what;
+  return at == text.npos ? text : text.replace(at, what.size(), with);
+}
+
 /// The manager reads the clock that this object holds, until the object is destroyed.
 class SteppedClock {
  public:
@@ -112,6 +119,9 @@ class SteppedSubsystem {
   Json result(const std::string& method, const Json& parameters = Json::object()) {
     const control::RpcResponse answer = call(method, parameters);
     EXPECT_TRUE(answer.is_good()) << method << ": " << answer.message;
+    return result_of(answer);
+  }
+  static Json result_of(const control::RpcResponse& answer) {
     std::string text = answer.text ? *answer.text : "";
     if (answer.pieces)
       while (answer.pieces->append_to(text)) {

@@ -4,7 +4,7 @@
 
 #include "tests/stepped/stepped_kills.h"
 
-namespace chimera::manager {
+namespace chimera::manager::switch_test {
 namespace {
 
 // One variable, `wanted`, by a task of the first rtpu or by one of the second; both rtpus read it.
@@ -168,4 +168,4 @@ INSTANTIATE_TEST_SUITE_P(Of, SteppedSwitchKills,
                                            std::vector<std::string>{"second", "manager"}));
 
 }  // namespace
-}  // namespace chimera::manager
+}  // namespace chimera::manager::switch_test
