@@ -172,7 +172,7 @@ TEST(Schedule, ItsAdviceIsTrue) {
     std::vector<Line> scaled = lines;
     for (Line& line : scaled) line.budget_us = static_cast<int>(line.budget_us * scale);
     const Json other = analysed(description(rtpus, scaled))["sets"][0]["cpus"][0];
-    EXPECT_TRUE(other["fits"]) << scale << description(rtpus, lines);
+    EXPECT_TRUE(other["fits"].as_bool()) << scale << description(rtpus, lines);
     EXPECT_EQ(scale >= 1, said["sets"][0]["cpus"][0]["fits"]) << scale;
   }
   for (const char* kind : {"executor", "rate_hz", "rtpu", "criticality", "lower"}) EXPECT_GT(tried[kind], 0) << kind;
