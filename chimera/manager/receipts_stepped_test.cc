@@ -6,8 +6,7 @@
 
 #include "chimera/manager/testing/stepped_subsystem.h"
 
-namespace chimera::manager {
-namespace {
+namespace chimera::manager::receipts_stepped_test {
 
 // `quick` waits while the operator variable `hold` is above 0.
 const std::string kReceipts = R"(subsystem: subject
@@ -179,5 +178,4 @@ TEST(SteppedReceipts, OfFourOperatorsWhoAskAtRandomExplainEachAnswer) {
   }
 }
 
-}  // namespace
-}  // namespace chimera::manager
+}  // namespace chimera::manager::receipts_stepped_test

@@ -4,8 +4,7 @@
 
 #include "chimera/manager/testing/stepped_subsystem.h"
 
-namespace chimera::manager {
-namespace {
+namespace chimera::manager::requests_stepped_test {
 
 // `asker` asks for what the operator variable `wish` says: 1 for `first`, 2 for `second`.
 const std::string kTasksAsk = R"(subsystem: subject
@@ -63,5 +62,4 @@ TEST(SteppedRequests, RefuseTasksThatAreNoLegalSetByName) {
   EXPECT_EQ(system.receipts(), Json::array());
 }
 
-}  // namespace
-}  // namespace chimera::manager
+}  // namespace chimera::manager::requests_stepped_test

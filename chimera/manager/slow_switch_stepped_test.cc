@@ -4,8 +4,7 @@
 
 #include "chimera/manager/testing/stepped_kills.h"
 
-namespace chimera::manager {
-namespace {
+namespace chimera::manager::slow_switch_stepped_test {
 
 const std::string kSlow = R"(subsystem: subject
 rtpus: {first: {cpu: 0, policy: edf}, second: {cpu: 1, policy: edf}}
@@ -62,5 +61,4 @@ INSTANTIATE_TEST_SUITE_P(Of, SteppedSlowSwitchKills,
                          ::testing::Values(std::vector<std::string>{"first"}, std::vector<std::string>{"second"},
                                            std::vector<std::string>{"manager"}));
 
-}  // namespace
-}  // namespace chimera::manager
+}  // namespace chimera::manager::slow_switch_stepped_test

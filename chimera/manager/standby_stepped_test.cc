@@ -4,8 +4,7 @@
 
 #include "chimera/manager/testing/stepped_subsystem.h"
 
-namespace chimera::manager {
-namespace {
+namespace chimera::manager::standby_stepped_test {
 
 // `wanted` comes from a task of the first rtpu or from its standby in the second one; `user` reads it in the second.
 const std::string kStandby = R"(subsystem: subject
@@ -78,5 +77,4 @@ TEST_F(SteppedStandby, TakesOverWhileTheManagerIsDead) {
   }
 }
 
-}  // namespace
-}  // namespace chimera::manager
+}  // namespace chimera::manager::standby_stepped_test

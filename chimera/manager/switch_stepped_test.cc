@@ -4,8 +4,7 @@
 
 #include "chimera/manager/testing/stepped_kills.h"
 
-namespace chimera::manager {
-namespace {
+namespace chimera::manager::switch_stepped_test {
 
 // One variable, `wanted`, by a task of the first rtpu or by one of the second; both rtpus read it.
 const std::string kSwitch = R"(subsystem: subject
@@ -167,5 +166,4 @@ INSTANTIATE_TEST_SUITE_P(Of, SteppedSwitchKills,
                                            std::vector<std::string>{"first", "manager"},
                                            std::vector<std::string>{"second", "manager"}));
 
-}  // namespace
-}  // namespace chimera::manager
+}  // namespace chimera::manager::switch_stepped_test

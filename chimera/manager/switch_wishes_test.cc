@@ -9,8 +9,7 @@
 #include "chimera/control/receipt_file.h"
 #include "chimera/manager/testing/fake_subsystem.h"
 
-namespace chimera::manager {
-namespace {
+namespace chimera::manager::switch_wishes_test {
 
 constexpr std::uint16_t kRun = 0, kRest = 1;
 constexpr Asker kAnn{control::Role::kOperate, 4'000'000'001u};
@@ -194,5 +193,4 @@ TEST_F(SwitchWishesTest, ForTasksThatAreNoLegalSetAreToldOnce) {
             "switch --off sensor, asked for by task law, is refused: x would have no producer\n");
 }
 
-}  // namespace
-}  // namespace chimera::manager
+}  // namespace chimera::manager::switch_wishes_test
