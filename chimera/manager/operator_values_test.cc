@@ -8,7 +8,8 @@
 #include "chimera/manager/testing/test_bundle.h"
 #include "chimera/text/json.h"
 
-namespace chimera::manager::operator_values_test {
+namespace chimera::manager {
+namespace {
 
 PortDescriptor in_var(const std::string& name, const std::string& unit, const std::string& shape,
                       std::uint32_t type = CHIMERA_FLOAT64, std::uint32_t size = 8) {
@@ -124,4 +125,5 @@ TEST_F(OperatorValues, RefusesInTheWordsOfTheRulesAndChangesNothing) {
   EXPECT_FALSE(ask({{"speed", 1}, {"n", "much"}}));
 }
 
-}  // namespace chimera::manager::operator_values_test
+}  // namespace
+}  // namespace chimera::manager

@@ -9,7 +9,8 @@
 #include "chimera/control/receipt_file.h"
 #include "chimera/manager/testing/fake_subsystem.h"
 
-namespace chimera::manager::switch_wishes_test {
+namespace chimera::manager {
+namespace {
 
 constexpr std::uint16_t kRun = 0, kRest = 1;
 constexpr Asker kAnn{control::Role::kOperate, 4'000'000'001u};
@@ -193,4 +194,5 @@ TEST_F(SwitchWishesTest, ForTasksThatAreNoLegalSetAreToldOnce) {
             "switch --off sensor, asked for by task law, is refused: x would have no producer\n");
 }
 
-}  // namespace chimera::manager::switch_wishes_test
+}  // namespace
+}  // namespace chimera::manager

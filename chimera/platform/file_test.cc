@@ -84,10 +84,10 @@ TEST_F(FileStateTest, HasNoStateWithoutAFile) {
 }
 
 TEST_F(FileStateTest, PrivateFolderIsForItsUserOnly) {
-  const std::string made = folder() + "/private";
-  EXPECT_TRUE(make_private_folder(made));
-  EXPECT_EQ(state_of_file(made)->mode, 0700u);
-  EXPECT_TRUE(make_private_folder(made));
+  const std::string inner = folder() + "/private";
+  EXPECT_TRUE(make_private_folder(inner));
+  EXPECT_EQ(state_of_file(inner)->mode, 0700u);
+  EXPECT_TRUE(make_private_folder(inner));
   EXPECT_FALSE(make_private_folder(path()));
 }
 

@@ -2,9 +2,10 @@
 // A slow switch over two rtpus: two tasks make the same constants, a third task uses them and stays.
 #include <gtest/gtest.h>
 
-#include "chimera/manager/testing/stepped_kills.h"
+#include "tests/stepped/stepped_kills.h"
 
-namespace chimera::manager::slow_switch_stepped_test {
+namespace chimera::manager::slow_switch_test {
+namespace {
 
 const std::string kSlow = R"(subsystem: subject
 rtpus: {first: {cpu: 0, policy: edf}, second: {cpu: 1, policy: edf}}
@@ -61,4 +62,5 @@ INSTANTIATE_TEST_SUITE_P(Of, SteppedSlowSwitchKills,
                          ::testing::Values(std::vector<std::string>{"first"}, std::vector<std::string>{"second"},
                                            std::vector<std::string>{"manager"}));
 
-}  // namespace chimera::manager::slow_switch_stepped_test
+}  // namespace
+}  // namespace chimera::manager::slow_switch_test

@@ -2,9 +2,10 @@
 // Two tasks of two rtpus open one device that accepts one user: in a switch, and as primary and standby.
 #include <gtest/gtest.h>
 
-#include "chimera/manager/testing/stepped_kills.h"
+#include "tests/stepped/stepped_kills.h"
 
-namespace chimera::manager::same_device_stepped_test {
+namespace chimera::manager::same_device_test {
+namespace {
 
 const std::string kDevice = R"(subsystem: subject
 rtpus: {first: {cpu: 0, policy: edf}, second: {cpu: 1, policy: edf}}
@@ -16,11 +17,6 @@ tasks:
 const std::string kSwitch = "configurations: {with_hand: [hand, user], with_drill: [drill, user]}\nstart: with_hand\n";
 const std::string kWithHand = "hand user ", kWithDrill = "drill user ";
 
-std::string replaced(std::string text, const std::string& what, const std::string& with) {
-  const std::size_t at = text.find(what);
-  EXPECT_NE(at, text.npos) << what;
-  return at == text.npos ? text : text.replace(at, what.size(), with);
-}
 std::string with_device(std::string text) {
   const std::string lock = ::testing::TempDir() + "chimera_" + std::to_string(::getpid()) + ".lock";
   return replaced(replaced(std::move(text), "LOCK", lock), "LOCK", lock);
@@ -100,4 +96,5 @@ INSTANTIATE_TEST_SUITE_P(Of, SteppedSameDeviceKills,
                          ::testing::Values(std::vector<std::string>{"first"}, std::vector<std::string>{"second"},
                                            std::vector<std::string>{"manager"}));
 
-}  // namespace chimera::manager::same_device_stepped_test
+}  // namespace
+}  // namespace chimera::manager::same_device_test

@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,16 @@
 #include "chimera/manager/testing/test_bundle.h"
 #include "chimera/platform/descriptor.h"
 #include "chimera/rtpu/testing/test_units.h"
+#include "chimera/runtime/task_word.h"
 
 namespace chimera::manager {
+
+/// `text` with the first `what` replaced; `what` must occur.
+inline std::string replaced(std::string text, const std::string& what, const std::string& with) {
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, text.npos) << what;
+  return at == text.npos ? text : text.replace(at, what.size(), with);
+}
 
 /// The manager reads the clock that this object holds, until the object is destroyed.
 class SteppedClock {
@@ -74,9 +83,9 @@ class SteppedSubsystem {
   void run(Nanoseconds time) {
     for (const Nanoseconds end = now() + time; now() < end;) step();
   }
-  /// Runs until `holds`, at most `limit`. False when the limit is reached.
+  /// Runs until `holds`, which is asked every millisecond, at most `limit`. False if the limit is reached.
   bool until(const std::function<bool()>& holds, Nanoseconds limit = seconds(10)) {
-    for (const Nanoseconds end = now() + limit; !holds(); step())
+    for (const Nanoseconds end = now() + limit; !holds(); run(milliseconds(1)))
       if (now() >= end) return false;
     return true;
   }
@@ -110,6 +119,9 @@ class SteppedSubsystem {
   Json result(const std::string& method, const Json& parameters = Json::object()) {
     const control::RpcResponse answer = call(method, parameters);
     EXPECT_TRUE(answer.is_good()) << method << ": " << answer.message;
+    return result_of(answer);
+  }
+  static Json result_of(const control::RpcResponse& answer) {
     std::string text = answer.text ? *answer.text : "";
     if (answer.pieces)
       while (answer.pieces->append_to(text)) {
@@ -122,6 +134,11 @@ class SteppedSubsystem {
   void die(std::string_view rtpu, int signal = SIGKILL) { die(index(rtpu), signal); }
   /// The process of the rtpu is told to end alone, as by SIGTERM: it turns its tasks OFF and dies.
   void terminate(std::string_view rtpu) { rtpus_[index(rtpu)]->edge->unit_end().tell(true); }
+  /// While it is stopped, as by SIGSTOP, the rtpu does nothing.
+  void stop(std::string_view rtpu, bool is_stopped) {
+    if (is_stopped) stopped_.insert(index(rtpu));
+    else stopped_.erase(index(rtpu));
+  }
   /// As by SIGKILL. start_manager() starts its successor.
   void kill_manager() {
     backend_.reset();
@@ -135,7 +152,8 @@ class SteppedSubsystem {
     channel_ = std::move(ends->first);
     ++manager_incarnation_;
     for (std::uint32_t r = 0; r < n_rtpus(); ++r) introduce(r);
-    if (manager_segment_.fd >= 0) tell(KeeperMessage::Kind::kPeer, n_rtpus(), manager_incarnation_ - 1, manager_segment_.fd);
+    if (manager_segment_.fd >= 0)
+      tell(KeeperMessage::Kind::kPeer, n_rtpus(), manager_incarnation_ - 1, manager_segment_.fd);
     tell(KeeperMessage::Kind::kComplete, 0, 0);
     const Inherited inherited{again(ends->second.descriptor()), again(image_.descriptor()),
                               again(decision_.descriptor()),    again(keeper_.descriptor()),
@@ -164,6 +182,10 @@ class SteppedSubsystem {
     ADD_FAILURE() << "no task " << name;
     return TaskId(std::size_t{0});
   }
+  const Profile& profile(std::string_view task) {
+    const TaskId id = this->task(task);
+    return rtpus_[spec().tasks[id.index].rtpu.index]->tasks->tasks()[id.index].profile;
+  }
   /// As the manager shows it.
   State state(std::string_view name) { return manager_ ? manager_->world().state(task(name)) : State::kNotCreated; }
   /// The names of the tasks that are ON, in the order of the description, a blank after each.
@@ -180,6 +202,16 @@ class SteppedSubsystem {
   }
   void set(const std::string& variable, double value) { (void)result("set", {{"values", {{variable, value}}}}); }
   Json receipts() { return result("receipts")["receipts"]; }
+  Json status() { return result("status"); }
+  /// Is the illegal-configuration flag up?
+  bool flag() { return status()["flag"]["up"].as_bool(); }
+  /// The receipt of a switch that must be carried out or aborted, not refused.
+  Json switch_to(const std::string& configuration) { return result("switch", {{"configuration", configuration}}); }
+  /// What a refused call says; "" where it is not refused.
+  std::string refusal(const std::string& method, const Json& parameters) { return call(method, parameters).message; }
+  std::string signal(const std::string& word, const std::string& task) {
+    return refusal("signal", {{"signal", word}, {"tasks", Json::array({task})}});
+  }
   /// "to end" of each receipt, a line each.
   std::string ends() {
     std::string text;
@@ -226,7 +258,7 @@ class SteppedSubsystem {
   void step() {
     clock_.advance(microseconds(100));
     for (std::uint32_t r = 0; r < n_rtpus(); ++r)
-      if (page().alive[r] != 0) step(r);
+      if (page().alive[r] != 0 && !stopped_.contains(r)) step(r);
     page().beats.fetch_add(1);
     if (manager_ == nullptr) return;
     if (!manager_->step(now())) return kill_manager();
@@ -249,6 +281,7 @@ class SteppedSubsystem {
     const std::uint32_t incarnation = rtpus_[r] == nullptr ? 1 : rtpus_[r]->segment.block.head().incarnation + 1;
     testing::Unit::decision_now = now();
     ended_.erase(r);
+    stopped_.erase(r);
     rtpus_[r] = std::make_unique<testing::Unit>(spec(), components_, r, incarnation, decision_page(), page());
     BlockHead& head = rtpus_[r]->segment.block.head();
     std::strcpy(head.grant, "as an ordinary process");
@@ -279,9 +312,7 @@ class SteppedSubsystem {
                               .code = signal,
                               .by_signal = 1,
                               .at = now()};
-    if (channel_.is_open()) {
-      EXPECT_TRUE(channel_.send(bytes_of(ended_[r])));
-    }
+    EXPECT_TRUE(!channel_.is_open() || channel_.send(bytes_of(ended_[r])));
   }
   void tell(KeeperMessage::Kind kind, std::uint32_t index, std::uint32_t incarnation, int passed = -1) {
     const KeeperMessage message{
@@ -293,9 +324,7 @@ class SteppedSubsystem {
     const std::uint32_t incarnation = segment.block.head().incarnation;
     if (!ended_.contains(r)) tell(KeeperMessage::Kind::kStarted, r, incarnation);
     tell(KeeperMessage::Kind::kPeer, r, incarnation, segment.region.descriptor());
-    if (ended_.contains(r)) {
-      EXPECT_TRUE(channel_.send(bytes_of(ended_[r])));
-    }
+    EXPECT_TRUE(!ended_.contains(r) || channel_.send(bytes_of(ended_[r])));
   }
   /// Carries out what the manager asked the keeper for.
   void keep() {
@@ -328,6 +357,7 @@ class SteppedSubsystem {
   MemoryRegion keeper_;
   std::vector<std::unique_ptr<testing::Unit>> rtpus_;
   std::map<std::uint32_t, KeeperMessage> ended_;  // by rtpu: the message about its death, until it is started again
+  std::set<std::uint32_t> stopped_;
   Channel channel_;
   OwnedDescriptor manager_segment_{-1};
   std::uint32_t manager_incarnation_ = 0;

@@ -2,9 +2,10 @@
 // A switch of configurations over two rtpus: all or nothing, one receipt, whichever process dies at whichever step.
 #include <gtest/gtest.h>
 
-#include "chimera/manager/testing/stepped_kills.h"
+#include "tests/stepped/stepped_kills.h"
 
-namespace chimera::manager::switch_stepped_test {
+namespace chimera::manager::switch_test {
+namespace {
 
 // One variable, `wanted`, by a task of the first rtpu or by one of the second; both rtpus read it.
 const std::string kSwitch = R"(subsystem: subject
@@ -166,4 +167,5 @@ INSTANTIATE_TEST_SUITE_P(Of, SteppedSwitchKills,
                                            std::vector<std::string>{"first", "manager"},
                                            std::vector<std::string>{"second", "manager"}));
 
-}  // namespace chimera::manager::switch_stepped_test
+}  // namespace
+}  // namespace chimera::manager::switch_test

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/manager/testing/stepped_subsystem.h"
+#include "tests/stepped/stepped_subsystem.h"
 
 namespace chimera::manager {
 
