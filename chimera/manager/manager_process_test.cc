@@ -120,7 +120,7 @@ TEST(ManagerProcess, KilledAtAnyMomentItForgetsNothing) {
   EXPECT_GT(kept.starts(), 10u);
   std::uint32_t told = 0;  // the last may have been killed between its answer and our look
   for (int tries = 0; tries < 50 && told != kept.starts(); ++tries) {
-    told = ask(kept.path(), "hello")["manager"]["starts"];
+    told = static_cast<std::uint32_t>(ask(kept.path(), "hello")["manager"]["starts"].as_uint64());
     ::usleep(20'000);
   }
   EXPECT_EQ(told, kept.starts());

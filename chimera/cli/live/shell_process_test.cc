@@ -76,7 +76,7 @@ struct FakeSubject final : control::ControlBackend {
             {"state", "ON"}, {"sequence", 1}, {"age_ns", 1000}, {"valid", true}};
   }
   RpcResponse open(std::uint64_t subscription, const Json& parameters) override {
-    to[subscription] = parameters["to"];
+    to[subscription] = text_at(parameters, "to");
     return {};
   }
   void close(std::uint64_t subscription) override { to.erase(subscription); }
