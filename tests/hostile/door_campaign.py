@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Attacks the socket of a running subsystem: mutated lines, lines that do not end, connections that come and go or never
-read, by its own user and by two users with the role observe. The last line counts lines and has the answer times of the
-owner and the cycles that were lost.
+read, by its own user and by two users with the role observe. The last line counts lines and has the cycles that were
+lost. How long the owner waits: bench row 21.
 
 usage: door_campaign.py --build TREE --seconds N
 """
@@ -157,37 +157,7 @@ def crowd(path, end, dice):
     return made, []
 
 
-def probe(path, end, dice):
-    """What the owner gets meanwhile: `status` over one connection, `flag` over a new one each time; both are sent again
-    over another connection, as every client may, when the door has closed theirs without an answer."""
-    kept, took, faults = None, [], []
-    while time.monotonic() < end:
-        for method, parameters in (("status", {}), ("flag", {"up": False})):
-            line = json.dumps({"jsonrpc": "2.0", "id": 1, "method": method, "params": parameters}).encode() + b"\n"
-            begun = time.monotonic()
-            one, said = (kept if method == "status" else None), b"nothing"
-            while b'"result"' not in said and time.monotonic() - begun < 60:
-                try:
-                    one, said = one or connected(path), b""
-                    one.sendall(line)
-                    while b"\n" not in said:
-                        said += one.recv(1 << 16) or b"\n"
-                except OSError as wrong:
-                    said = str(wrong).encode()
-                if b'"result"' not in said:
-                    one = None
-            if one is None:
-                faults.append(f"{method}: {said[:200]!r}")
-            elif method == "status":
-                kept = one
-            else:
-                one.close()
-            took.append((time.monotonic() - begun) * 1e3)
-        time.sleep(0.01 * dice.random())
-    return took, faults
-
-
-KINDS = {"mutate": mutate, "crowd": crowd, "probe": probe}
+KINDS = {"mutate": mutate, "crowd": crowd}
 
 
 def begun(kind, path, seconds, seed, user=None):
@@ -201,12 +171,10 @@ def attacked(path, seed, is_root):
     users = [None, OBSERVERS, OBSERVERS + 1] if is_root else [None]
     running = [begun(kind, path, ROUND, seed + 10 * i, user) for i, user in enumerate(users)
                for kind in ("mutate", "crowd") if user is None or (kind == "crowd") == (user > OBSERVERS)]
-    running.append(begun("probe", path, ROUND, seed))
     results = {}
     for kind, process in running:
         out = process.communicate(timeout=120 + ROUND)[0]
-        results.setdefault(kind, []).append(json.loads(out) if process.returncode == 0
-                                            else [[] if kind == "probe" else 0, [f"{kind} failed"]])
+        results.setdefault(kind, []).append(json.loads(out) if process.returncode == 0 else [0, [f"{kind} failed"]])
     return results
 
 
@@ -224,7 +192,7 @@ class Door:
         for folder in (self.system.place, self.system.runtime):
             folder.chmod(0o711)
         self.n = self.connections = 0
-        self.took, self.lost, self.cycles = [], [0, 0], [0, 0]  # lost and cycles: clean, attacked
+        self.lost, self.cycles = [0, 0], [0, 0]  # clean, attacked
         self.pids = self.system.pids()
         self.before = self.state()
         self.descriptors = self.system.descriptors(self.pids["manager"])
@@ -247,7 +215,6 @@ class Door:
         found = self.span(1, lambda: attacked(str(self.system.socket), random.randrange(1 << 31), self.is_root))
         self.n += sum(count for count, _ in found["mutate"])
         self.connections += sum(count for count, _ in found["crowd"])
-        self.took += [ms for took, _ in found["probe"] for ms in took]
         faults = [f"{kind}: {fault}" for kind, results in found.items() for _, faults in results for fault in faults]
         return faults + list(self.judge())
 
@@ -267,11 +234,8 @@ class Door:
 
     def figures(self):
         self.system.end()
-        took = sorted(self.took) or [0]
-        return {"n": self.n, "counted": "lines", "connections": self.connections, "asked": len(self.took),
-                "p99_ms": round(took[len(took) * 99 // 100], 1), "max_ms": round(took[-1], 1),
-                "lost_clean": self.lost[0], "cycles_clean": self.cycles[0], "lost": self.lost[1],
-                "cycles": self.cycles[1]}
+        return {"n": self.n, "counted": "lines", "connections": self.connections, "lost_clean": self.lost[0],
+                "cycles_clean": self.cycles[0], "lost": self.lost[1], "cycles": self.cycles[1]}
 
 
 def attacker():

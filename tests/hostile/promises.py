@@ -22,9 +22,10 @@ def python_tests():
 
 
 def compiled_tests():
-    for path in (ROOT / "chimera").rglob("*_test.cc"):
-        for suite, name in re.findall(r"^TEST(?:_F|_P)?\((\w+), (\w+)\)", path.read_text(encoding="utf-8"), re.M):
-            yield f"{suite}.{name}"
+    for folder in ("chimera", "tests"):
+        for path in (ROOT / folder).rglob("*_test.cc"):
+            for suite, name in re.findall(r"^TEST(?:_F|_P)?\((\w+), (\w+)\)", path.read_text(encoding="utf-8"), re.M):
+                yield f"{suite}.{name}"
 
 
 def campaigns():

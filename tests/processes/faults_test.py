@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a fault of one rtpu does to the others: only what is declared. The manager dies, too."""
+"""What a fault of one rtpu does to the others: only what is declared. The manager dies, too. What is decided about
+deaths: tests/stepped/deaths_test.cc."""
 import pathlib
 import shutil
 import signal
@@ -7,7 +8,7 @@ import subprocess
 import tempfile
 import unittest
 
-from system import BUILD, CHIMERA, HANG, RTPUS, Client, Refused, System, await_that, duration
+from system import BUILD, CHIMERA, HANG, RTPUS, Client, System, await_that, duration
 
 # No other task needs `victim`; `steady` must not notice its faults.
 APPLICATION = RTPUS + """
@@ -18,7 +19,7 @@ tasks:
     rtpu: second
     rate: 200 Hz
     alias: {y: y_victim}
-    constants: {where: WHERE, how: HOW}
+    constants: {where: cycle, how: HOW}
     resources: {armed: ARMED}
   beside: {component: t_source, rtpu: second, rate: 100 Hz}
 configurations:
@@ -26,29 +27,9 @@ configurations:
 start: all
 """
 
-THROWER = RTPUS + """
-tasks:
-  steady: {component: t_counter, rtpu: first, rate: 200 Hz}
-  thrower:
-    component: t_thrower
-    rtpu: second
-    rate: 200 Hz
-    alias: {count: n}
-    constants: {where: WHERE, how: HOW, at: AT, times: 1, recovers: RECOVERS}
-configurations:
-  all: [steady, thrower]
-start: all
-"""
-
 WAYS = {"segv": "signal 11 (SIGSEGV)", "abort": "signal 6 (SIGABRT)", "bus": "signal 7 (SIGBUS)",
         "fpe": "signal 8 (SIGFPE)", "ill": "signal 4 (SIGILL)", "kill": "signal 9 (SIGKILL)",
         "stack": "signal 11 (SIGSEGV)", "exit": "42"}
-
-
-def filled(text, **words):
-    for word, value in words.items():
-        text = text.replace(word.upper(), str(value))
-    return text
 
 
 def one_rtpu_for_each_way():
@@ -86,7 +67,7 @@ class Faults(unittest.TestCase):
                 for name in ("t_source.so", "t_source.component.json"):
                     shutil.copy(BUILD / "components" / name, folder)
                 path = f"{folder}:{BUILD / 'components'}"
-                text = filled(APPLICATION, where="cycle", how="none")
+                text = APPLICATION.replace("HOW", "none")
                 with System(text, environment={"CHIMERA_PATH": path}) as system:
                     file, unit = pathlib.Path(folder, "t_source.so"), system.rtpu("second")
                     if what == "removed":
@@ -99,20 +80,8 @@ class Faults(unittest.TestCase):
                     system.await_restart("second", unit)
                     system.await_state("beside", "ON")
 
-    def test_an_rtpu_that_dies_too_often_is_given_up_until_clear(self):
-        with System(filled(APPLICATION, where="cycle", how="segv")) as system:
-            system.arm()
-            system.await_event(0, "rtpu-given-up")
-            self.assertEqual((system.state("victim"), system.state("beside")), ("ERROR", "ERROR"))
-            self.assertEqual(len(system.texts("rtpu-restarted")), 3)
-            system.disarm()
-            system.signal("clear", "victim")
-            system.await_state("victim", "OFF")
-            system.signal("on", "victim")
-            system.await_state("victim", "ON")
-
     def test_row_6_an_rtpu_that_scribbles_over_its_memory_spoils_only_its_own(self):
-        with System(filled(APPLICATION, where="cycle", how="scribble")) as system:
+        with System(APPLICATION.replace("HOW", "scribble")) as system:
             before, unit, count = system.task("steady"), system.rtpu("second"), system.value("count")
             system.arm()
             system.await_restart("second", unit)
@@ -123,7 +92,7 @@ class Faults(unittest.TestCase):
             self.assertTrue(system.call("hello")["manager"]["pid"])
 
     def test_rows_6_and_11_what_was_on_in_an_rtpu_that_scribbled_is_known_to_the_next_manager(self):
-        with System(filled(APPLICATION, where="cycle", how="scribble")) as system:
+        with System(APPLICATION.replace("HOW", "scribble")) as system:
             before, unit, manager = system.task("steady"), system.rtpu("second"), system.pids()["manager"]
             self.assertTrue(system.kill(manager, signal.SIGSTOP))
             system.arm()
@@ -137,53 +106,8 @@ class Faults(unittest.TestCase):
             self.steady_goes_on(system, before)
             self.assertIn("memory cannot be read", str(system.texts("fault")))
 
-    def test_rows_1_and_2_an_error_in_any_method_stays_with_its_task(self):
-        for where in ("init", "on", "cycle", "off", "reinit", "kill"):
-            for how in (1, 2, 3):
-                at = 20 if where == "cycle" else 0
-                text = filled(THROWER, where=where, how=how, at=at, recovers="false")
-                with self.subTest(where=where, how=how), System(text, wait=False) as system:
-                    if where in ("init", "on"):  # the start is refused, in the words of the task
-                        self.assertEqual(system.wait(), 1)
-                        self.assertIn(f"thrower: error: {where}: ", system.said())
-                        continue
-                    await_that(system.socket.exists, "the socket")
-                    await_that(lambda: system.state("steady") != "NOT-CREATED", "the start")
-                    if where in ("off", "reinit", "kill"):
-                        system.await_state("thrower", "ON")
-                        try:
-                            system.signal(where, "thrower")
-                        except Refused:
-                            pass  # unit tests judge the words
-                    system.await_state("thrower", "NOT-CREATED" if where == "kill" else "ERROR")
-                    self.assertEqual([r["incarnation"] for r in system.call("status")["rtpus"]], [1, 1])
-                    self.assertTrue(system.events(0, "fault", task="thrower"))
-
-    def test_row_7_not_a_number_is_never_published(self):
-        with System(filled(APPLICATION, where="cycle", how="nan")) as system:
-            system.arm()
-            system.await_state("victim", "ERROR")
-            self.assertIsNotNone(system.value("y_victim"))
-            self.assertGreaterEqual(system.task("victim")["rejected"], 1)
-
-    def test_row_10_an_rtpu_killed_at_any_step_from_spawn_to_off_comes_back(self):
-        for where, before_it, word in (("init", ("off", "kill"), "spawn"), ("on", ("off",), "on"),
-                                       ("off", (), "off"), ("kill", ("off",), "kill")):
-            with self.subTest(where), System(filled(APPLICATION, where=where, how="kill")) as system:
-                before = system.task("steady")
-                for one in before_it:
-                    system.signal(one, "victim")
-                system.arm()
-                with self.assertRaises(Refused):
-                    system.signal(word, "victim")
-                system.disarm()
-                await_that(lambda: system.rtpu("second")["phase"] == "serving" and
-                           system.state("victim") in ("OFF", "ON", "NOT-CREATED"), system.told)
-                system.await_state("beside", "ON")
-                self.steady_goes_on(system, before)
-
     def test_row_11_the_manager_may_die(self):
-        with System(filled(APPLICATION, where="cycle", how="segv")) as system:
+        with System(APPLICATION.replace("HOW", "segv")) as system:
             before = {t["task"]: t["incarnation"] for t in system.call("status")["tasks"]}
             for kills in (1, 2):
                 manager, since = system.pids()["manager"], system.call("status")["now_ns"]
@@ -218,7 +142,7 @@ class Faults(unittest.TestCase):
             self.assertEqual([method for _, method, _ in system.lines()].count("reinit"), 1)
 
     def test_a_scope_keeps_what_it_recorded_when_the_manager_dies_and_says_that_it_ended(self):
-        with System(filled(APPLICATION, where="cycle", how="segv")) as system:
+        with System(APPLICATION.replace("HOW", "segv")) as system:
             system.await_cycles("steady", 20)
             words = ("scope", "count", "--trigger", "cycles < 10", "--pre", "10 ms", "--for", "600 s")
             with subprocess.Popen([str(CHIMERA), *words], env=system.environment, stdout=subprocess.PIPE,
@@ -235,7 +159,7 @@ class Faults(unittest.TestCase):
             self.assertGreater(len(out.splitlines()), 10)
 
     def test_a_command_waits_for_a_manager_that_is_being_restarted(self):
-        with System(filled(APPLICATION, where="cycle", how="segv")) as system:
+        with System(APPLICATION.replace("HOW", "segv")) as system:
             system.kill(system.pids()["manager"])
             client = Client(system.socket)
             client.call("signal", signal="off", tasks=["victim"])

@@ -11,7 +11,7 @@ import unittest
 
 import jsonschema
 
-from system import RTPUS, TOO_FAST, Client, System, await_that
+from system import TOO_FAST, Client, System, await_that
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(SOURCE / "tests/install"))
@@ -44,23 +44,6 @@ operator: {level: 1}
 configurations:
   all: [steady, adder, victim]
   less: [steady, adder]
-start: all
-"""
-
-
-# One rtpu whose task can hang in its cycle, one whose end takes a second.
-SLOW = RTPUS + """
-tasks:
-  steady: {component: t_recorder, rtpu: first, rate: 100 Hz, alias: {x: level}, constants: {slow: 1000000000 ns}}
-  stuck:
-    component: t_crash
-    rtpu: second
-    rate: 100 Hz
-    alias: {y: y_stuck}
-    constants: {where: cycle, how: hang}
-    resources: {armed: ARMED}
-operator: {level: 1}
-configurations: {all: [steady, stuck]}
 start: all
 """
 
@@ -271,39 +254,6 @@ class Protocol(unittest.TestCase):
             judged, refused = judged + 1, refused + is_form
         self.assertGreater(refused, 200)
         self.assertGreater(judged - refused, 30)
-
-    def test_an_rtpu_that_does_not_answer_is_named_with_what_it_does(self):
-        with System(SLOW) as system:
-            client = Judged(system.socket)
-            self.addCleanup(client.close)
-            system.arm()
-            await_that(system.armed.read_text, "the method that hangs")
-            self.assertIsNone(client.exchange("signal", signal="off", tasks=["stuck"]))
-            system.disarm()
-            self.assertEqual(client.faults, [])
-            # The rtpu has 2 s for an answer, and 2 s for a method before it is ended: either may be over first.
-            self.assertIn(client.last["error"], (
-                {"code": -32006, "message": "no answer from rtpu second",
-                 "data": {"rtpu": "second", "running": "stuck.cycle"}},
-                {"code": -32000, "message": "second was ended: stuck.cycle did not return within 2 s",
-                 "data": {"kind": "ended", "where": "stuck"}}))
-
-    def test_while_everything_ends_no_signal_is_accepted(self):
-        with System(SLOW) as system:
-            client, other = Judged(system.socket), Judged(system.socket)
-            self.addCleanup(client.close)
-            self.addCleanup(other.close)
-            await_that(lambda: "second: WARNING: not real time" in system.said(), "the printing process")
-            self.assertEqual(client.exchange("end"), {})
-            await_that(lambda: other.exchange("status")["ending"], "the end")
-            self.assertIsNone(other.exchange("signal", signal="on", tasks=["steady"]))
-            self.assertEqual(other.last["error"], {"code": -32007, "message": "the subsystem is ending"})
-            self.assertEqual(client.faults + other.faults, [])
-            self.assertEqual(system.wait(), 0, system.said())
-
-    def test_end_is_the_last_answer(self):
-        self.assertEqual(self.client.exchange("end", code=3), {})
-        self.assertEqual(self.system.wait(), 3)
 
 
 class Schema(unittest.TestCase):
