@@ -182,7 +182,8 @@ void PeerLinks::watch_flags(IllegalFlag& flag) noexcept {
   flag.watch(flags_);
 }
 
-bool PeerLinks::adopt(TaskSet& tasks) noexcept {
+bool PeerLinks::adopt(TaskSet& tasks, Nanoseconds now) noexcept {
+  now_ = now;
   bool any = false;
   let_go_unread(tasks.sources());
   for (std::uint32_t peer = 0; peer < peers_->count(); ++peer) {

@@ -26,9 +26,6 @@ class PeerLinks final : public PeerView {
   void publish(TaskSet& tasks) noexcept;
   /// publish() of every task whose shown state is not its own, listed or not: at the start. Context: cycle boundary.
   void publish_all(TaskSet& tasks) noexcept;
-  /// The instant of the cycle boundary; events of flags and notes are stamped with it. Context: cycle boundary;
-  /// wait-free.
-  void begin_boundary(Nanoseconds now) noexcept { now_ = now; }
   /// While it keeps them nobody is shown states: what was ON when the unit began to end alone comes back with its
   /// successor. When it does not any more, all are shown. Context: cycle boundary.
   void keep_last_words(bool keeps, TaskSet& tasks) noexcept;
@@ -43,8 +40,9 @@ class PeerLinks final : public PeerView {
   bool claim(std::size_t group) noexcept override { return !keeps_last_words_ && claims_.take(group); }
 
   /// Takes over segments that the main thread offered; true when there was one. One that follows another waits until
-  /// no task reads that any more. Context: cycle boundary.
-  bool adopt(TaskSet& tasks) noexcept;
+  /// no task reads that any more. `now`: of the cycle boundary; events of flags and notes are stamped with it. Context:
+  /// cycle boundary.
+  bool adopt(TaskSet& tasks, Nanoseconds now) noexcept;
   /// From here on `flag` reads the flag words of those who live; that of the manager also while it is being restarted.
   /// Context: cycle boundary.
   void watch_flags(IllegalFlag& flag) noexcept;

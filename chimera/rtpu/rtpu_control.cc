@@ -38,9 +38,8 @@ void RtpuControl::begin() noexcept {
 void RtpuControl::take(BoundarySignals& signals, Nanoseconds now) noexcept {
   listen();
   set_due(kNever);
-  others_.begin_boundary(now);
   others_.block().head().beats.fetch_add(1, std::memory_order_relaxed);
-  check_peers();
+  check_peers(now);
   take_slow(signals, now);
   if (end_.is_told()) return go_on_ending(signals, now);  // nothing is begun any more
   read_posts();
@@ -54,8 +53,8 @@ void RtpuControl::go_on_ending(BoundarySignals& signals, Nanoseconds now) noexce
   set_due(now);  // no wait comes between this and the look at it
 }
 
-void RtpuControl::check_peers() noexcept {
-  const bool is_new = others_.adopt(tasks_);
+void RtpuControl::check_peers(Nanoseconds now) noexcept {
+  const bool is_new = others_.adopt(tasks_, now);
   const std::uint32_t changes = others_.changes();
   if (!is_new && changes == seen_changes_) return;
   seen_changes_ = changes;

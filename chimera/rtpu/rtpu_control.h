@@ -59,7 +59,7 @@ class RtpuControl final : public BoundaryListener {
   HangingJobs& hanging() noexcept { return hanging_; }
 
  private:
-  void check_peers() noexcept;
+  void check_peers(Nanoseconds now) noexcept;
   void read_posts() noexcept;
   void take_slow(BoundarySignals& signals, Nanoseconds now) noexcept;
   void act(std::span<const Post> step, BoundarySignals& signals, Nanoseconds now) noexcept;

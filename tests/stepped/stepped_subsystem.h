@@ -132,7 +132,7 @@ class SteppedSubsystem {
 
   /// The process of the rtpu dies by that signal. The manager has it started again.
   void die(std::string_view rtpu, int signal = SIGKILL) { die(index(rtpu), signal); }
-  /// The process of the rtpu is told to end alone, as by SIGTERM: it turns its tasks OFF and dies.
+  /// Ends the process of the rtpu alone, as SIGTERM does: it turns its tasks OFF and dies.
   void terminate(std::string_view rtpu) { rtpus_[index(rtpu)]->edge->unit_end().tell(true); }
   /// While it is stopped, as by SIGSTOP, the rtpu does nothing.
   void stop(std::string_view rtpu, bool is_stopped) {
@@ -162,6 +162,8 @@ class SteppedSubsystem {
     ASSERT_TRUE(made) << made.error().message.c_str();
     manager_ = *std::move(made);
     backend_ = std::make_unique<ManagerBackend>(*manager_);
+    const int receipts[] = {manager_->receipts().descriptor()};
+    await_readable(receipts, seconds(60));  // the thread that reads the receipts of before is not stepped
     keep();
   }
   /// While it is stopped the keeper starts nothing.
@@ -207,7 +209,7 @@ class SteppedSubsystem {
   bool flag() { return status()["flag"]["up"].as_bool(); }
   /// The receipt of a switch that must be carried out or aborted, not refused.
   Json switch_to(const std::string& configuration) { return result("switch", {{"configuration", configuration}}); }
-  /// What a refused call says; "" where it is not refused.
+  /// The message of a refused call; "" if it is not refused.
   std::string refusal(const std::string& method, const Json& parameters) { return call(method, parameters).message; }
   std::string signal(const std::string& word, const std::string& task) {
     return refusal("signal", {{"signal", word}, {"tasks", Json::array({task})}});
