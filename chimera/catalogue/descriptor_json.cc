@@ -50,10 +50,9 @@ std::string hex(std::uint64_t value) {
 void read_plain(const JsonCursor& at, std::uint32_t type, std::span<std::byte> to) {
   PlainValue value;
   const Json& json = at.value();
-  const bool is_wide = json.is_number() && json.as_uint64() > INT64_MAX;
   if (json.is_bool()) {
     value = json.as_bool();
-  } else if (json.is_whole() && !is_wide) {
+  } else if (json.is_whole() && json.as_uint64() <= INT64_MAX) {
     value = json.as_int64();
   } else if (type == CHIMERA_STRING) {
     value = at.text();

@@ -264,7 +264,7 @@ void RemoteTarget::on_event(const Json& event) {
     failed_ = event, failure_ = Error{ErrorCode::kRefused, std::string_view(text), std::string_view(task)};
   else if (kind == "refused")
     refused_ += "refused at " + since_start(instant(event["at_ns"])) + ": " + task + ": " + text + "\n";
-  if (kind == "rtpu-restarted" && event.contains("rtpu") && event["rtpu"].is_string())
+  if (kind == "rtpu-restarted" && event["rtpu"].is_string())
     restarted_[event["rtpu"].as_string()] = instant(event["at_ns"]);
   const bool is_news = next_event_ > page_.events_seen;
   if (kind == "note" && !run_.json && is_news) std::fprintf(out_, "%s\n", note_line(task, text).c_str());
