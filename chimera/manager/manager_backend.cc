@@ -311,7 +311,7 @@ void ManagerBackend::drill(const Request& request) {
   if (!world().logic.is_settled())
     return refuse("under-way", "tasks are being brought up",
                   "`chimera status` shows which; ask again when they are ON");
-  if (const Json flag = flag_json(world()); flag["up"])
+  if (const Json flag = flag_json(world()); truth_at(flag, "up"))
     return refuse("flag-up", "the flag is up already, so it would measure nothing", "`chimera status` says by whom");
   const std::uint64_t wait_ms = control::number(request.parameters, "wait_ms", 10'000);
   const Nanoseconds wait = milliseconds(static_cast<std::int64_t>(wait_ms));

@@ -121,7 +121,7 @@ TEST_F(ManagerBackendTest, StatusIsReadOutOfTheBlocks) {
   const Json status = good("status");
   EXPECT_EQ(status["configuration"], "run");
   EXPECT_EQ(status["flag"], (Json{{"up", false}, {"by", Json::array()}}));
-  EXPECT_GT(status["started_ns"], status["origin_ns"]);
+  EXPECT_GT(status["started_ns"].as_int64(), status["origin_ns"].as_int64());
   ASSERT_EQ(status["rtpus"].size(), 2u);
   const Json& servo = status["rtpus"][0];
   EXPECT_EQ(servo["name"], "servo");
@@ -142,7 +142,7 @@ TEST_F(ManagerBackendTest, StatusIsReadOutOfTheBlocks) {
   ASSERT_EQ(law["inputs"].size(), 2u);
   EXPECT_EQ(law["inputs"][0]["port"], "y");
   EXPECT_TRUE(law["inputs"][0]["age_ns"].is_number());  // 0 when it is written while the answer is made
-  EXPECT_LT(law["inputs"][0]["age_ns"], 1'000'000'000);
+  EXPECT_LT(law["inputs"][0]["age_ns"].as_int64(), 1'000'000'000);
   EXPECT_EQ(law["inputs"][1], (Json{{"port", "kp"}, {"variable", "kp"}, {"age_ns", 0}})) << "never old";
 }
 
@@ -188,7 +188,7 @@ TEST_F(ManagerBackendTest, NoReadingsInPiecesAreAnEmptyObject) {
 }
 
 TEST_F(ManagerBackendTest, GetReadsTheRegisters) {
-  ASSERT_TRUE(fake_.until([&] { return good("get")["values"]["tau"]["sequence"] > 2; }));
+  ASSERT_TRUE(fake_.until([&] { return good("get")["values"]["tau"]["sequence"].as_int64() > 2; }));
   const Json values = good("get", {{"variables", {"x", "kp"}}})["values"];
   EXPECT_EQ(values.size(), 2u);
   const Json& x = values["x"];
@@ -199,7 +199,7 @@ TEST_F(ManagerBackendTest, GetReadsTheRegisters) {
   EXPECT_EQ(x["producer"], "sensor");
   EXPECT_EQ(x["state"], "ON");
   EXPECT_EQ(x["valid"], true);
-  EXPECT_LT(x["age_ns"], 1'000'000'000);
+  EXPECT_LT(x["age_ns"].as_int64(), 1'000'000'000);
   EXPECT_EQ(values["kp"]["value"], Json::array({1.0, 2.0}));
   EXPECT_EQ(values["kp"]["text"], "[1 2] N.m/rad");
   EXPECT_EQ(values["kp"]["producer"], "operator");
@@ -285,7 +285,7 @@ TEST_F(ManagerBackendTest, ProfileIsThatOfEveryOtherFace) {
   const Json profile = good("profile");
   ASSERT_EQ(profile["tasks"].size(), 3u);
   EXPECT_EQ(profile["tasks"][0]["task"], "sensor");
-  EXPECT_GT(profile["tasks"][0]["execution_ns"]["cycle"]["count"], 0);
+  EXPECT_GT(profile["tasks"][0]["execution_ns"]["cycle"]["count"].as_int64(), 0);
 }
 
 TEST_F(ManagerBackendTest, EndGoesToTheKeeper) {
@@ -418,13 +418,13 @@ TEST_F(ServedTest, StatusTellsTheServerAndForHowLongTheTaskWasOn) {
   const Json lamp = good("status")["tasks"][1], sensor = good("status")["tasks"][0];
   const Json server = {{"kind", "deferrable"}, {"capacity_ns", 2000000}, {"period_ns", 10000000}};
   EXPECT_EQ(lamp["server"], server);
-  EXPECT_GE(lamp["on_ns"], 2'000'000'000);
-  EXPECT_LT(lamp["on_ns"], 20'000'000'000);
-  EXPECT_GE(lamp["busy_ns"], 3 * 3000) << "of the fake: 3 us a cycle";
+  EXPECT_GE(lamp["on_ns"].as_int64(), 2'000'000'000);
+  EXPECT_LT(lamp["on_ns"].as_int64(), 20'000'000'000);
+  EXPECT_GE(lamp["busy_ns"].as_int64(), 3 * 3000) << "of the fake: 3 us a cycle";
   EXPECT_EQ(sensor["server"], nullptr);
   const Json profile = good("profile")["tasks"][1];
   EXPECT_EQ(profile["server"], server);
-  EXPECT_GE(profile["on_ns"], 2'000'000'000);
+  EXPECT_GE(profile["on_ns"].as_int64(), 2'000'000'000);
   (void)good("signal", {{"signal", "off"}, {"tasks", {"lamp"}}});
   EXPECT_EQ(good("status")["tasks"][1]["on_ns"], 0) << "what it was ON for has not been told";
 }

@@ -90,7 +90,7 @@ TEST_F(SubscriptionFeedsTest, ValuesAreThoseOfTheVariablesThatWereNamed) {
   open(1, {{"to", "values"}, {"variables", {"kp"}}});
   const Nanoseconds before = now();
   const Json message = pull(1);
-  EXPECT_GE(message["at_ns"], before.count);
+  EXPECT_GE(message["at_ns"].as_int64(), before.count);
   ASSERT_EQ(message["values"].size(), 1u);
   EXPECT_EQ(message["values"]["kp"]["value"], (Json{1.0, 2.0}));
 }

@@ -55,7 +55,7 @@ TEST_F(TakeoverReceiptsTest, EachIsFiledOnce) {
   EXPECT_EQ(one["asked_by"],
             Json({{"reaction", "standby_for"}, {"lost", "filter"}, {"by", "death"}, {"task", "second"}}));
   EXPECT_EQ(one["end"], "done");
-  EXPECT_GT(one["wall_ns"], 1'600'000'000'000'000'000);
+  EXPECT_GT(one["wall_ns"].as_int64(), 1'600'000'000'000'000'000);
   EXPECT_EQ(one["at_ns"].as_int64() - one["asked_ns"].as_int64(), 1'000'000);
   EXPECT_EQ(one["tasks"].size(), 2u);
   tell(takeover(2));

@@ -75,7 +75,7 @@ TEST_F(TapFeedTest, EveryPublicationComesOnceInOrder) {
       EXPECT_EQ(row[2].size(), task == "sensor" ? 2u : 1u);
       EXPECT_EQ(row[2][0].as_double(), row[1].as_double());  // the fake publishes its count
       EXPECT_TRUE(sequence[task] == 0 || row[1] == sequence[task] + 1);
-      sequence[task] = row[1];
+      sequence[task] = row[1].as_uint64();
     }
   }
   EXPECT_GT(next["sensor"], 0u);

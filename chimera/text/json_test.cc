@@ -239,7 +239,7 @@ TEST(Json, ParsesAsTheLibraryDoes) {
                                          ":",    "\"a\"", "\"b\"", "1",           "-2.5e3",
                                          "true", "null",  " ",     "\"\\u00e4\"", "18446744073709551615"};
   int n_good = 0;
-  for (int i = 0; i < 200'000; ++i) {
+  for (int i = 0; i < 20'000; ++i) {
     std::string text = i % 2 == 0 ? "[" : "{\"a\":";
     for (auto n = random() % 8; n > 0; --n) text += kParts[random() % std::size(kParts)];
     text += i % 2 == 0 ? "]" : "}";
@@ -250,7 +250,7 @@ TEST(Json, ParsesAsTheLibraryDoes) {
     ASSERT_EQ(found->dump(), expected.dump()) << text;
     ++n_good;
   }
-  EXPECT_GT(n_good, 1000);
+  EXPECT_GT(n_good, 100);
 }
 
 }  // namespace

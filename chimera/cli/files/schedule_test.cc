@@ -127,9 +127,9 @@ Json changed(const std::string& rtpus, std::vector<Line> lines, const Json& reme
   for (Line& line : lines) {
     if (line.name != text_at(remedy, "task")) continue;
     if (remedy.contains("rate_hz")) line.rate = remedy["rate_hz"].dump();
-    if (remedy.contains("criticality")) line.criticality = remedy["criticality"];
+    if (remedy.contains("criticality")) line.criticality = remedy["criticality"].as_string();
     if (!remedy.contains("rtpu")) continue;
-    line.rtpu = remedy["rtpu"].is_null() ? "new" : remedy["rtpu"];
+    line.rtpu = remedy["rtpu"].is_null() ? "new" : remedy["rtpu"].as_string();
     if (remedy["rtpu"].is_null()) all += ", new: {cpu: 7}";
   }
   const Json said = analysed(description(all, lines));
@@ -164,7 +164,7 @@ TEST(Schedule, ItsAdviceIsTrue) {
       const bool is_lower = text_at(remedy, "criticality") == "low";
       ++tried[is_lower ? "lower" : (*remedy.items().begin()).first];
       ASSERT_TRUE(cpu.contains("fits")) << remedy << cpu;
-      EXPECT_TRUE(is_lower || cpu["fits"]) << remedy << description(rtpus, lines);
+      EXPECT_TRUE(is_lower || cpu["fits"].as_bool()) << remedy << description(rtpus, lines);
       for (const auto& task : cpu["tasks"])
         EXPECT_TRUE(task["guarantee"] == "yes" || task["task"] == text_at(remedy, "task")) << cpu;
     }
@@ -172,7 +172,7 @@ TEST(Schedule, ItsAdviceIsTrue) {
     std::vector<Line> scaled = lines;
     for (Line& line : scaled) line.budget_us = static_cast<int>(line.budget_us * scale);
     const Json other = analysed(description(rtpus, scaled))["sets"][0]["cpus"][0];
-    EXPECT_TRUE(other["fits"]) << scale << description(rtpus, lines);
+    EXPECT_TRUE(other["fits"].as_bool()) << scale << description(rtpus, lines);
     EXPECT_EQ(scale >= 1, said["sets"][0]["cpus"][0]["fits"]) << scale;
   }
   for (const char* kind : {"executor", "rate_hz", "rtpu", "criticality", "lower"}) EXPECT_GT(tried[kind], 0) << kind;

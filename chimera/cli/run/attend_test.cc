@@ -217,7 +217,7 @@ TEST_F(Attend, ANumberThatIsNoneSatisfiesNothing) {
 
 TEST_F(Attend, ActsAtTheirTimeAndTellsWhatWasRefused) {
   request_.run.at = {"20 ms: on pid", "10 ms: flag up"};
-  const std::int64_t started = backend_.started_ns;
+  const std::int64_t started = backend_.started_ns.as_int64();
   backend_.events = {{{"number", 1}, {"at_ns", started + 30'000'000}, {"kind", "refused"}, {"task", "pid"},
                       {"rtpu", nullptr}, {"text", "kill sent by other: not legal in state ON"}}};
   EXPECT_EQ(attend(), kOk);
@@ -237,7 +237,7 @@ TEST_F(Attend, AStartThatFailsIsRefusedInTheWordsOfItsTask) {
 }
 
 TEST_F(Attend, WhatFailsBehindAStartThatWasNotKnownYetIsNoFailureOfIt) {
-  const std::int64_t started = backend_.started_ns;
+  const std::int64_t started = backend_.started_ns.as_int64();
   backend_.starts_at = std::exchange(backend_.started_ns, nullptr);
   backend_.events = {{{"number", 1}, {"at_ns", started + 2'000'000}, {"kind", "refused"}, {"task", "pid"},
                       {"rtpu", "servo"}, {"text", "kill sent by other: not legal in state ON"}}};
