@@ -127,9 +127,9 @@ Json changed(const std::string& rtpus, std::vector<Line> lines, const Json& reme
   for (Line& line : lines) {
     if (line.name != text_at(remedy, "task")) continue;
     if (remedy.contains("rate_hz")) line.rate = remedy["rate_hz"].dump();
-    if (remedy.contains("criticality")) line.criticality = text_at(remedy, "criticality");
+    if (remedy.contains("criticality")) line.criticality = remedy["criticality"].as_string();
     if (!remedy.contains("rtpu")) continue;
-    line.rtpu = remedy["rtpu"].is_null() ? "new" : text_at(remedy, "rtpu");
+    line.rtpu = remedy["rtpu"].is_null() ? "new" : remedy["rtpu"].as_string();
     if (remedy["rtpu"].is_null()) all += ", new: {cpu: 7}";
   }
   const Json said = analysed(description(all, lines));
