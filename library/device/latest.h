@@ -15,7 +15,7 @@ class Latest {
   /// Context: the writer's thread; wait-free.
   void put(const T& value) noexcept {
     places_[filled_] = value;
-    // SYNC: pairs with get(): the value is complete before the exchange, and the reader has left the place taken back.
+    // SYNC: pairs with get(): the value is complete before the exchange, and the reader has left the old place.
     filled_ = between_.exchange(filled_ | kFresh, std::memory_order_acq_rel) & kPlace;
   }
   /// Returns the last value put, T{} before the first. Valid until the next get(). Context: the reader's thread;

@@ -52,8 +52,8 @@ class ModbusLine {
   /// failed; the line must then be connected again.
   int exchange(const ModbusCommand& command, ModbusReading& reading) noexcept;
   /// Opens a second TCP connection, over which the guard writes after the death of this process; the first connection
-  /// may end within a request. A serial line returns itself. Returns -1 if the device refuses. Valid until connect().
-  /// Waits at most 0.2 s.
+  /// may end within a request. For a serial line returns the descriptor of that line. Returns -1 if the device refuses.
+  /// Valid until connect(). Waits at most 0.2 s.
   int open_second() noexcept;
   bool has_second() const noexcept { return second_ != nullptr; }
   void close() noexcept;
