@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hostile description is refused within 64 MiB. Measured in a release build, each in a process of its own, because the
-// memory of a process never shrinks. The time is recorded: 100 ms is the goal.
+// A hostile description is refused within 64 MiB. Measured in a release build, each in a process of its own, because
+// the memory of a process never shrinks. The time is recorded: 100 ms is the goal.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Jobs at real-time levels: the kernel runs the most urgent one, takes the processor from a job that used its budget or
-// its capacity, and tells of a late job while that runs. Each test ends with an event: a job computes until it sees what
-// only another job can bring about. What the executor decides is proved on a stepped clock (chimera/runtime/preemptive/).
+// Jobs at real-time levels: the kernel runs the most urgent one, and takes the processor from a job that used its
+// budget or its capacity; a late job is reported while it runs. Each test ends with an event: a job computes until it
+// sees something that only another job can do. What the executor decides is proved on a stepped clock
+// (chimera/runtime/preemptive/).
 #include <gtest/gtest.h>
 
 #include <atomic>
