@@ -4,7 +4,7 @@
 #   every x_test.cc goes into one test binary NAME_test. Suffixes choose where a file goes:
 #     x_test.cc           debug (address+undefined sanitizers)
 #     x_process_test.cc   debug; uses real processes, label "process"
-#     x_threads_test.cc   debug, and again alone under the thread sanitizer, label "threads"
+#     x_threads_test.cc   debug, with the process tests, and again under the thread sanitizer, label "threads"
 #     x_realtime_test.cc  release only, label "realtime"
 #     x_fuzz.cc           debug (replays its corpus) and fuzz (clang, libFuzzer), see chimera_fuzz
 #     x_stress.cc         release; the program x_stress, a campaign for tests/stress.txt
@@ -190,11 +190,11 @@ function(chimera_tests name)
       _chimera_test_binary(${name}_threads_test threads "${threads}" "${arg_LIBS}" "${arg_DEPENDS}" ${options})
     endif()
   elseif(CHIMERA_TREE STREQUAL "debug")
-    set(unit ${plain} ${threads})
-    if(unit)
-      _chimera_together(unit together_tests)
-      _chimera_test_binary(${name}_test unit "${unit}" "${arg_LIBS}" "${arg_DEPENDS}" ${options})
+    if(plain)
+      _chimera_together(plain together_tests)
+      _chimera_test_binary(${name}_test unit "${plain}" "${arg_LIBS}" "${arg_DEPENDS}" ${options})
     endif()
+    list(APPEND process ${threads})
     if(process)
       _chimera_together(process together_process_tests)
       _chimera_test_binary(${name}_process_test process "${process}" "${arg_LIBS}" "${arg_DEPENDS}" ${options})

@@ -74,7 +74,7 @@ NOT_YET = (
     "library/singularity_monitor", "library/sum", "library/tball", "library/tool", "library/udp_frame",
     "library/unit_convert", "library/urdf_model", "library/vision", "library/visual_servo_interface",
     "library/watchdog", "share/chimera", "tests/applications", "tests/components", "tests/conformance",
-    "tests/devices", "tests/executors", "tests/hostile", "tests/install", "tests/kill", "tests/logging",
+    "tests/devices", "tests/executors", "tests/hostile", "tests/install", "tests/kill",
     "tests/models", "tests/processes", "tests/responses", "tests/run", "tests/schedule", "tests/subsystem",
     "tests/sweep", "tests/switching", "tests/verify", "tools/check_cycle_path.py", "tools/data_sheets.py",
     "tools/dev")

@@ -28,7 +28,7 @@ class PartnerProgram : public ::testing::Test {
 TEST_F(PartnerProgram, SaysALineAndIsEndedWithIt) {
   pid_t child = 0;
   {
-    const auto partner = start("echo $$\nexec sleep 100\n", seconds(20));
+    const auto partner = start("echo $$\nexec sleep 100\n", seconds(60));
     ASSERT_TRUE(partner) << partner.error().message.c_str();
     child = static_cast<pid_t>(std::stol(partner->line()));
     EXPECT_EQ(::kill(child, 0), 0);
@@ -37,13 +37,13 @@ TEST_F(PartnerProgram, SaysALineAndIsEndedWithIt) {
 }
 
 TEST_F(PartnerProgram, LivesInItsFolder) {
-  const auto partner = start("pwd\nexec sleep 100\n", seconds(20));
+  const auto partner = start("pwd\nexec sleep 100\n", seconds(60));
   ASSERT_TRUE(partner);
   EXPECT_EQ(partner->line(), fs::canonical(fs::temp_directory_path()).string());
 }
 
 TEST_F(PartnerProgram, IsRefusedWhenItSaysNothing) {
-  const auto ended = start("exit 0\n", seconds(20));
+  const auto ended = start("exit 0\n", seconds(60));
   ASSERT_FALSE(ended);
   EXPECT_EQ(std::string(ended.error().message.c_str()), "printed no first line");
   EXPECT_FALSE(start("exec sleep 100\n", milliseconds(200)));

@@ -50,7 +50,7 @@ TEST_F(ClientTest, CallsAndHearsNotifications) {
   EXPECT_EQ(wrong.code, kNoMethod);
   EXPECT_EQ(wrong.detail("nearest"), "hello");
   ASSERT_TRUE(client->call("subscribe", {{"to", "status"}, {"period_ms", 20}}).is_good());
-  const auto note = client->next(seconds(5));
+  const auto note = client->next(kHangLimit);
   ASSERT_TRUE(note && *note);
   EXPECT_EQ((*note)->method, "status");
   EXPECT_EQ(client->call("signal", {{"signal", "off"}, {"tasks", {"a"}}}, milliseconds(50)).code, kNoAnswer);
@@ -81,7 +81,7 @@ TEST_F(ClientTest, AsksAgainWhenTheManagerDiedAndMayHaveActedOnlyWhereItDoesNotM
   start();
   EXPECT_TRUE(client->call("flag", {{"up", true}}).is_good()) << "the line was never read";
   const auto die = [this] {
-    for (int i = 0; i < 5000 && backend.later.empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    EXPECT_TRUE(await_that([this] { return !backend.later.empty(); }));
     stop();
     open_door();
     start();
@@ -113,7 +113,7 @@ TEST_F(ClientTest, ConnectsAnewAfterItsSubscriptionsWereLostOrDropped) {
   open_door();
   start();
   for (;;) {
-    const auto note = client.next(seconds(5));
+    const auto note = client.next(kHangLimit);
     if (!note) break;
     ASSERT_TRUE(*note) << "neither a notification nor a loss";
   }
@@ -179,13 +179,15 @@ TEST_F(ClientTest, HearsWhyItIsNotLetInAndGetsInAsSoonAsThereIsAPlace) {
   start();
   std::vector<int> fds;
   for (int i = 0; i < 16; ++i) say(fds.emplace_back(plain()), request("signal", R"({"signal":"off","tasks":["a"]})"));
-  for (int i = 0; i < 5000 && backend.later.size() < 16; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_TRUE(await_that([this] { return backend.later.size() >= 16; }));
   auto client = Client::connect_to(path);
   ASSERT_TRUE(client);
   std::this_thread::sleep_for(std::chrono::milliseconds(30));  // refused before it says a word
-  RpcResponse refused = client->call("hello", Json::object(), milliseconds(200));
-  for (int i = 0; i < 20 && refused.code == kNoAnswer; ++i)  // the server was held up at the last try of it
+  RpcResponse refused;
+  EXPECT_TRUE(await_that([&] {  // kNoAnswer: the server was held up at the last try of the call
     refused = client->call("hello", Json::object(), milliseconds(200));
+    return refused.code != kNoAnswer;
+  }));
   EXPECT_EQ(refused.code, kTooMany);
   EXPECT_EQ(refused.message, "too many connections: the 16 of user " + std::to_string(::getuid()) + " are all in use");
   std::thread later([fd = fds[3]] {
@@ -232,7 +234,7 @@ TEST_F(LimitTest, HoldsForAConnectionThatNobodyTakes) {
     EXPECT_EQ(client.error().message.view(), silent);
   });
   EXPECT_GE(time, milliseconds(190));
-  EXPECT_LT(time, seconds(2));
+  record_duration("until_refused", time);
   std::thread later([this] {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     start();
@@ -245,20 +247,16 @@ TEST_F(LimitTest, HoldsForAConnectionThatNobodyTakes) {
 TEST_F(LimitTest, HoldsForACallThatNobodyAnswers) {
   auto client = Client::connect_to(path);
   ASSERT_TRUE(client);
-  const Nanoseconds time = took([&] {
-    const RpcResponse late = client->call("hello", Json::object(), milliseconds(200));
-    EXPECT_EQ(late.code, kNoAnswer);
-    EXPECT_EQ(late.message, silent);
-  });
-  EXPECT_LT(time, seconds(2));
+  const RpcResponse late = client->call("hello", Json::object(), milliseconds(200));
+  EXPECT_EQ(late.code, kNoAnswer);
+  EXPECT_EQ(late.message, silent);
 }
 
 TEST_F(LimitTest, ALongOneIsWaitedForAsLongAsTheManagerShowsASignOfLife) {
   auto client = Client::connect_to(path);
   ASSERT_TRUE(client);
   const Json off{{"signal", "spawn"}, {"tasks", {"a"}}};
-  EXPECT_LT(took([&] { EXPECT_EQ(client->call("signal", off, seconds(60), milliseconds(200)).message, silent); }),
-            seconds(5));
+  EXPECT_EQ(client->call("signal", off, kHangLimit, milliseconds(200)).message, silent);
   start();
   const Nanoseconds time = took([&] {
     const RpcResponse late = client->call("signal", off, seconds(2), milliseconds(1500));

@@ -25,7 +25,6 @@ TEST_F(DoorLimits, ClosesAfterALineThatIsTooDeep) {
 
 TEST_F(DoorLimits, ClosesAfterADepthBomb) {
   const int fd = plain();
-  std::string got;
   std::thread writer([fd] {
     const std::string bytes = std::string(kMaxLine - 1, '[') + "\n";
     for (std::size_t at = 0; at < bytes.size();) {
@@ -34,11 +33,7 @@ TEST_F(DoorLimits, ClosesAfterADepthBomb) {
       at += static_cast<std::size_t>(n);
     }
   });
-  for (int i = 0; i < 5000 && got.empty(); ++i, got = take(fd)) {
-    serve();
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  EXPECT_EQ(got, error("null", -32001, "nested deeper than 32 levels"));
+  EXPECT_EQ(await_answer(fd), error("null", -32001, "nested deeper than 32 levels"));
   writer.join();
   EXPECT_TRUE(is_closed(fd));
   ::close(fd);
@@ -50,12 +45,7 @@ TEST_F(DoorLimits, ClosesAfterALineThatIsTooLong) {
     const std::string bytes(kMaxLine + 2, ' ');
     (void)::send(fd, bytes.data(), bytes.size(), MSG_NOSIGNAL);
   });
-  std::string got;
-  for (int i = 0; i < 5000 && got.empty(); ++i, got = take(fd)) {
-    serve();
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  EXPECT_EQ(got, error("null", -32001, "the line is longer than 1 MiB"));
+  EXPECT_EQ(await_answer(fd), error("null", -32001, "the line is longer than 1 MiB"));
   ::shutdown(fd, SHUT_RDWR);
   writer.join();
   ::close(fd);
@@ -92,11 +82,7 @@ TEST_F(DoorLimits, GarbageCountsAsRequestsAndALongLineAsSeveral) {
   EXPECT_EQ(count(ask(fd, garbage), "-32700"), 150u);
   const std::string spaces(52 * kLongLine, ' ');
   std::thread writer([fd, &spaces] { say(fd, spaces + request("hello", "{}", 7)); });
-  std::string got;
-  for (int i = 0; i < 5000 && got.empty(); ++i, got = take(fd)) {
-    serve(Nanoseconds{});
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
+  const std::string got = await_answer(fd);
   writer.join();
   EXPECT_EQ(got, R"({"error":{"code":-32003,"data":{"retry_ms":3},"message":"too many requests"},"id":null,)"
                  R"("jsonrpc":"2.0"})"

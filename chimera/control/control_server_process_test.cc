@@ -269,10 +269,7 @@ std::string as_stranger(const std::string& path, gid_t group, const std::string&
     if (got > 0) (void)!::write(pipe[1], bytes, static_cast<std::size_t>(got));
     ::_exit(0);
   }
-  for (int i = 0; i < 5000 && ::waitpid(child, nullptr, WNOHANG) == 0; ++i) {
-    serve();
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
+  EXPECT_TRUE(await_that([&] { return serve(), ::waitpid(child, nullptr, WNOHANG) != 0; }));
   ::close(pipe[1]);
   char bytes[512];
   const ssize_t got = ::read(pipe[0], bytes, sizeof bytes);

@@ -29,7 +29,7 @@ struct Child {
 
 Listeners await(const std::string& path, bool (*condition)(const Listeners&)) {
   Listeners found;
-  for (int i = 0; i < 2000 && !condition(found = listeners_at(path)); ++i) ::usleep(1000);
+  EXPECT_TRUE(await_that([&] { return condition(found = listeners_at(path)); }));
   return found;
 }
 

@@ -10,13 +10,12 @@
 #include <functional>
 #include <sstream>
 
+#include "chimera/base/testing/await.h"
 #include "chimera/keeper/testing/child_folder.h"
 #include "chimera/platform/shared_memory.h"
 
 namespace chimera {
 namespace {
-
-constexpr Nanoseconds kPatience = seconds(20);
 
 std::span<const std::byte> text(const char* words) { return std::as_bytes(std::span(words, std::strlen(words))); }
 
@@ -31,7 +30,7 @@ class KeeperProcess : public ::testing::Test, public testing::ChildFolder {
   }
 
   /// `limit`: of the face and of the rtpus when they end.
-  void start(std::uint32_t n, bool with_face = true, Nanoseconds limit = kPatience) {
+  void start(std::uint32_t n, bool with_face = true, Nanoseconds limit = kHangLimit) {
     keeper_ = ::fork();
     if (keeper_ != 0) return;
     const auto image = FrozenBytes::create("image", text("the image"));
@@ -53,19 +52,16 @@ class KeeperProcess : public ::testing::Test, public testing::ChildFolder {
   }
   bool has(const std::string& line) const { return ("\n" + log()).find("\n" + line) != std::string::npos; }
   bool wait_for(const std::string& line) {
-    LinuxClock clock;
-    for (const Nanoseconds until = clock.now() + kPatience; !has(line); ::usleep(1000))
-      if (clock.now() > until) return ADD_FAILURE() << "no line '" << line << "' in\n" << log(), false;
-    return true;
+    return wait_for_times(line, 1);
   }
   bool wait_for_times(const std::string& line, int n) {
-    LinuxClock clock;
-    for (const Nanoseconds until = clock.now() + kPatience; clock.now() < until; ::usleep(1000)) {
+    const auto are_there = [&] {
       const std::string all = "\n" + log();
       int found = 0;
       for (std::size_t at = 0; (at = all.find("\n" + line, at)) != std::string::npos; ++at) ++found;
-      if (found >= n) return true;
-    }
+      return found >= n;
+    };
+    if (await_that(are_there)) return true;
     return ADD_FAILURE() << "no " << n << " lines '" << line << "' in\n" << log(), false;
   }
   /// Of the process that logged "WHO begin PID" last.
@@ -94,10 +90,7 @@ class KeeperProcess : public ::testing::Test, public testing::ChildFolder {
     std::vector<pid_t> pids;
     for (std::string line; std::getline(all, line);)
       if (const auto at = line.find(" begin "); at != std::string::npos) pids.push_back(std::stoi(line.substr(at + 7)));
-    LinuxClock clock;
-    for (const Nanoseconds until = clock.now() + kPatience; clock.now() < until; ::usleep(1000))
-      if (std::none_of(pids.begin(), pids.end(), &lives)) return true;
-    return false;
+    return await_that([&] { return std::none_of(pids.begin(), pids.end(), &lives); });
   }
 
   pid_t keeper_ = 0;

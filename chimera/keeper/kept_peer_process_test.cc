@@ -6,11 +6,10 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <functional>
 
+#include "chimera/base/testing/await.h"
 #include "chimera/keeper/keeper_pages.h"
 #include "chimera/keeper/testing/child_folder.h"
-#include "chimera/platform/clock.h"
 #include "chimera/platform/shared_memory.h"
 
 namespace chimera {
@@ -22,17 +21,11 @@ class KeptPeerTest : public ::testing::Test, public testing::ChildFolder {
  protected:
   void TearDown() override {
     peer_.signal(SIGKILL);
-    peer_.wait(seconds(20));
+    peer_.wait(kHangLimit);
   }
   Result<void> start(const std::string& program, Nanoseconds now) {
     const int passed[] = {image_.descriptor(), pages_.decision_descriptor(), pages_.keeper_descriptor()};
     return peer_.start({program, passed, kPrefix}, now);
-  }
-  static bool until(const std::function<bool()>& is_so) {
-    LinuxClock clock;
-    for (const Nanoseconds limit = clock.now() + seconds(20); clock.now() < limit; ::usleep(1000))
-      if (is_so()) return true;
-    return false;
   }
 
   FrozenBytes image_ = *FrozenBytes::create("image", std::as_bytes(std::span("image", 5)));
@@ -58,17 +51,17 @@ TEST_F(KeptPeerTest, PassesOnTheMemoryThatItMade) {
   EXPECT_EQ(peer_.origin(), "test-1.1");
   peer_.pass_segment_to(peer_);  // nothing yet
   KeeperMessage message;
-  EXPECT_TRUE(until([&] { return peer_.receive(message) == KeptPeer::Said::kSegment; }));
+  EXPECT_TRUE(await_that([&] { return peer_.receive(message) == KeptPeer::Said::kSegment; }));
   peer_.pass_segment_to(peer_);
-  EXPECT_TRUE(until([&] { return log().find("1.1 peer 1 1 by-1.1\n") != std::string::npos; })) << log();
+  EXPECT_TRUE(await_that([&] { return log().find("1.1 peer 1 1 by-1.1\n") != std::string::npos; })) << log();
 }
 
 TEST_F(KeptPeerTest, ItsEndIsToldOnceAndWhatItSentIsStillThere) {
   ASSERT_TRUE(start(KEEPER_TEST_CHILD, seconds(3)));
-  EXPECT_TRUE(until([&] { return log().find("begin") != std::string::npos; }));
+  EXPECT_TRUE(await_that([&] { return log().find("begin") != std::string::npos; }));
   order("1", "kill 5\nexit 3");
   ProcessEnd how;
-  ASSERT_TRUE(until([&] { return peer_.has_ended(how); }));
+  ASSERT_TRUE(await_that([&] { return peer_.has_ended(how); }));
   EXPECT_FALSE(peer_.has_ended(how));
   EXPECT_FALSE(peer_.lives());
   KeeperMessage message;

@@ -6,6 +6,7 @@
 
 #include <random>
 
+#include "chimera/base/testing/await.h"
 #include "chimera/base/testing/tree_path.h"
 #include "chimera/control/client.h"
 #include "chimera/manager/testing/fake_subsystem.h"
@@ -56,7 +57,7 @@ class Kept {
     thread_.join();
     manager_.signal(SIGKILL);
     ProcessEnd end;
-    manager_.wait(end, seconds(5).count);
+    manager_.wait(end, kHangLimit.count);
   }
   void kill_next() { wants_death_ = true; }
   std::uint32_t starts() const noexcept { return starts_; }
@@ -89,9 +90,9 @@ class Kept {
 /// Asks again on a new connection as long as the manager dies under it.
 Json ask(const std::string& path, const char* method, const Json& parameters = Json::object()) {
   for (int tries = 0; tries < 20; ++tries) {
-    auto client = control::Client::connect_to(path);
+    auto client = control::Client::connect_to(path, kHangLimit);
     if (!client) continue;
-    const control::RpcResponse answer = client->call(method, parameters);
+    const control::RpcResponse answer = client->call(method, parameters, kHangLimit);
     if (answer.is_good()) return *answer.result;
     EXPECT_EQ(answer.code, control::kNoConnection) << method << ": " << answer.message;
   }
@@ -118,19 +119,16 @@ TEST(ManagerProcess, KilledAtAnyMomentItForgetsNothing) {
     EXPECT_EQ(task["incarnation"], 1);
   }
   EXPECT_GT(kept.starts(), 10u);
-  std::uint32_t told = 0;  // the last may have been killed between its answer and our look
-  for (int tries = 0; tries < 50 && told != kept.starts(); ++tries) {
-    told = static_cast<std::uint32_t>(ask(kept.path(), "hello")["manager"]["starts"].as_uint64());
-    ::usleep(20'000);
-  }
-  EXPECT_EQ(told, kept.starts());
+  const auto told = [&] { return ask(kept.path(), "hello")["manager"]["starts"].as_uint64(); };
+  EXPECT_TRUE(await_that([&] { return told() == kept.starts(); }))
+      << "the last may have been killed between its answer and the check";
 }
 
 TEST(ManagerProcess, ACommandWaitsForTheRestartedManager) {
   Kept kept;
   (void)ask(kept.path(), "hello");
   kept.kill_next();
-  while (kept.starts() == 1) ::usleep(100);
+  ASSERT_TRUE(await_that([&] { return kept.starts() > 1; }));
   auto client = control::Client::connect_to(kept.path());
   ASSERT_TRUE(client);
   const control::RpcResponse answer = client->call("signal", {{"signal", "off"}, {"tasks", {"law"}}});
@@ -143,13 +141,13 @@ TEST(ManagerProcess, EndsWithItsKeeperAndSaysWhatItIsFor) {
   Process manager = fake.start_program(program(), listening.descriptor());
   fake.kill_manager();  // the keeper's end of the channel is closed
   ProcessEnd end;
-  ASSERT_TRUE(manager.wait(end, seconds(5).count));
+  ASSERT_TRUE(manager.wait(end, kHangLimit.count));
   EXPECT_EQ(end.code, 0);
   EXPECT_FALSE(end.by_signal);
   const char* const words[] = {program()};
   auto alone = Process::start(program(), words, {});
   ASSERT_TRUE(alone);
-  ASSERT_TRUE(alone->wait(end, seconds(5).count));
+  ASSERT_TRUE(alone->wait(end, kHangLimit.count));
   EXPECT_EQ(end.code, 2);
 }
 

@@ -7,6 +7,7 @@
 
 #include <csignal>
 
+#include "chimera/base/testing/await.h"
 #include "chimera/base/testing/tree_path.h"
 #include "chimera/manager/testing/fake_subsystem.h"
 #include "chimera/text/json.h"
@@ -36,12 +37,12 @@ struct QuestionsTest : ::testing::Test {
         now());
   }
   bool until(std::size_t n) {
-    for (const Nanoseconds limit = now() + seconds(20); answers_.size() < n && now() < limit;) {
+    return await_that([&] {
       pollfd readable{questions_->descriptor(), POLLIN, 0};
       ::poll(&readable, 1, 5);
       questions_->serve(now());
-    }
-    return answers_.size() >= n;
+      return answers_.size() >= n;
+    });
   }
   FrozenBytes bundle_;
   std::unique_ptr<Questions> questions_;

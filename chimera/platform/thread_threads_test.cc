@@ -9,6 +9,7 @@
 #include <future>
 #include <thread>
 
+#include "chimera/base/testing/await.h"
 #include "chimera/platform/clock.h"
 
 namespace chimera::thread_threads_test {
@@ -72,10 +73,7 @@ struct Counter {
     return counted == before;
   }
   bool comes_to(bool standing) const {
-    const Nanoseconds until = LinuxClock().now() + seconds(10);
-    while (stands() != standing)
-      if (LinuxClock().now() > until) return false;
-    return true;
+    return await_that([&] { return stands() == standing; });
   }
 
   Halt halt;

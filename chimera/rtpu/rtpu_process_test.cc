@@ -6,8 +6,8 @@
 #include <unistd.h>
 
 #include <string>
-#include <thread>
 
+#include "chimera/base/testing/await.h"
 #include "chimera/base/testing/tree_path.h"
 #include "chimera/load/descriptor.h"
 #include "chimera/load/sealed_objects.h"
@@ -63,15 +63,6 @@ struct RtpuProcess : ::testing::Test {
     ASSERT_TRUE(started) << started.error().message.c_str();
     process = *std::move(started);
   }
-  template <class Condition>
-  ::testing::AssertionResult soon(Condition condition) {
-    LinuxClock clock;
-    for (const Nanoseconds end = clock.now() + seconds(10); clock.now() < end;) {
-      if (condition()) return ::testing::AssertionSuccess();
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return ::testing::AssertionFailure() << "not within 10 s";
-  }
   bool take_segment() {
     KeeperMessage message;
     int descriptor = -1;
@@ -82,7 +73,7 @@ struct RtpuProcess : ::testing::Test {
     return peers->adopt(0);
   }
   void introduce_manager() {
-    ASSERT_TRUE(soon([&] { return take_segment(); }));
+    ASSERT_TRUE(await_that([&] { return take_segment(); }));
     KeeperMessage message;
     message.kind = KeeperMessage::Kind::kPeer;
     message.index = 1;
@@ -90,7 +81,7 @@ struct RtpuProcess : ::testing::Test {
     ASSERT_TRUE(channel.send(bytes_of(message), own.descriptor()));
     outbox = Outbox(block.outbox(0), &peers->at(0)->block().progress(1), 1);
     inbox = Inbox(peers->at(0)->block().outbox(1), block.progress(0), 1);
-    ASSERT_TRUE(soon([&] { return outbox.is_followed(); }));
+    ASSERT_TRUE(await_that([&] { return outbox.is_followed(); }));
   }
   Post signal(Signal signal) {
     Post post;
@@ -99,7 +90,7 @@ struct RtpuProcess : ::testing::Test {
     post.signal = signal;
     EXPECT_TRUE(outbox.try_post(post));
     Doorbell(decision->bells[0].word).ring();
-    EXPECT_TRUE(soon([&] {
+    EXPECT_TRUE(await_that([&] {
       while (inbox.take(post))
         if (post.kind == PostKind::kReport && post.command == commands) return true;
       return false;
@@ -117,7 +108,7 @@ struct RtpuProcess : ::testing::Test {
   }
   ProcessEnd end() {
     ProcessEnd ended;
-    EXPECT_TRUE(process.wait(ended, seconds(10).count));
+    EXPECT_TRUE(process.wait(ended, kHangLimit.count));
     return ended;
   }
 
@@ -141,11 +132,11 @@ TEST_F(RtpuProcess, CyclesWhatItsManagerTurnsOnAndGoesOnWithoutOne) {
   introduce_manager();
   EXPECT_EQ(signal(Signal::kSpawn).detail, 1u);
   EXPECT_EQ(signal(Signal::kOn).after, State::kOn);
-  EXPECT_TRUE(soon([&] { return count() > 20; }));
+  EXPECT_TRUE(await_that([&] { return count() > 20; }));
   keeper->alive[1] = 0;  // the manager is dead
   const std::int64_t then = count();
-  EXPECT_TRUE(soon([&] { return count() > then + 20; }));
-  EXPECT_TRUE(soon([&] { return peers->at(0)->block().profile(kCounter).cycles > 20; }));
+  EXPECT_TRUE(await_that([&] { return count() > then + 20; }));
+  EXPECT_TRUE(await_that([&] { return peers->at(0)->block().profile(kCounter).cycles > 20; }));
   EXPECT_TRUE(std::string_view(peers->at(0)->block().head().grant).starts_with("WARNING: not real time\n"));
 }
 
@@ -176,7 +167,7 @@ TEST_F(RtpuProcess, ItsLastWordsSayWhatRanWhenItDies) {
   introduce_manager();
   signal(Signal::kSpawn);
   signal(Signal::kOn);
-  EXPECT_TRUE(soon([&] { return count() > 3; }));
+  EXPECT_TRUE(await_that([&] { return count() > 3; }));
   process.signal(SIGKILL);
   EXPECT_TRUE(end().by_signal);
   EXPECT_EQ(peers->at(0)->block().status(kCounter).state, State::kOn);
@@ -187,7 +178,7 @@ struct RtpuWithAnotherComponent : RtpuProcess {
 };
 
 TEST_F(RtpuWithAnotherComponent, SaysWhyItCannotStart) {
-  ASSERT_TRUE(soon([&] { return take_segment(); }));
+  ASSERT_TRUE(await_that([&] { return take_segment(); }));
   EXPECT_EQ(end().code, 1);
   EXPECT_STREQ(peers->at(0)->block().head().grant,
                "component t_counter was rebuilt after it was verified; run again");
@@ -199,7 +190,7 @@ TEST(RtpuProgram, SaysThatItIsNotForPeople) {
   auto process = Process::start(program.c_str(), arguments, {});
   ASSERT_TRUE(process);
   ProcessEnd ended;
-  ASSERT_TRUE(process->wait(ended, seconds(10).count));
+  ASSERT_TRUE(process->wait(ended, kHangLimit.count));
   EXPECT_EQ(ended.code, 2);
 }
 

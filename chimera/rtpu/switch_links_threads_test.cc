@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "chimera/base/testing/await.h"
 #include "chimera/rtpu/testing/test_units.h"
 #include "chimera/runtime/testing/tool_scene.h"
 
@@ -34,12 +35,6 @@ class CyclingUnits {
 
   /// The manager's time is that of now.
   void follow() { units_.now = now(); }
-  template <class Condition>
-  bool await(Condition condition) const {
-    const Nanoseconds end = now() + seconds(30);
-    while (!condition() && now() < end) std::this_thread::sleep_for(kLook);
-    return condition();
-  }
 
  private:
   static constexpr std::chrono::microseconds kLook{20};
@@ -117,9 +112,9 @@ struct SwitchLinksThreads : ::testing::Test {
     }
     EXPECT_EQ(state(to == kWithHeavy ? kHeavy : kLight), State::kError);
   }
-  void clear(TaskId task, const CyclingUnits& cycling) {
+  void clear(TaskId task) {
     units.send(Signal::kClear, {task});
-    ASSERT_TRUE(cycling.await([&] { return state(task) == State::kOff; }));
+    ASSERT_TRUE(await_that([&] { return state(task) == State::kOff; }));
   }
 
   std::unique_ptr<testing::TestApplication> app = testing::tool_scene::application(0);
@@ -138,11 +133,11 @@ TEST_F(SwitchLinksThreads, SlowSwitchesThereAndBackLeaveOneProducerAndNoFlag) {
       shop.story.clear();
       shop.fails = !fails ? "" : to == kWithHeavy ? "on heavy" : "on light";
       cycling.follow();
-      const std::uint16_t number = units.switch_to(to, microseconds(300), seconds(20), kSlowForConstants);
-      ASSERT_TRUE(cycling.await([&] { return units.is_over(number); })) << i;
+      const std::uint16_t number = units.switch_to(to, microseconds(300), kHangLimit, kSlowForConstants);
+      ASSERT_TRUE(await_that([&] { return units.is_over(number); })) << i;
       fails ? expect_taken_back(to) : expect_done(to);
       if (!fails) in_force = to;
-      else clear(to == kWithHeavy ? kHeavy : kLight, cycling);
+      else clear(to == kWithHeavy ? kHeavy : kLight);
       EXPECT_TRUE(are_on(in_force)) << i;
       EXPECT_FALSE(units.flag_is_up()) << i;
       EXPECT_EQ(units.part(0).number, number);

@@ -138,7 +138,7 @@ TEST_F(TaskMethodsTest, WithoutAThreadForItTheBackgroundRunsOnceBeforeKill) {
 }
 
 TEST_F(TaskMethodsTest, ABackgroundWithAThreadEndsBeforeKill) {
-  BackgroundWriter writer(milliseconds(1), seconds(10));
+  BackgroundWriter writer(milliseconds(1), seconds(60));
   methods.run_by({nullptr, nullptr, &writer});
   ASSERT_EQ(methods.construct(task, {}), Answer::kOk);
   ASSERT_EQ(methods.call(task, Method::kInit, {}), Answer::kOk);

@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "chimera/base/testing/await.h"
 #include "chimera/runtime/hosted/background_writer.h"
 #include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/testing/test_application.h"
@@ -48,7 +49,7 @@ struct Writer {
 struct TaskSetBackground : ::testing::Test {
   Story told;
   chimera::testing::TestApplication app;
-  BackgroundWriter writer{milliseconds(1), seconds(20)};
+  BackgroundWriter writer{milliseconds(1), kHangLimit};
   std::unique_ptr<HeapTaskSet> set;
 
   void make() {
@@ -64,9 +65,7 @@ struct TaskSetBackground : ::testing::Test {
     story = nullptr;
   }
   void await(int backgrounds) {
-    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while (told.backgrounds < backgrounds && std::chrono::steady_clock::now() < until) std::this_thread::yield();
-    ASSERT_GE(told.backgrounds, backgrounds);
+    ASSERT_TRUE(await_that([&] { return told.backgrounds >= backgrounds; }));
   }
   const Task& task() { return set->tasks()[0]; }
 };
@@ -110,7 +109,7 @@ TEST_F(TaskSetBackground, AStalledOneIsLeftAloneAndTheTaskCanBeMadeAnew) {
   BackgroundWriter impatient{milliseconds(1), milliseconds(100)};
   set->methods().run_by({nullptr, nullptr, &impatient});
   set->life().signal(TaskId{0u}, Signal::kSpawn, {});
-  while (for_ever.backgrounds == 0) std::this_thread::yield();
+  ASSERT_TRUE(await_that([] { return for_ever.backgrounds > 0; }));
   const SignalReport report = set->life().signal(TaskId{0u}, Signal::kKill, {});
   EXPECT_EQ(report.after, State::kNotCreated);
   EXPECT_EQ(for_ever.letters, "i");  // neither killed nor destroyed

@@ -55,7 +55,7 @@ struct SerialFrameTest : ::testing::Test {
     int before = 0, there = 0;
     ASSERT_EQ(::ioctl(line, FIONREAD, &before), 0);
     ASSERT_EQ(::write(device, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
-    for (int i = 0; i < 2000 && there < before + static_cast<int>(bytes.size()); ++i) {
+    for (int i = 0; i < 60'000 && there < before + static_cast<int>(bytes.size()); ++i) {
       if (i > 0) ::usleep(1000);
       ASSERT_EQ(::ioctl(line, FIONREAD, &there), 0);
     }
@@ -70,7 +70,7 @@ struct SerialFrameTest : ::testing::Test {
   Bytes heard(std::size_t size = 0) {
     Bytes bytes;
     pollfd ready{device, POLLIN, 0};
-    while ((size == 0 || bytes.size() < size) && ::poll(&ready, 1, size == 0 ? 20 : 2000) > 0) {
+    while ((size == 0 || bytes.size() < size) && ::poll(&ready, 1, size == 0 ? 20 : 60'000) > 0) {
       std::uint8_t chunk[4096];
       const ssize_t got = ::read(device, chunk, size == 0 ? sizeof chunk : size - bytes.size());
       if (got <= 0) break;

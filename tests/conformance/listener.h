@@ -39,12 +39,15 @@ class Listener final : public BoundaryListener {
     if (on_miss) on_miss(task, verdict);
   }
   void hangs(TaskWord, Nanoseconds, Nanoseconds) noexcept override {}
-  void gave_way(TaskId, Nanoseconds, Nanoseconds) noexcept override {}
+  void gave_way(TaskId task, Nanoseconds, Nanoseconds) noexcept override {
+    if (on_gave_way) on_gave_way(task);
+  }
   void show(const Task&) noexcept override {}
 
   std::vector<Miss> misses;
   std::function<void(TaskId, const MissCause::Verdict&)> on_miss;
   std::function<void(BoundarySignals&, Nanoseconds)> on_take;
+  std::function<void(TaskId)> on_gave_way;
 };
 
 }  // namespace chimera::toy

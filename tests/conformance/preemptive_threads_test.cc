@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "chimera/base/testing/await.h"
 #include "chimera/platform/clock.h"
 #include "chimera/runtime/preemptive/preemptive_executor.h"
 #include "tests/conformance/runner.h"
@@ -18,8 +19,14 @@ std::size_t count(const std::vector<Call>& calls, Method method) {
       std::count_if(calls.begin(), calls.end(), [&](const Call& call) { return call.method == method; }));
 }
 
-// Releases right before the end of a run whose thread a stalled host woke too late: they would come in the next run.
-constexpr std::uint64_t kNotSeen = 10;
+/// Runs in parts until `holds`.
+template <class Holds>
+void run_until(PreemptiveExecutor& executor, const Holds& holds) {
+  for (Nanoseconds until; !holds();) {
+    ASSERT_LT(until, kHangLimit) << "hangs";
+    EXPECT_EQ(executor.run(until += milliseconds(20)), RunEnd::kTime);
+  }
+}
 
 TEST(PreemptiveThreads, RunEveryReleaseOrCountItAndReadOneAnother) {
   Application app;
@@ -27,22 +34,9 @@ TEST(PreemptiveThreads, RunEveryReleaseOrCountItAndReadOneAnother) {
   app.add("slow", milliseconds(10), {}, "fast");
   PreemptiveExecutor executor(app.build_preemptive(), {}, {});
   ASSERT_TRUE(executor.start());
-  const std::pair<const char*, unsigned> tasks[] = {{"fast", 2}, {"slow", 10}};  // and their periods
-  const auto is_enough = [&](unsigned until) {
-    return std::all_of(std::begin(tasks), std::end(tasks), [&](const auto& task) {
-      const Profile& p = app.task(task.first).profile;
-      return p.cycles + p.dropped + kNotSeen >= until / task.second && p.cycles > 100 / task.second;
-    });
-  };
-  unsigned until = 0;
-  while (until < 200 || (until < 10'000 && !is_enough(until)))  // a machine that stalled has more time
-    EXPECT_EQ(executor.run(milliseconds(until += 200)), RunEnd::kTime);
-  for (const auto& [name, period] : tasks) {
-    const Profile& p = app.task(name).profile;
-    EXPECT_LE(p.cycles + p.dropped, until / period) << name;
-    EXPECT_GE(p.cycles + p.dropped + kNotSeen, until / period) << name;
-    EXPECT_GT(p.cycles, 100 / period) << name;
-  }
+  run_until(executor, [&] { return app.task("fast").profile.cycles > 50 && app.task("slow").profile.cycles > 10; });
+  expect_every_release(app.own_calls("fast"), milliseconds(2));
+  expect_every_release(app.own_calls("slow"), milliseconds(10));
   double last = 0;
   for (const Call& call : app.own_calls("slow")) {
     if (call.method != Method::kCycle) continue;
@@ -50,21 +44,8 @@ TEST(PreemptiveThreads, RunEveryReleaseOrCountItAndReadOneAnother) {
     last = call.in;
   }
   EXPECT_GT(last, 0);
-}
-
-TEST(PreemptiveThreads, GoOnWhereARunEnded) {
-  Application app;
-  app.add("a", milliseconds(2));
-  PreemptiveExecutor executor(app.build_preemptive(), {}, {});
-  ASSERT_TRUE(executor.start());
-  const Profile& p = app.task("a").profile;
-  unsigned until = 0;
-  while (until < 100 || (until < 10'000 && p.cycles + p.dropped + kNotSeen < until / 2))
-    EXPECT_EQ(executor.run(milliseconds(until += 20)), RunEnd::kTime);
-  EXPECT_LE(p.cycles + p.dropped, until / 2);
-  EXPECT_GE(p.cycles + p.dropped + kNotSeen, until / 2);
   executor.shut_down();
-  EXPECT_EQ(app.task("a").state, chimera::State::kNotCreated);
+  EXPECT_EQ(app.task("fast").state, chimera::State::kNotCreated);
 }
 
 TEST(PreemptiveThreads, SignalsOfTasksActAfterTheJobAndAllMethodsAreCalled) {
@@ -78,8 +59,7 @@ TEST(PreemptiveThreads, SignalsOfTasksActAfterTheJobAndAllMethodsAreCalled) {
   app.toy("one").sends.push_back({Signal::kReinit, "two"});
   PreemptiveExecutor executor(set, {}, {});
   ASSERT_TRUE(executor.start());
-  for (int until = 150; until <= 10'000 && count(app.own_calls("two"), Method::kReinit) == 0; until += 150)
-    EXPECT_EQ(executor.run(milliseconds(until)), RunEnd::kTime);
+  run_until(executor, [&] { return count(app.own_calls("two"), Method::kReinit) > 0; });
   EXPECT_EQ(app.task("two").state, chimera::State::kOn);
   EXPECT_EQ(count(app.own_calls("two"), Method::kOff), 1u);
   EXPECT_EQ(count(app.own_calls("two"), Method::kOn), 2u);
@@ -96,19 +76,15 @@ TEST(PreemptiveThreads, AFaultLeadsToErrorAndTheOthersGoOn) {
   app.toy("bad").answers[CHIMERA_ERROR] = {CHIMERA_FAULT};
   PreemptiveExecutor executor(set, {}, {});
   ASSERT_TRUE(executor.start());
-  const auto is_over = [&] {
+  run_until(executor, [&] {
     return app.task("bad").state == chimera::State::kError && app.task("good").profile.cycles > 25;
-  };
-  for (int until = 100; until <= 10'000 && !is_over(); until += 100)
-    EXPECT_EQ(executor.run(milliseconds(until)), RunEnd::kTime);
-  EXPECT_EQ(app.task("bad").state, chimera::State::kError);
+  });
   EXPECT_EQ(app.task("bad").profile.cycles, 1u);
-  EXPECT_GT(app.task("good").profile.cycles, 25u);
 }
 
 TEST(PreemptiveThreads, AJobThatSleepsIsChargedForWhatItComputed) {
   Application app;
-  app.add("sleeper", milliseconds(20)).budget = milliseconds(2);
+  app.add("sleeper", milliseconds(20));
   app.toy("sleeper").during = [](const chimera_call&) {
     (void)LinuxClock().wait_until(LinuxClock().now() + milliseconds(5));
     return CHIMERA_OK;
@@ -116,44 +92,26 @@ TEST(PreemptiveThreads, AJobThatSleepsIsChargedForWhatItComputed) {
   PreemptiveExecutor executor(app.build_preemptive(), {}, {});
   ASSERT_TRUE(executor.start());
   const Profile& p = app.task("sleeper").profile;
-  for (int until = 200; until <= 10'000 && p.cycles <= 2; until += 200)
-    EXPECT_EQ(executor.run(milliseconds(until)), RunEnd::kTime);
-  EXPECT_GT(p.cycles, 2u);
-  EXPECT_GE(p.response.min, milliseconds(5));
-  EXPECT_LT(p.execution[CHIMERA_CYCLE].mean(), milliseconds(2));
-  EXPECT_LT(p.overrun, p.cycles);
-}
-
-// Two jobs at once set the alarm to their deadline, 40 times; by then both have long ended. It comes to a job that ends
-// later in its period than the one before: to half of them on a machine that is busy with other things.
-TEST(PreemptiveThreads, TheSupervisorIsNotWokenForJobsThatHaveEnded) {
-  Application app;
-  app.add("one", milliseconds(20), milliseconds(2));
-  app.add("two", milliseconds(20), milliseconds(2));
-  PreemptiveExecutor executor(app.build_preemptive(), {}, {});
-  ASSERT_TRUE(executor.start());
-  EXPECT_EQ(executor.run(milliseconds(800)), RunEnd::kTime);
-  const std::uint64_t late = app.task("one").profile.missed + app.task("two").profile.missed;
-  EXPECT_LT(executor.counts().supervised, 32u + 2 * late);
+  run_until(executor, [&] { return p.cycles > 2; });
+  EXPECT_LE(p.execution[CHIMERA_CYCLE].sum, p.response.sum - milliseconds(5) * static_cast<std::int64_t>(p.cycles));
 }
 
 // Also where nobody looks at a job that is alone before it ends.
 TEST(PreemptiveThreads, EveryJobOverItsBudgetIsRecordedOnce) {
   Application app;
   app.add("over", milliseconds(10), milliseconds(2)).budget = milliseconds(1);
-  app.add("within", milliseconds(20)).budget = milliseconds(20);
+  app.add("within", milliseconds(20)).budget = kHangLimit;
   Listened listened;
   RunOptions options;
   options.tap = listened.tap();
   PreemptiveExecutor executor(app.build_preemptive(), options, {});
   ASSERT_TRUE(executor.start());
-  EXPECT_EQ(executor.run(milliseconds(200)), RunEnd::kTime);
+  run_until(executor, [&] { return app.task("over").profile.overrun > 5 && app.task("within").profile.cycles > 2; });
   std::uint64_t over = 0, within = 0;
   for (const TapRecord& record : listened.records()) {
     if (record.kind != TapKind::kOverrun) continue;
     ++(record.task == app.task("over").id ? over : within);
   }
-  EXPECT_GT(over, 0u);
   EXPECT_EQ(over, app.task("over").profile.overrun);
   EXPECT_EQ(within, 0u);
 }
@@ -185,8 +143,7 @@ TEST(PreemptiveThreads, AServerAnswersEveryRingAndHaltsJobsThatAreLongerThanItsC
   PreemptiveExecutor executor(app.build_preemptive(), {}, {});
   ASSERT_TRUE(executor.start());
   const Profile& p = app.task("served").profile;
-  for (int until = 200; until <= 20'000 && p.cycles < 10; until += 200)
-    EXPECT_EQ(executor.run(milliseconds(until)), RunEnd::kTime);
+  run_until(executor, [&] { return p.cycles >= 10; });
   EXPECT_EQ(p.cycles, 10u);
   EXPECT_EQ(p.events, 10u);
   EXPECT_EQ(p.events_lost, 0u);
@@ -207,19 +164,15 @@ TEST(PreemptiveThreads, EventsOfATaskThatIsNotOnAreLostAndCounted) {
   PreemptiveExecutor executor(set, {}, {});
   ASSERT_TRUE(executor.start());
   const Profile& p = app.task("served").profile;
-  int until = 100;
-  for (; until <= 10'000 && app.task("served").state != chimera::State::kOn; until += 100)
-    EXPECT_EQ(executor.run(milliseconds(until)), RunEnd::kTime);
+  run_until(executor, [&] { return app.task("served").state == chimera::State::kOn; });
   EXPECT_EQ(p.events_lost, 3u) << "those before `on`";
   for (int i = 0; i < 12; ++i) sends.push_back({Signal::kWakeup, "served"});  // an outbox takes 16
-  for (; until <= 20'000 && (p.events < 12 || p.cycles < p.events); until += 100)
-    EXPECT_EQ(executor.run(milliseconds(until)), RunEnd::kTime);
+  run_until(executor, [&] { return p.events >= 12 && p.cycles >= p.events; });
   EXPECT_EQ(p.events, 12u);
   EXPECT_EQ(p.events_lost, 3u);
   EXPECT_EQ(p.cycles, p.events);
 }
 
-/// Tells bytes of a pipe, one at a time.
 struct Pipe {
   Pipe() { EXPECT_EQ(::pipe2(ends, O_NONBLOCK | O_CLOEXEC), 0); }
   ~Pipe() {
@@ -252,8 +205,7 @@ TEST(PreemptiveThreads, AServerAnswersADescriptorForAsLongAsItIsReadable) {
     LinuxClock().wait_until(LinuxClock().now() + milliseconds(20));
     pipe.write(4);
   });
-  for (int until = 200; until <= 10'000 && task.profile.cycles < 7; until += 200)
-    EXPECT_EQ(executor.run(milliseconds(until)), RunEnd::kTime);
+  run_until(executor, [&] { return task.profile.cycles >= 7; });
   writer.join();
   EXPECT_EQ(task.profile.cycles, 7u);
   EXPECT_EQ(task.profile.events, 7u);

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "chimera/base/testing/await.h"
 #include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/testing/test_application.h"
 #include "tests/conformance/by_threads.h"
@@ -133,6 +134,23 @@ inline void expect_bindings_of_releases() {
   }
 }
 
-inline std::ptrdiff_t count(SwitchEnd end) { return std::ranges::count(seen.receipts, end, &SwitchReceipt::end); }
+/// Runs of ten switches until `enough` of them are done.
+inline void run_until_done(const ProcessorPlace& place, Nanoseconds period, Nanoseconds pause, int enough) {
+  int done = 0;
+  Nanoseconds longest;
+  for (unsigned runs = 0; done < enough; ++runs) {
+    ASSERT_LT(pause * 10 * runs, kHangLimit) << "hangs";
+    run(place, period, 10, pause, runs);
+    ASSERT_EQ(seen.receipts.size(), 10u);
+    expect_bindings_of_releases();
+    for (const SwitchReceipt& receipt : seen.receipts) {
+      if (receipt.end != SwitchEnd::kDone) continue;
+      ++done;
+      longest = std::max(longest, receipt.at - receipt.asked);
+    }
+    std::printf("%llu cycles lost in run %u\n", static_cast<unsigned long long>(seen.lost), runs);
+  }
+  record_duration("longest_switch", longest);
+}
 
 }  // namespace chimera::toy::switch_by_threads

@@ -286,4 +286,16 @@ class Application {
   std::vector<std::unique_ptr<HeapTaskSet>> sets_;  // one, or by rtpu
 };
 
+/// Each release between two jobs of the task counts as dropped in the second one: none is lost, none comes twice.
+inline void expect_every_release(const std::vector<Call>& calls, Nanoseconds period) {
+  const Call* last = nullptr;
+  for (const Call& call : calls) {
+    if (call.method != Method::kCycle) continue;
+    if (last != nullptr) {
+      EXPECT_EQ(call.now, last->now + period * (1 + std::int64_t{call.dropped})) << call.task;
+    }
+    last = &call;
+  }
+}
+
 }  // namespace chimera::toy

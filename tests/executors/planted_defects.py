@@ -19,7 +19,9 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RUNTIME = "chimera/runtime/"
-TARGETS = ("runtime_test", "conformance_test")
+PROGRAMS = {name: f"{folder}/{name}" for folder, name in (
+    ("chimera/runtime", "runtime_test"), ("tests/conformance", "conformance_test"),
+    ("chimera/runtime", "runtime_process_test"), ("tests/conformance", "conformance_process_test"))}
 LIMIT = 300  # seconds for one test program; one that hangs has caught the defect
 
 # What is wrong, the file, its text, and the text with the defect.
@@ -157,17 +159,17 @@ def make(copy):
 
 def build(copy):
     """What the compiler said when it refused, else ""."""
-    done = subprocess.run(["ninja", "-C", str(copy / "build/debug"), "-j", str(len(os.sched_getaffinity(0))), *TARGETS],
-                          capture_output=True, text=True)
+    command = ["ninja", "-C", str(copy / "build/debug"), "-j", str(len(os.sched_getaffinity(0))), *PROGRAMS]
+    done = subprocess.run(command, capture_output=True, text=True)
     return done.stdout[-3000:] if done.returncode else ""
 
 
 def caught_by(copy):
     """The first test that fails, or that its program died or hung; "": none."""
-    for folder, program in (("chimera/runtime", TARGETS[0]), ("tests/conformance", TARGETS[1])):
+    for program, path in PROGRAMS.items():
         try:
-            done = subprocess.run([str(copy / "build/debug" / folder / program), "--gtest_fail_fast"], timeout=LIMIT,
-                                  cwd=copy / folder, capture_output=True, text=True, errors="replace")
+            done = subprocess.run([str(copy / "build/debug" / path), "--gtest_fail_fast"], timeout=LIMIT,
+                                  cwd=(copy / path).parent, capture_output=True, text=True, errors="replace")
         except subprocess.TimeoutExpired:
             return f"{program}, which hangs"
         if done.returncode == 0:

@@ -33,10 +33,10 @@ pid_t start_forked(Body body) {
   ::_exit(0);
 }
 
-/// False: it did not come true within 20 s.
+/// False: it did not come true within 60 s.
 template <class Condition>
 bool wait_for(Condition condition) {
-  const double end = seconds_now() + 20;
+  const double end = seconds_now() + 60;
   while (!condition()) {
     if (seconds_now() > end) return false;
     nap(20);

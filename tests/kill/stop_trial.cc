@@ -144,7 +144,7 @@ class Trial {
         if (reader.phase_seen != score_->phase) return false;
       return true;
     });
-    if (!looked) report.failure = "a reader got no read in 20 s";
+    if (!looked) report.failure = "a reader got no read in 60 s";
   }
 
   void end_all(StopReport& report) {

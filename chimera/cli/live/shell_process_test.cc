@@ -22,6 +22,7 @@
 #include <thread>
 #include <utility>
 
+#include "chimera/base/testing/await.h"
 #include "chimera/base/testing/tree_path.h"
 #include "chimera/cli/live/commands.h"
 #include "chimera/cli/live/interactive.h"
@@ -270,7 +271,7 @@ TEST_F(ShellTest, AScriptStopsAtTheFirstRefusalAndNamesItsLine) {
 TEST_F(ShellTest, AScopeRecordsRoundItsTriggerAndCountsItsGaps) {
   serve();
   const std::string said = run({"scope", "error", "--trigger", "error > 9.5 mrad", "--pre", "5 ms", "--for", "5 ms",
-                                "--csv", path("a.csv"), "--svg", path("a.svg"), "--wait", "10 s"});
+                                "--csv", path("a.csv"), "--svg", path("a.svg"), "--wait", "60 s"});
   EXPECT_EQ(said.substr(0, 14), "0||[puma_pid]\n") << said;
   EXPECT_NE(said.find("recording the pre-trigger of 5.00 ms first"), std::string::npos) << said;
   EXPECT_NE(said.find("; 1 gap, 3 rows lost\n"), std::string::npos) << said;
@@ -300,8 +301,7 @@ TEST_F(ShellTest, WatchGoesOnUntilCtrlC) {
   std::FILE *const out = std::tmpfile(), *const err = std::tmpfile();
   std::thread user([me, written = ::fileno(out)] {
     struct stat seen {};
-    for (int i = 0; i < 10'000 && ::fstat(written, &seen) == 0 && seen.st_size < 32; ++i)  // two rows of 16
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    EXPECT_TRUE(await_that([&] { return ::fstat(written, &seen) == 0 && seen.st_size >= 32; })) << "two rows of 16";
     ::pthread_kill(me, SIGINT);
   });
   ::pthread_sigmask(SIG_BLOCK, &interrupt, nullptr);  // as it is while the command runs, from before the user types
@@ -349,8 +349,7 @@ class OnTerminal {
     child_ = ::forkpty(&terminal_, nullptr, nullptr, &size);
     if (child_ != 0) return;
     ::setenv("TERM", "xterm", 1);
-    for (int i = 0; i < 1000 && !Session::open({}); ++i) ::usleep(10'000);
-    ::_exit(run());
+    ::_exit(await_that([] { return Session::open({}).has_value(); }) ? run() : -1);
   }
   ~OnTerminal() {
     if (child_ > 0) ::kill(child_, SIGKILL), ::waitpid(child_, nullptr, 0);  // still ours
@@ -366,9 +365,9 @@ class OnTerminal {
     const winsize size{lines, columns, 0, 0};
     EXPECT_EQ(::ioctl(terminal_, TIOCSWINSZ, &size), 0);
   }
-  /// Whether `text` is shown within ten seconds, behind what was waited for before.
+  /// Waits until `text` is shown, behind the text of the last call.
   bool shows(const std::string& text) {
-    const Nanoseconds until = LinuxClock().now() + seconds(10);
+    const Nanoseconds until = LinuxClock().now() + kHangLimit;
     while (LinuxClock().now() < until) {
       const std::size_t at = shown_.find(text, seen_);
       if (at != std::string::npos) return seen_ = at + text.size(), true;
@@ -382,23 +381,16 @@ class OnTerminal {
     ADD_FAILURE() << "not shown: " << text << "\nbut: " << shown_.substr(seen_);
     return false;
   }
-  /// Exit code within ten seconds; -1: still there.
+  /// The exit code; -1: the command hangs.
   int ended() {
-    for (int i = 0; i < 1000; ++i) {
-      int status = 0;
-      if (::waitpid(child_, &status, WNOHANG) == child_) {
-        child_ = -1;
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -2;
-      }
-      ::usleep(10'000);
-    }
-    return -1;
+    int status = 0;
+    if (!await_that([&] { return ::waitpid(child_, &status, WNOHANG) == child_; })) return -1;
+    child_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -2;
   }
   /// Shows the prompt and has the keys one by one.
   bool prompts() {
-    if (!shows("puma_pid> ")) return false;
-    for (int i = 0; i < 1000 && is_sane(); ++i) ::usleep(10'000);
-    return !is_sane();
+    return shows("puma_pid> ") && await_that([this] { return !is_sane(); });
   }
   bool is_sane() const {
     termios now{};

@@ -36,7 +36,7 @@ TEST(Outlet, WhatIsPrintedArrivesInOrder) {
   Pipe pipe;
   Outlet outlet(pipe.ends[1]);
   for (int i = 0; i < 3; ++i) std::fprintf(outlet.stream(), "line %d\n", i);
-  outlet.finish(seconds(10));
+  outlet.finish(seconds(60));
   EXPECT_EQ(outlet.why_lost(), 0);
   EXPECT_EQ(pipe.read(21), "line 0\nline 1\nline 2\n");
 }
@@ -49,7 +49,7 @@ TEST(Outlet, NobodyWaitsForAReaderAndTheLossIsKnown) {
   std::fflush(outlet.stream());
   EXPECT_EQ(outlet.why_lost(), kNobodyReads);
   std::thread reader([&pipe] { pipe.read(4 << 20); });
-  outlet.finish(seconds(10));
+  outlet.finish(seconds(60));
   ::close(std::exchange(pipe.ends[1], -1));
   reader.join();
 }
@@ -62,21 +62,21 @@ TEST(Outlet, AShortPatienceAtTheEndIsALoss) {
   outlet.finish(milliseconds(20));
   EXPECT_EQ(outlet.why_lost(), kNobodyReads);
   EXPECT_EQ(pipe.read(much.size()).size(), much.size()) << "it arrives if somebody reads later";
-  outlet.finish(seconds(10));
+  outlet.finish(seconds(60));
 }
 
 TEST(Outlet, AFullDeviceAndABrokenPipeAreReasons) {
   const int full = ::open("/dev/full", O_WRONLY | O_CLOEXEC);
   Outlet outlet(full);
   std::fputs("text\n", outlet.stream());
-  outlet.finish(seconds(10));
+  outlet.finish(seconds(60));
   EXPECT_EQ(outlet.why_lost(), ENOSPC);
   const auto before = std::signal(SIGPIPE, SIG_IGN);
   Pipe pipe;
   ::close(std::exchange(pipe.ends[0], -1));
   Outlet broken(pipe.ends[1]);
   std::fputs("text\n", broken.stream());
-  broken.finish(seconds(10));
+  broken.finish(seconds(60));
   EXPECT_EQ(broken.why_lost(), EPIPE);
   std::signal(SIGPIPE, before);
   ::close(full);

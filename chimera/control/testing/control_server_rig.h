@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "chimera/base/testing/await.h"
 #include "chimera/control/control_server.h"
 
 namespace chimera::control {
@@ -85,6 +86,16 @@ struct DoorTest : ::testing::Test {
     char bytes[4096];
     for (ssize_t n; (n = ::recv(fd, bytes, sizeof bytes, MSG_DONTWAIT)) > 0;)
       got.append(bytes, static_cast<std::size_t>(n));
+    return got;
+  }
+  /// Serves at one instant until something comes back from what another thread sends.
+  std::string await_answer(int fd) {
+    std::string got;
+    EXPECT_TRUE(await_that([&] {
+      serve(Nanoseconds{});
+      got = take(fd);
+      return !got.empty();
+    }));
     return got;
   }
   static bool is_closed(int fd) {

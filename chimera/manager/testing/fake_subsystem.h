@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "chimera/base/testing/await.h"
 #include "chimera/manager/manager_loop.h"
 #include "chimera/manager/testing/fake_rtpu.h"
 #include "chimera/manager/testing/test_bundle.h"
@@ -197,9 +198,9 @@ class FakeSubsystem {
     return true;
   }
   std::function<void()> after_step;
-  /// Lets the driver and the keeper work until `holds`; false after five seconds.
+  /// Lets the driver and the keeper work until `holds`; false after kHangLimit.
   bool until(const std::function<bool()>& holds) {
-    for (const Nanoseconds limit = now() + seconds(5); now() < limit;) {
+    for (const Nanoseconds limit = now() + kHangLimit; now() < limit;) {
       if (!step()) return false;
       if (holds()) return true;
     }

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <thread>
 
+#include "chimera/runtime/testing/ended_thread.h"
 #include "chimera/runtime/testing/preemptive_parts.h"
 
 namespace chimera {
@@ -68,13 +69,13 @@ TEST_F(SupervisorTest, DemotesAJobThatIsNotOverAtItsDeadline) {
 
 TEST_F(SupervisorTest, ActsOnABudgetOnce) {
   TaskSpec& spec = add("over", milliseconds(10));
-  spec.budget = microseconds(100);
+  spec.budget = milliseconds(20);
   spec.on_overrun = OnMiss::kAbort;
   make();
   JobThread& job = begin(0, origin);
   supervisor().check_running(at(0));
   EXPECT_FALSE(job.task.give_up.load(std::memory_order_relaxed));
-  use(microseconds(200));
+  use(milliseconds(21));
   supervisor().check_running(at(1));
   EXPECT_TRUE(job.task.give_up.load(std::memory_order_relaxed));
   EXPECT_TRUE(releases().misses().is_reported_overrun(job.id));
@@ -100,7 +101,7 @@ TEST_F(SupervisorTest, NoticesThatTheThreadOfAJobIsGone) {
   make();
   JobThread& job = begin(0, origin);
   job.start([&job] { job.attach(); });
-  job.join();
+  testing::join_and_await_end(job);
   supervisor().check_running(at(1));
   EXPECT_TRUE(job.phase.is_idle());
   EXPECT_FALSE(job.task.is_busy);
@@ -132,22 +133,22 @@ TEST_F(SupervisorTest, GivesUpAJobThatSleepsForTwoSecondsAndTenPeriods) {
 }
 
 TEST_F(SupervisorTest, HaltsAJobWithoutCapacityAndResumesItWhenThereIsSome) {
-  TaskSpec& spec = add("events", milliseconds(10));
+  TaskSpec& spec = add("events", milliseconds(100));
   spec.aperiodic = true;
-  spec.server = ServerSpec{ServerKind::kDeferrable, milliseconds(1), milliseconds(10)};
+  spec.server = ServerSpec{ServerKind::kDeferrable, milliseconds(20), milliseconds(100)};
   make();
   std::uint32_t waiting = 1;
   (void)job(0).sporadic->job().accept(waiting, origin);
   JobThread& job = begin(0, origin);
   supervisor().check_jobs(origin);
   EXPECT_FALSE(job.sporadic->is_halted());
-  use(microseconds(1200));
-  supervisor().check_jobs(at(2));
+  use(milliseconds(21));
+  supervisor().check_jobs(at(30));
   EXPECT_TRUE(job.sporadic->is_halted());
   EXPECT_EQ(job.task.profile.exhausted, 1u);
   EXPECT_EQ(ready().size(), 0u);
-  EXPECT_EQ(checks().due(job), at(10));
-  supervisor().check_jobs(at(20));
+  EXPECT_EQ(checks().due(job), at(100));
+  supervisor().check_jobs(at(200));
   EXPECT_FALSE(job.sporadic->is_halted());
   EXPECT_EQ(ready().most_urgent(), &job);
   EXPECT_TRUE(job.phase.is_running());

@@ -2,9 +2,7 @@
 // For tests of jobs whose threads have ended.
 #pragma once
 
-#include <chrono>
-#include <thread>
-
+#include "chimera/base/testing/await.h"
 #include "chimera/runtime/preemptive/job_thread.h"
 
 namespace chimera::testing {
@@ -13,8 +11,7 @@ namespace chimera::testing {
 /// that joins it goes on, and until then it uses time.
 inline void join_and_await_end(JobThread& job) {
   job.join();
-  for (int i = 0; i < 10'000 && used_by(job.thread()) != kNever; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_TRUE(await_that([&] { return used_by(job.thread()) == kNever; }));
 }
 
 }  // namespace chimera::testing

@@ -45,7 +45,7 @@ struct @TYPE@ : ::testing::Test {
     int before = 0, there = 0;
     ASSERT_EQ(::ioctl(line, FIONREAD, &before), 0);
     ASSERT_EQ(::write(device, text, std::strlen(text)), size);
-    for (int i = 0; i < 2000 && there < before + size; ++i) {
+    for (int i = 0; i < 60'000 && there < before + size; ++i) {
       if (i > 0) ::usleep(1000);
       ASSERT_EQ(::ioctl(line, FIONREAD, &there), 0);
     }
@@ -54,7 +54,7 @@ struct @TYPE@ : ::testing::Test {
   std::string heard(std::size_t size = 0) {
     std::string all;
     pollfd ready{device, POLLIN, 0};
-    while ((size == 0 || all.size() < size) && ::poll(&ready, 1, size == 0 ? 20 : 2000) > 0) {
+    while ((size == 0 || all.size() < size) && ::poll(&ready, 1, size == 0 ? 20 : 60'000) > 0) {
       char text[256];
       const ssize_t got = ::read(device, text, size == 0 ? sizeof text : size - all.size());
       if (got <= 0) break;

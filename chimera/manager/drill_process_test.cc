@@ -44,7 +44,7 @@ TEST_F(DrillTest, HardwareIsWhatSaysWhenItIsSafeAndWhatMayMove) {
 }
 
 TEST_F(DrillTest, RaisesTheFlagUntilTheDeviceIsSafeAndTellsTheTime) {
-  begin(seconds(10));
+  begin(kHangLimit);
   EXPECT_EQ(flag(), kDrillFlag);
   EXPECT_EQ(flag_text(), R"({"by":["drill"],"up":true})");
   EXPECT_TRUE(fake.until([&] { return fake.rtpu(0).block().profile(fake.task("arm")).cycles > 3; }));
@@ -84,7 +84,7 @@ TEST_F(DrillTest, LowersTheFlagWhenTheTimeIsOver) {
 }
 
 TEST_F(DrillTest, ATaskThatDiesIsNotSafe) {
-  begin(seconds(10));
+  begin(kHangLimit);
   fake.kill_rtpu(0, SIGKILL);
   ASSERT_TRUE(until_over());
   EXPECT_EQ(got->tasks[0].verdict, DrillVerdict::kLeft);
@@ -100,7 +100,7 @@ TEST_F(DrillTest, TheOperatorsPartOfTheFlagIsNotTouched) {
 }
 
 TEST_F(DrillTest, AManagerThatDiesEndsItsDrill) {
-  begin(seconds(10));
+  begin(kHangLimit);
   fake.kill_manager();
   fake.start_manager();
   EXPECT_EQ(flag(), 0u);
@@ -108,7 +108,7 @@ TEST_F(DrillTest, AManagerThatDiesEndsItsDrill) {
 
 TEST_F(DrillTest, KillsAUnitWhenAllAreSafeAndTellsWhatTheGuardWrote) {
   fake.rtpu(0).filled_with = 1;
-  begin(seconds(10), RtpuId(std::size_t{0}));
+  begin(kHangLimit, RtpuId(std::size_t{0}));
   ASSERT_TRUE(fake.until([&] { return fake.killed == 0u; }));
   EXPECT_FALSE(got) << "the guard has said nothing";
   KeeperMessage written{.kind = KeeperMessage::Kind::kFramesWritten, .index = 1, .code = 1, .at = now()};
@@ -128,7 +128,7 @@ TEST_F(DrillTest, KillsAUnitWhenAllAreSafeAndTellsWhatTheGuardWrote) {
 
 TEST_F(DrillTest, AUnitThatHadNoSafeFrameIsNotSafe) {
   fake.rtpu(0).filled_with = 1;
-  begin(seconds(10), RtpuId(std::size_t{0}));
+  begin(kHangLimit, RtpuId(std::size_t{0}));
   ASSERT_TRUE(fake.until([&] { return fake.killed == 0u; }));
   fake.driver().drill().take({.kind = KeeperMessage::Kind::kFramesWritten, .index = 0});
   ASSERT_TRUE(until_over());
@@ -149,7 +149,7 @@ TEST(Drill, WithoutHardwareNothingIsSafe) {
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
   std::optional<DrillOutcome> got;
-  fake.driver().drill().begin(seconds(10), RtpuId{}, now(), [&](const DrillOutcome& outcome) { got = outcome; });
+  fake.driver().drill().begin(kHangLimit, RtpuId{}, now(), [&](const DrillOutcome& outcome) { got = outcome; });
   ASSERT_TRUE(got);
   EXPECT_TRUE(got->tasks.empty());
   EXPECT_FALSE(got->is_safe());
@@ -163,7 +163,7 @@ TEST(Drill, WhatCannotTellIsNotWaitedForAndNotSafe) {
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("winch") && fake.until_on("arm"));
   std::optional<DrillOutcome> got;
-  fake.driver().drill().begin(seconds(10), RtpuId{}, now(), [&](const DrillOutcome& outcome) { got = outcome; });
+  fake.driver().drill().begin(kHangLimit, RtpuId{}, now(), [&](const DrillOutcome& outcome) { got = outcome; });
   ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
   ASSERT_EQ(got->tasks.size(), 2u);
   EXPECT_EQ(got->tasks[0].verdict, DrillVerdict::kSafe);
