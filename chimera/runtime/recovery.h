@@ -35,8 +35,8 @@ class Recovery {
   explicit Recovery(const Parts& parts) noexcept
       : parts_(parts),
         gap_(parts.set.tasks(), parts.queue, parts.threads),
-        record_(parts.set, parts.threads, parts.switching) {}
-  /// Takeovers are told to the peers, which outlive this; null: their receipts are kept here. Context: setup.
+        record_(parts.set, parts.threads) {}
+  /// Takeovers are told to the peers, which outlive this; null: they are not told. Context: setup.
   void prepare(SwitchPeers* peers);
 
   /// Does what is due. Of no effect where no task has a standby or is restarted.

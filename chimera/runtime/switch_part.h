@@ -3,6 +3,7 @@
 // outlives the context. Whoever planned the switch puts the parts together. docs/formats/processes.md.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -61,6 +62,30 @@ void write_part(const SwitchReceipt& receipt, IsMine is_mine, SwitchPart& part) 
     ++part.n_variables;
   }
   part.number = receipt.number;
+}
+
+/// The part as a receipt whose lists point into it. The lists are not to be written, and any value may be wrong.
+/// Context: setup.
+inline void read_part(const SwitchPart& part, SwitchReceipt& receipt) noexcept {
+  SwitchPart& lists = const_cast<SwitchPart&>(part);
+  receipt = {};
+  receipt.number = part.number;
+  receipt.end = part.end;
+  receipt.why = part.why;
+  receipt.task = part.task;
+  receipt.variable = part.variable;
+  receipt.value = part.value;
+  const char* const end = std::find(part.said, part.said + SwitchPart::kSaid, '\0');
+  receipt.said.assign({part.said, static_cast<std::size_t>(end - part.said)});
+  receipt.armed = part.armed;
+  receipt.at = part.at;
+  receipt.ended = part.ended;
+  receipt.flag = part.flag;
+  receipt.not_back = part.not_back;
+  receipt.tasks = std::span(lists.tasks).first(std::min<std::size_t>(part.n_tasks, part.tasks.size()));
+  receipt.variables = std::span(lists.variables).first(std::min(part.n_variables, SwitchPart::kVariablesKept));
+  receipt.reinitialised =
+      std::span(lists.reinitialised).first(std::min<std::size_t>(part.n_reinitialised, part.reinitialised.size()));
 }
 
 }  // namespace chimera

@@ -36,22 +36,4 @@ class SwitchPeers {
   ~SwitchPeers() = default;
 };
 
-/// A context that is alone.
-class NoSwitchPeers final : public SwitchPeers {
- public:
-  SwitchPage& page() noexcept override { return page_; }
-  std::uint16_t living() const noexcept override { return 1; }
-  const SwitchProgress* progress(std::uint32_t) const noexcept override { return nullptr; }
-  void ring() noexcept override {}
-  void show() noexcept override {}
-  void tell_adopted(std::uint16_t) noexcept override {}
-  void tell_over(const SwitchReceipt&) noexcept override {}
-  void tell_takeover(const Takeover&) noexcept override {}
-  void wish(const SwitchRequest&, bool, Nanoseconds) noexcept override {}
-  bool is_wish_open() const noexcept override { return false; }
-
- private:
-  SwitchPage page_;
-};
-
 }  // namespace chimera

@@ -11,6 +11,13 @@ bool is_on(const TaskStanding& standing) noexcept { return standing.state == Sta
 
 }  // namespace
 
+TaskBits tasks_on(std::span<const TaskStanding> standing) noexcept {
+  TaskBits on;
+  for (std::size_t t = 0; t < standing.size(); ++t)
+    if (is_on(standing[t])) on.add(TaskId(t));
+  return on;
+}
+
 TaskBits tasks_of(const ApplicationSpec& spec, std::uint32_t set) noexcept {
   TaskBits bits;
   for (const TaskId id : spec.sets[set].order) bits.add(id);

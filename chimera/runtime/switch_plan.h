@@ -96,6 +96,8 @@ struct TaskStanding {
   bool in_service = false;  ///< `init` or `kill` of it is under way
 };
 
+/// Which tasks are ON. Context: cycle boundary.
+TaskBits tasks_on(std::span<const TaskStanding> standing) noexcept;
 /// The tasks of the set of that number. Requires: it is one of them. Context: cycle boundary.
 TaskBits tasks_of(const ApplicationSpec& spec, std::uint32_t set) noexcept;
 /// The tasks that are ON after it. Context: cycle boundary.

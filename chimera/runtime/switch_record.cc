@@ -6,24 +6,18 @@
 
 namespace chimera {
 
-void SwitchRecord::prepare(std::size_t n_receipts) {
+void SwitchRecord::prepare() {
   const ApplicationSpec& spec = set_.spec();
-  receipts_.prepare(spec, n_receipts, set_.setup_memory());
+  receipts_.prepare(spec, 1, set_.setup_memory());
   before_ = set_.setup_memory().take<std::uint64_t>(spec.tasks.size());
   cycles_ = set_.setup_memory().take<std::uint64_t>(spec.tasks.size());
   steps_.prepare();
   delays_.prepare(spec.tasks.size(), set_.setup_memory());
 }
 
-SwitchReceipt* SwitchRecord::add_beside() noexcept {
-  if (receipts_.has_room()) return &receipts_.add();
-  receipts_.leave_out();
-  return nullptr;
-}
-
 SwitchReceipt& SwitchRecord::restart() noexcept {
   receipts_.clear();
-  return add();
+  return *(receipt_ = &receipts_.add());
 }
 
 void SwitchRecord::take_up(const SwitchPlan& plan) noexcept {

@@ -20,18 +20,13 @@ inline constexpr Nanoseconds kFirstCycleWithin = seconds(1);
 class SwitchRecord {
  public:
   explicit SwitchRecord(TaskSet& set) noexcept : set_(set), steps_(set) {}
-  /// Takes memory for so many receipts. Context: setup.
-  void prepare(std::size_t n_receipts);
+  /// Context: setup.
+  void prepare();
 
-  /// A new receipt, which is the present one from here on; without room in the place of the last one.
-  SwitchReceipt& add() noexcept { return *(receipt_ = &receipts_.add()); }
-  /// One more, which is not the present one; null: there is no room, and it is counted.
-  SwitchReceipt* add_beside() noexcept;
-  /// The only receipt anew.
+  /// The receipt of another switch takes the place of the last one.
   SwitchReceipt& restart() noexcept;
   SwitchReceipt& receipt() noexcept { return *receipt_; }
   const SwitchReceipt& receipt() const noexcept { return *receipt_; }
-  SwitchReceipts& receipts() noexcept { return receipts_; }
 
   /// Lists the tasks and variables of the plan: losses count from here.
   void take_up(const SwitchPlan& plan) noexcept;
@@ -72,7 +67,7 @@ class SwitchRecord {
   TaskSet& set_;
   HandoverSteps steps_;
   StartDelays delays_;
-  SwitchReceipts receipts_;
+  SwitchReceipts receipts_;  // one
   SwitchReceipt* receipt_ = nullptr;
   std::span<std::uint64_t> before_;  // by task: losses() when its part of the switch began
   std::span<std::uint64_t> cycles_;  // by task: completed cycles at the instant of the change

@@ -32,9 +32,6 @@ constexpr std::uint8_t reason_to_go_slowly(NoSwitch why) noexcept {
   return why == NoSwitch::kNoGap ? kSlowForGap : why == NoSwitch::kNotReady ? kSlowForDevice : 0;
 }
 
-/// A switch is tried so often, where it was only late or goes the slow way next.
-inline constexpr std::uint32_t kMostTries = 4;
-
 /// SwitchOrder::lead of that try, by the lead of the first. Its longest job is in it already: only what else held a
 /// context up is given more time, eight times as much with each try. Context: any.
 constexpr Nanoseconds lead_of_try(Nanoseconds first, std::uint32_t tries) noexcept {

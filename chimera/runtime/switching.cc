@@ -40,27 +40,6 @@ bool have_adopted(SwitchPeers& peers, std::uint32_t members, std::uint16_t numbe
   return true;
 }
 
-// A plan is on the page that the next step takes up.
-bool is_announced(SwitchPeers& peers, std::uint16_t seen) noexcept {
-  return SwitchAgreement(peers.page(), {}).plan().number != seen;
-}
-
-// Of a context that is alone, behind plan `last`.
-SwitchOrder lone_order(TaskSet& set, std::uint16_t last, const TaskBits& target, std::uint8_t slow,
-                       Nanoseconds until) {
-  SwitchOrder order;
-  for (const Task& each : set.tasks())
-    if (each.shown_state() == State::kOn) order.on.add(each.id);
-  order.number = next_plan(last);
-  order.members = 1;
-  order.after = set_of(set.spec(), target);
-  order.target = target;
-  order.slow = slow;
-  order.constants = set.constants().in_force();
-  order.until = until;
-  return order;
-}
-
 }  // namespace
 
 Switching::Switching(const Parts& parts) noexcept
@@ -70,20 +49,15 @@ Switching::Switching(const Parts& parts) noexcept
       slow_({parts.set, parts.threads, parts.settlement, parts.tap, parts.clock, gap_, record_}),
       record_(parts.set) {}
 
-void Switching::prepare(std::size_t n_switches, SwitchPeers* peers, AskedTasks* asked) {
-  if (n_switches == 0 && peers == nullptr) return;
-  asked_ = asked;
+void Switching::prepare(SwitchPeers* peers) {
+  if (peers == nullptr) return;
   TaskSet& set = parts_.set;
   CHIMERA_ASSERT(set.spec().tasks.size() <= kMaxSwitchedTasks);
-  if (peers != nullptr) {
-    peers_ = peers;
-    me_ = set.context();
-  } else {
-    ways_.prepare(set.spec(), set.setup_memory());
-  }
+  peers_ = peers;
+  me_ = set.context();
   slow_.prepare();
   planner_.prepare(set.spec(), set.setup_memory());
-  record_.prepare(std::max<std::size_t>(n_switches, 1));
+  record_.prepare();
   changeover_.prepare();
   standing_ = set.setup_memory().take<TaskStanding>(set.tasks().size());
 }
@@ -91,9 +65,10 @@ void Switching::prepare(std::size_t n_switches, SwitchPeers* peers, AskedTasks* 
 // Another incarnation of this context took part in a plan that is open; this one knows nothing of it.
 void Switching::begin(Nanoseconds origin) noexcept {
   origin_ = origin;
+  if (peers_ == nullptr) return;
   const PlanWord plan = agreement().plan();
   seen_ = plan.number;
-  if (seen_ == 0 || peers_ == &nobody_) return;
+  if (seen_ == 0) return;
   const auto last = agreement().order(plan, parts_.set.spec().sets.size(), parts_.set.tasks().size());
   const bool is_after = plan.phase == SwitchPhase::kCommitted;
   if (last) parts_.set.constants().put_in_force(is_after ? last->constants_after() : last->constants);
@@ -106,51 +81,31 @@ void Switching::begin(Nanoseconds origin) noexcept {
 }
 
 bool Switching::is_free() const noexcept {
-  if (phase_ == Phase::kNone) return !is_announced(*peers_, seen_);
+  if (phase_ == Phase::kNone) return peers_ == nullptr || !is_announced();
   return phase_ == Phase::kAfter && n_off_ == plan_.leaving.size();
 }
 
 bool Switching::leads_to(const SwitchRequest& request) noexcept {
   const bool has_lists = request.lists.are_there();
-  if (phase_ != Phase::kNone || is_announced(*peers_, seen_))
+  if (phase_ != Phase::kNone || is_announced())
     return phase_ != Phase::kUndoing &&
            (has_lists ? request.lists.are_met_by(target_of(plan_)) : plan_.after == request.set);
   note_standing(parts_.set, standing_);
   return has_lists ? request.lists.are_met_by(tasks_on(standing_)) : planner_.set_in_force(standing_) == request.set;
 }
 
-bool Switching::ask(SwitchRequest request, Nanoseconds now) noexcept {
-  if (peers_ != &nobody_) {
-    const bool changes_nothing = leads_to(request);
-    peers_->wish(request, changes_nothing, now);
-    return !changes_nothing;
-  }
+bool Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
+  const bool changes_nothing = leads_to(request);
+  peers_->wish(request, changes_nothing, now);
+  return !changes_nothing;
+}
+
+void Switching::stop_watching(Nanoseconds now) noexcept {
   if (phase_ == Phase::kAfter && is_free()) finish(SwitchEnd::kDone, now);
-  note_standing(parts_.set, standing_);
-  TaskBits target;
-  if (!find_target(request, parts_.set.spec(), standing_, asked_, now, target)) return true;
-  PlanAnswer answer{NoSwitch::kUnderWay, {}};
-  const bool is_first = phase_ == Phase::kNone && is_free();
-  if (is_first) answer = planner_.plan(target, standing_, plan_);
-  const ContextConstants& constants = parts_.set.constants();
-  const SwitchWay way = answer ? ways_.judge(plan_, standing_, constants.in_force(), constants, gap_) : SwitchWay();
-  const bool is_nothing = answer.why == NoSwitch::kNothingToDo;
-  const std::uint32_t number = is_nothing ? 0 : receipts().next_number();
-  SwitchReceipt* const added = is_first ? &record_.add() : record_.add_beside();
-  if (added == nullptr) return true;
-  added->number = number;
-  note_request(*added, request, planner_.set_in_force(standing_), way, now);
-  if (!answer) {
-    refuse(*added, answer);
-    return !is_nothing;
-  }
-  const std::uint16_t last = agreement().plan().number;
-  agreement().announce(lone_order(parts_.set, last, target, way.slow, now + kPatience));
-  due_ = now;
-  return true;
 }
 
 void Switching::step(Nanoseconds edge) noexcept {
+  if (peers_ == nullptr) return;
   Nanoseconds now = edge;
   waits_for_row_ = false;
   const PlanWord plan = agreement().plan();
@@ -178,20 +133,17 @@ void Switching::step(Nanoseconds edge) noexcept {
 void Switching::take_up(const PlanWord& plan, Nanoseconds now) noexcept {
   seen_ = plan.number;
   const auto order = agreement().order(plan, parts_.set.spec().sets.size(), parts_.set.tasks().size());
-  const bool is_alone = peers_ == &nobody_;
-  if (!is_alone) {
-    SwitchReceipt& receipt = record_.restart();
-    receipt.number = plan.number;
-    receipt.asked = now;
-  }
+  SwitchReceipt& receipt = record_.restart();
+  receipt.number = plan.number;
+  receipt.asked = now;
   const bool is_member = order && ((order->members >> me_) & 1u) != 0;
   bool is_made = plan.is_open() && is_member;
-  if (is_made && !is_alone) {
+  if (is_made) {
     for (const Task& each : parts_.set.tasks())
       standing_[each.id.index] = {order->on.has(each.id) ? State::kOn : State::kOff, false};
     is_made = static_cast<bool>(planner_.plan(order->target, standing_, plan_));
-    record_.receipt().before = is_made ? plan_.before : kNoSet;
-    record_.receipt().after = order->after;
+    receipt.before = is_made ? plan_.before : kNoSet;
+    receipt.after = order->after;
   }
   if (is_made) {
     order_ = *order;
@@ -204,7 +156,6 @@ void Switching::take_up(const PlanWord& plan, Nanoseconds now) noexcept {
     if (phase_ == Phase::kSlow) slow_.begin(agreement(), plan_, order_, *peers_, me_);
     return;
   }
-  SwitchReceipt& receipt = record_.receipt();
   receipt.end = SwitchEnd::kAborted;
   receipt.tasks = {};
   receipt.variables = {};
@@ -419,7 +370,7 @@ bool Switching::turn_off_all(Nanoseconds now, bool at_once) noexcept {
     Task& next = task(undoes ? plan_.arriving[n - 1 - n_off_] : plan_.leaving[n_off_]);
     // Not a task of this context, or a signal that came before had it turned off.
     if (!parts_.set.is_mine(next.id) || !next.owes_off) continue;
-    const bool may_wait = !at_once && now < since + kPatience;
+    const bool may_wait = !at_once && now < since + kSwitchPatience;
     if (may_wait && !gap_.is_for(next, Method::kOff, now)) return false;
     const Nanoseconds began = parts_.clock.now();
     const SignalReport report = parts_.set.life().settle_off(next.id, now);
@@ -431,7 +382,7 @@ bool Switching::turn_off_all(Nanoseconds now, bool at_once) noexcept {
   return true;
 }
 
-void Switching::finish(SwitchEnd end, Nanoseconds now, bool is_run_over) noexcept {
+void Switching::finish(SwitchEnd end, Nanoseconds now) noexcept {
   record_.end(end, now);
   for (const TaskId id : plan_.arriving) {
     const bool is_off = parts_.set.is_mine(id) && task(id).state == State::kOff;
@@ -440,18 +391,6 @@ void Switching::finish(SwitchEnd end, Nanoseconds now, bool is_run_over) noexcep
   phase_ = Phase::kNone;
   due_ = wake_ = kNever;
   peers_->tell_over(record_.receipt());
-  // Of a context that is alone: what found no gap for `on`, or a device that is not ready, is done under the flag.
-  SwitchReceipt& receipt = record_.receipt();
-  const std::uint8_t slow = end == SwitchEnd::kAborted ? reason_to_go_slowly(receipt.why) : 0;
-  if (slow == 0 || peers_ != &nobody_ || receipt.way.slow != 0 || is_run_over) return;
-  note_standing(parts_.set, standing_);
-  if (!planner_.plan(order_.target, standing_, plan_)) return;
-  receipt.why = NoSwitch::kNone;
-  receipt.task = {};
-  receipt.way.slow = slow;
-  ++receipt.tries;
-  agreement().announce(lone_order(parts_.set, order_.number, order_.target, slow, now + kPatience));
-  due_ = now;
 }
 
 bool Switching::give_way(TaskId to) noexcept {
@@ -465,14 +404,11 @@ bool Switching::give_way(TaskId to) noexcept {
 }
 
 void Switching::end(Nanoseconds now) noexcept {
-  if (phase_ == Phase::kNone) {
-    if (peers_ == &nobody_ && !is_free()) record_.receipt().why = NoSwitch::kRunEnded;  // before the slow try began
-    return;
-  }
+  if (phase_ == Phase::kNone) return;
   if (phase_ == Phase::kArming || phase_ == Phase::kAgreed) abort(NoSwitch::kRunEnded, {}, {});
   if (phase_ == Phase::kSlow) {
     slow_.cut(agreement());
-    return finish(slow_.end(), parts_.clock.now(), true);
+    return finish(slow_.end(), parts_.clock.now());
   }
   const bool was_committed = phase_ != Phase::kUndoing;
   if (was_committed && !is_changed_) change(at_);
@@ -480,7 +416,7 @@ void Switching::end(Nanoseconds now) noexcept {
   is_held_ = false;
   if (was_committed) (void)record_.has_seen_first_cycles(now);
   (void)turn_off_all(now, true);
-  finish(was_committed ? SwitchEnd::kDone : SwitchEnd::kAborted, parts_.clock.now(), true);
+  finish(was_committed ? SwitchEnd::kDone : SwitchEnd::kAborted, parts_.clock.now());
 }
 
 // The next step is worth while when jobs have ended, or at the next release where the processor is idle; where jobs

@@ -2,7 +2,7 @@
 // A switch among the configurations of an application, as one context carries out its part while its tasks cycle. All
 // or nothing, in this order:
 //
-//   plan     made from the order on the page that all contexts share (a context alone writes the order itself: ask())
+//   plan     made from the order on the page that all contexts share (switch/switch_orders.h writes it)
 //            what the set asks by `safe_when` is waited for
 //   arm      `on` of each arriving task, producers first, beside its predecessor: the task reads what it will read,
 //            takes over the outputs that stand, writes into its own group
@@ -27,7 +27,6 @@
 #include <span>
 
 #include "chimera/runtime/arrival.h"
-#include "chimera/runtime/asked_tasks.h"
 #include "chimera/runtime/changeover.h"
 #include "chimera/runtime/context_tap.h"
 #include "chimera/runtime/disturbance.h"
@@ -38,7 +37,6 @@
 #include "chimera/runtime/switch_agreement.h"
 #include "chimera/runtime/switch_peers.h"
 #include "chimera/runtime/switch_record.h"
-#include "chimera/runtime/switch_way.h"
 
 namespace chimera {
 
@@ -58,19 +56,18 @@ class Switching {
     JobClock& clock;
   };
   explicit Switching(const Parts& parts) noexcept;
-  /// Takes memory for so many receipts of switches that are asked for here; 0 and no peers: there will be none. With
-  /// peers, which outlive this, others ask. `asked` may be null where no request has lists. Context: setup.
-  void prepare(std::size_t n_switches, SwitchPeers* peers, AskedTasks* asked);
+  /// Takes memory for the switches that the peers, which outlive this, say are ordered; null: there will be none.
+  /// Context: setup.
+  void prepare(SwitchPeers* peers);
   /// Instants on the page count from `origin`, that of the grid of releases.
   void begin(Nanoseconds origin) noexcept;
 
-  /// Makes a plan and begins to carry it out; what became of it is in receipts(). With peers: whoever plans for all is
-  /// told. Lists that lead to no legal set have no effect. False: it changes nothing. Requires: prepare() took memory.
-  bool ask(SwitchRequest request, Nanoseconds now) noexcept;
+  /// Passes the request of a task on to what orders switches. False: it changes nothing. Requires: peers.
+  bool ask(const SwitchRequest& request, Nanoseconds now) noexcept;
+  /// A switch of which only the first cycles of arriving tasks are awaited is over: another one is to begin.
+  void stop_watching(Nanoseconds now) noexcept;
   /// None is under way, or one of which only the first cycles of arriving tasks are looked at yet.
   bool is_free() const noexcept;
-  /// What is asked for is in force, or is being switched to.
-  bool leads_to(const SwitchRequest& request) noexcept;
   /// Goes on with the switch that is under way, or takes up one that others have planned. No effect without one.
   void step(Nanoseconds edge) noexcept;
   /// A task is to go ON in place of one that failed: a switch that is not committed is aborted. False: not now, the
@@ -85,16 +82,13 @@ class Switching {
   Nanoseconds due(bool in_row = false) const noexcept { return in_row && waits_for_row_ ? kNever : due_; }
   /// The next instant at which a step is worth while although no job ends before. Wait-free.
   Nanoseconds wake() const noexcept { return wake_; }
-  /// Of those asked for here. Context: setup, between runs.
-  SwitchReceipts& receipts() noexcept { return record_.receipts(); }
-
-  /// How long a switch that is asked for here may take until the change.
-  static constexpr Nanoseconds kPatience = seconds(10);
 
  private:
   enum class Phase : std::uint8_t { kNone, kArming, kAgreed, kChanging, kAfter, kUndoing, kSlow };
 
-  SwitchAgreement agreement() noexcept { return {peers_->page(), origin_}; }
+  SwitchAgreement agreement() const noexcept { return {peers_->page(), origin_}; }
+  bool is_announced() const noexcept { return agreement().plan().number != seen_; }
+  bool leads_to(const SwitchRequest& request) noexcept;
   void take_up(const PlanWord& plan, Nanoseconds now) noexcept;
   void go_slowly(Nanoseconds now) noexcept;
   void arm(Nanoseconds edge, Nanoseconds now) noexcept;
@@ -107,7 +101,7 @@ class Switching {
   void abort(NoSwitch why, TaskId of, VariableId variable) noexcept;
   void settle(Nanoseconds now) noexcept;
   bool turn_off_all(Nanoseconds now, bool at_once) noexcept;
-  void finish(SwitchEnd end, Nanoseconds now, bool is_run_over = false) noexcept;
+  void finish(SwitchEnd end, Nanoseconds now) noexcept;
   void wait(Nanoseconds now, Nanoseconds at_most = kNever) noexcept;
   Task& task(TaskId id) noexcept { return parts_.set.tasks()[id.index]; }
 
@@ -117,10 +111,7 @@ class Switching {
   SlowSwitch slow_;
   SwitchRecord record_;
   SwitchPlanner planner_;
-  SwitchWays ways_;
-  NoSwitchPeers nobody_;
-  SwitchPeers* peers_ = &nobody_;
-  AskedTasks* asked_ = nullptr;
+  SwitchPeers* peers_ = nullptr;      // null: nothing is switched
   SwitchOrder order_;
   SwitchPlan plan_;
   UndisturbedState before_;
