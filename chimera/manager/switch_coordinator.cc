@@ -38,6 +38,30 @@ bool is_way(const SwitchWay& way, const ApplicationSpec& spec) {
          (!found.task.is_valid() || found.constant.index < spec.constants.size());
 }
 
+/// No gap of the rtpu is longer while the tasks `on` cycle: the longest time between two releases of those tasks that
+/// have the shortest period.
+Nanoseconds longest_gap(const ApplicationSpec& spec, const TaskBits& on, RtpuId rtpu) {
+  std::vector<const TaskSpec*> fastest;
+  for (std::size_t t = 0; t < spec.tasks.size(); ++t) {
+    const TaskSpec& task = spec.tasks[t];
+    if (!on.has(TaskId(t)) || task.rtpu != rtpu || task.aperiodic) continue;
+    if (!fastest.empty() && task.period < fastest[0]->period) fastest.clear();
+    if (fastest.empty() || task.period == fastest[0]->period) fastest.push_back(&task);
+  }
+  if (fastest.empty()) return kNever;
+  const std::int64_t period = fastest[0]->period.count;
+  std::int64_t longest = 0;
+  for (const TaskSpec* each : fastest) {
+    std::int64_t next = period;
+    for (const TaskSpec* other : fastest) {
+      const std::int64_t behind = ((other->offset - each->offset).count % period + period) % period;
+      if (behind > 0) next = std::min(next, behind);
+    }
+    longest = std::max(longest, next);
+  }
+  return Nanoseconds{longest};
+}
+
 std::string asker_text(const BegunSwitch& begun, const ApplicationSpec& spec) {
   if (begun.cause == SwitchCause::kScript) return begun.asked_by.text();
   return control::asked_by({begun.order.after, begun.cause, begun.by}, spec);
@@ -173,7 +197,30 @@ ForeseenSwitch SwitchCoordinator::foresee(const TaskBits& target) {
   SwitchOutcome outcome;
   assess(target, outcome);
   const bool has_plan = outcome.receipt.end == SwitchEnd::kDone;
-  return {outcome.receipt, has_plan ? orders_.plan() : SwitchPlan{}, outcome.remedy, has_plan ? expected() : Nanoseconds{}};
+  ForeseenSwitch foreseen;
+  foreseen.receipt = outcome.receipt;
+  foreseen.remedy = outcome.remedy;
+  if (!has_plan) return foreseen;
+  foreseen.plan = orders_.plan();
+  foreseen.expected = expected();
+  find_late_off(foreseen);
+  return foreseen;
+}
+
+/// A slow switch does not wait for a gap for longer anyway.
+void SwitchCoordinator::find_late_off(ForeseenSwitch& foreseen) const {
+  if (foreseen.receipt.way.slow != 0) return;
+  const TaskBits after = target_of(foreseen.plan);
+  for (const TaskId task : foreseen.plan.leaving) {
+    const TaskSpec& spec = world_.spec().tasks[task.index];
+    const Profile profile = world_.profile(task);
+    const bool was_called = profile.execution[static_cast<int>(Method::kOff)].count != 0;
+    const Nanoseconds needed = IdleGap::needed(spec, profile, Method::kOff);
+    if (was_called || !members_.needs_gaps(task) || needed <= longest_gap(world_.spec(), after, spec.rtpu)) continue;
+    foreseen.late_off = task;
+    foreseen.needed = needed;
+    return;
+  }
 }
 
 /// Of methods that were never called: as IdleGap takes them.

@@ -38,7 +38,9 @@ struct ForeseenSwitch {
   SwitchReceipt receipt;  ///< `before`, `after` and, where it would be refused, `why`, `task` and `said`
   SwitchPlan plan;        ///< empty where it would be refused
   std::string remedy;
-  Nanoseconds expected;   ///< about so long from the request to the change; gaps, inputs and `safe_when` come on top
+  Nanoseconds expected;   ///< from the request to the change, about; gaps, inputs and `safe_when` come on top
+  TaskId late_off;        ///< its `off` was never called and fits no gap, so it comes IdleGap::kLongestWait late
+  Nanoseconds needed;     ///< by the `off` of late_off
 };
 
 /// The status word of a task of a unit that is dead, as it would be had the unit lived to make a change that was
@@ -93,6 +95,7 @@ class SwitchCoordinator {
   void assess(const TaskBits& target, SwitchOutcome& outcome);
   Nanoseconds method_time(TaskId task, Method method) const;
   Nanoseconds expected();
+  void find_late_off(ForeseenSwitch& foreseen) const;
   bool is_tried_again(const SwitchReceipt& receipt, Nanoseconds now);
   std::shared_ptr<SwitchOutcome> collect(const BegunSwitch& over, Nanoseconds now) const;
   void file(std::shared_ptr<SwitchOutcome> outcome, const BegunSwitch& of, Nanoseconds now,

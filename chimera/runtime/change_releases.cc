@@ -5,7 +5,7 @@
 namespace chimera {
 
 void release_before(ReadyQueue& queue, JobThreads& threads, MissPolicy& misses, Nanoseconds instant) noexcept {
-  if (threads.run_beside_methods()) return;
+  if (threads.take_releases()) return;
   queue.release_due(instant - Nanoseconds{1}, [&misses](const DroppedRelease& dropped) { misses.drop(dropped); });
 }
 
@@ -13,7 +13,7 @@ void release_before(ReadyQueue& queue, JobThreads& threads, MissPolicy& misses, 
 // period.
 void change_releases(TaskSet& set, ReadyQueue& queue, JobThreads& threads, MissPolicy& misses, Nanoseconds at,
                      Nanoseconds now) noexcept {
-  if (threads.run_beside_methods()) return;
+  if (threads.take_releases()) return;
   release_before(queue, threads, misses, at);
   const TaskClasses& classes = queue.classes();
   for (const Task& each : set.tasks()) {

@@ -27,6 +27,8 @@ class IdleGap final : public NeededGaps {
  public:
   /// A method that was never called is taken to need the budget of its task; without one, so long.
   static constexpr Nanoseconds kUnknownMethod = microseconds(100);
+  /// A gap is not waited for longer: of a method that was never called, or while the flag is up.
+  static constexpr Nanoseconds kLongestWait = milliseconds(100);
 
   /// All given outlive this.
   IdleGap(std::span<const Task> tasks, const ReadyQueue& queue, const JobThreads& threads) noexcept

@@ -44,7 +44,7 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
     : set_(set), guest_(options.guest), stop_(options.stop != nullptr ? options.stop : &kNoStop),
       records_(set.setup_memory().take<JobRecord>(set.tasks().size())),
       tap_(set.tasks(), options.tap, options.rtpu, options.threads != nullptr, set.setup_memory()),
-      in_loop_(set.tasks(), &queue_), threads_(options.threads != nullptr ? *options.threads : in_loop_),
+      in_loop_(set.tasks(), &queue_, options.preemptive), threads_(options.threads != nullptr ? *options.threads : in_loop_),
       queue_(options.policy, set.spec().tasks, storage_for(records_.size(), set.setup_memory())),
       misses_(set.tasks(), records_, tap_,
               guest_ != nullptr ? &cause_.emplace(set.tasks(), threads_, set.setup_memory()) : nullptr, clock),
@@ -73,7 +73,7 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
   recovery_.prepare(peers);
   for (Task& task : set.tasks()) {
     const TaskSpec& spec = *task.spec;
-    const bool can = options.can_demote || !set.is_mine(task.id);
+    const bool can = options.preemptive || !set.is_mine(task.id);
     const bool switches = takes_requests || !set.is_mine(task.id);
     CHIMERA_ASSERT(is_built(spec.on_miss, can, switches) && is_built(spec.on_overrun, can, switches));
     CHIMERA_ASSERT(switches || spec.on_fault_set == UINT16_MAX);

@@ -122,8 +122,6 @@ class Releases {
   Members& members() noexcept { return members_; }
   BoundarySignals& signals() noexcept { return signals_; }
   Settlement& settlement() noexcept { return settlement_; }
-  /// Switches of configurations.
-  Switching& switching() noexcept { return switching_; }
   /// Of the switches and takeovers of a context that is alone; none of another one. Context: setup, between runs.
   const SwitchReceipts& receipts() noexcept { return switches_ ? switches_->receipts() : kNoReceipts; }
   /// What happens is recorded here.

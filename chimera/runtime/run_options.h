@@ -29,7 +29,7 @@ struct RunOptions {
   AskedTasks* asked = nullptr;
   JobThreads* threads = nullptr;             ///< null: jobs run where the edges do
   BackgroundThreads* writer = nullptr;        ///< runs what components do beside their cycles; MethodRunner::writer
-  bool can_demote = false;                   ///< jobs may go on below all others
+  bool preemptive = false;                   ///< jobs preempt each other, and may go on below all others
 };
 
 /// Why a run ended.

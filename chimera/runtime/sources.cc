@@ -72,13 +72,17 @@ void Sources::take_outputs_of(const Task& task) noexcept {
   everybody_follows();
 }
 
-void Sources::read_ahead(TaskId consumer, std::span<const Handover> handovers) noexcept {
+void Sources::read_ahead(TaskId consumer, std::span<const Handover> handovers,
+                         std::span<const TaskId> armed) noexcept {
+  const auto is_armed = [armed](TaskId producer) {
+    return std::find(armed.begin(), armed.end(), producer) != armed.end();
+  };
   Task& task = tasks_[consumer.index];
   for (std::uint32_t i = 0; i < task.inputs.size(); ++i) {
     const VariableId variable = memories_[consumer.index].input_spec(i).variable;
     Source source = sources_[variable.index];
     for (const Handover& handover : handovers)
-      if (handover.variable == variable) source = copies_.source_from(handover.to);
+      if (handover.variable == variable && is_armed(handover.to.task)) source = copies_.source_from(handover.to);
     bind_input(task.inputs[i], consumer, source);
     copies_.follow_now(consumer, source);
   }

@@ -31,9 +31,9 @@ class Sources {
 
   /// The task, of this context, went ON: whoever reads its variables reads them from its group now.
   void take_outputs_of(const Task& task) noexcept;
-  /// The inputs of the task, which is OFF, look at who will produce them once the handovers have come to pass; without
-  /// any, at who produces them now.
-  void read_ahead(TaskId consumer, std::span<const Handover> handovers) noexcept;
+  /// Inputs of the task, which is OFF, read the new producers of the handovers that are among `armed`. All others read
+  /// the present producers: a producer that is not armed yet has not written a value for this switch.
+  void read_ahead(TaskId consumer, std::span<const Handover> handovers, std::span<const TaskId> armed) noexcept;
   /// From now on the variables of `handovers`, which outlive this, come from where they come from now, whatever the
   /// states of tasks elsewhere say; from hand_over() on from where the handovers say. That ends with end_handover().
   void begin_handover(std::span<const Handover> handovers) noexcept { handed_over_ = handovers; }

@@ -81,13 +81,13 @@ void Switching::begin(Nanoseconds origin) noexcept {
 }
 
 bool Switching::is_free() const noexcept {
-  if (phase_ == Phase::kNone) return peers_ == nullptr || !is_announced();
+  if (phase_ == Phase::kNone) return peers_ == nullptr || agreement().plan().number == seen_;
   return phase_ == Phase::kAfter && n_off_ == plan_.leaving.size();
 }
 
 bool Switching::leads_to(const SwitchRequest& request) noexcept {
   const bool has_lists = request.lists.are_there();
-  if (phase_ != Phase::kNone || is_announced())
+  if (phase_ != Phase::kNone || !is_free())
     return phase_ != Phase::kUndoing &&
            (has_lists ? request.lists.are_met_by(target_of(plan_)) : plan_.after == request.set);
   note_standing(parts_.set, standing_);
@@ -150,7 +150,7 @@ void Switching::take_up(const PlanWord& plan, Nanoseconds now) noexcept {
     record_.take_up(plan_);
     before_ = {order_.members, parts_.set.flag().is_up(), parts_.set.flag().is_raised()};
     next_armed_ = n_off_ = 0;
-    at_ = kNever;
+    at_ = off_since_ = kNever;
     is_changed_ = false;
     phase_ = order_.slow != 0 ? Phase::kSlow : Phase::kArming;
     if (phase_ == Phase::kSlow) slow_.begin(agreement(), plan_, order_, *peers_, me_);
@@ -182,7 +182,7 @@ void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
   for (next_armed_ = std::max(next_armed_, run.begin); next_armed_ < run.end;) {
     Task& next = task(plan_.arriving[next_armed_]);
     if (!gap_.is_for(next, Method::kOn, now)) return wait(now);
-    parts_.set.sources().read_ahead(next.id, plan_.handovers);
+    parts_.set.sources().read_ahead(next.id, plan_.handovers, plan_.arriving.first(next_armed_));
     if (missing_value(parts_.set, next, plan_.handovers).is_valid()) return wait(now, kLookForValue);
     const Followed followed = follow_constants(parts_.set, gap_, next, order_, now);
     if (followed == Followed::kNoGap) return wait(now);
@@ -227,8 +227,9 @@ bool Switching::may_go_on(Nanoseconds now) noexcept {
     abort(is_mine ? NoSwitch::kNoGap : NoSwitch::kNoAnswer, {}, {});
     return false;
   }
-  Task& next = task(plan_.arriving[std::max(next_armed_, run.begin)]);
-  parts_.set.sources().read_ahead(next.id, plan_.handovers);
+  next_armed_ = std::max(next_armed_, run.begin);
+  Task& next = task(plan_.arriving[next_armed_]);
+  parts_.set.sources().read_ahead(next.id, plan_.handovers, plan_.arriving.first(next_armed_));
   const VariableId missing = missing_value(parts_.set, next, plan_.handovers);
   abort(missing.is_valid() ? NoSwitch::kNoValue : NoSwitch::kNoGap, next.id, missing);
   return false;
@@ -365,12 +366,14 @@ void Switching::settle(Nanoseconds now) noexcept {
 bool Switching::turn_off_all(Nanoseconds now, bool at_once) noexcept {
   const bool undoes = phase_ == Phase::kUndoing;
   const std::size_t n = undoes ? next_armed_ : plan_.leaving.size();
-  const Nanoseconds since = undoes ? record_.receipt().asked : record_.receipt().at;
+  if (off_since_ == kNever) off_since_ = now;
   for (; n_off_ < n; ++n_off_) {
     Task& next = task(undoes ? plan_.arriving[n - 1 - n_off_] : plan_.leaving[n_off_]);
     // Not a task of this context, or a signal that came before had it turned off.
     if (!parts_.set.is_mine(next.id) || !next.owes_off) continue;
-    const bool may_wait = !at_once && now < since + kSwitchPatience;
+    const bool is_unknown = next.profile.execution[static_cast<int>(Method::kOff)].count == 0;
+    const Nanoseconds most = is_unknown ? IdleGap::kLongestWait : kSwitchPatience;
+    const bool may_wait = !at_once && now < off_since_ + most;
     if (may_wait && !gap_.is_for(next, Method::kOff, now)) return false;
     const Nanoseconds began = parts_.clock.now();
     const SignalReport report = parts_.set.life().settle_off(next.id, now);
@@ -386,7 +389,7 @@ void Switching::finish(SwitchEnd end, Nanoseconds now) noexcept {
   record_.end(end, now);
   for (const TaskId id : plan_.arriving) {
     const bool is_off = parts_.set.is_mine(id) && task(id).state == State::kOff;
-    if (end != SwitchEnd::kDone && is_off) parts_.set.sources().read_ahead(id, {});
+    if (end != SwitchEnd::kDone && is_off) parts_.set.sources().read_ahead(id, {}, {});
   }
   phase_ = Phase::kNone;
   due_ = wake_ = kNever;

@@ -87,7 +87,6 @@ class Switching {
   enum class Phase : std::uint8_t { kNone, kArming, kAgreed, kChanging, kAfter, kUndoing, kSlow };
 
   SwitchAgreement agreement() const noexcept { return {peers_->page(), origin_}; }
-  bool is_announced() const noexcept { return agreement().plan().number != seen_; }
   bool leads_to(const SwitchRequest& request) noexcept;
   void take_up(const PlanWord& plan, Nanoseconds now) noexcept;
   void go_slowly(Nanoseconds now) noexcept;
@@ -117,6 +116,7 @@ class Switching {
   UndisturbedState before_;
   std::span<TaskStanding> standing_;  // by task, when a plan is made
   Nanoseconds origin_, at_ = kNever;
+  Nanoseconds off_since_ = kNever;    // `off` of the first task is due
   Nanoseconds due_ = kNever, wake_ = kNever;
   std::uint32_t me_ = 0;              // number of this context
   std::size_t next_armed_ = 0;        // arriving tasks before it are armed, here or elsewhere

@@ -144,7 +144,7 @@ class Receipts(unittest.TestCase):
             self.assertEqual(plan, {
                 "from": "gentle", "to": "quick", "end": "possible", "reason": None, "why": None, "remedy": None,
                 "way": "fast", "slow_because": [], "slow_why": None, "expected_ns": plan["expected_ns"],
-                "arrives": ["fast"], "leaves": ["slow"], "stays": plan["stays"],
+                "late_off": None, "arrives": ["fast"], "leaves": ["slow"], "stays": plan["stays"],
                 "variables": [{"variable": "wanted", "from": "slow", "to": "fast"}]})
             self.assertEqual(set(plan["stays"]), {"reference", "here", "there"})
             self.assertEqual(system.call("plan", configuration="gentle")["end"], "nothing-to-do")

@@ -52,7 +52,7 @@ struct VirtualRtpus::Unit {
     run.script = Script();
     run.guest = &control;
     run.switch_peers = switches;
-    run.can_demote = is_preemptive(how);
+    run.preemptive = is_preemptive(how);
     return run;
   }
 
@@ -80,7 +80,7 @@ VirtualRtpus::VirtualRtpus(VirtualPeers& peers, const RunOptions& options, const
     if (peers.tasks(RtpuId(r)) == nullptr) continue;
     SwitchPeers* const switches = n_receipts > 0 ? &switches_.of(r) : nullptr;
     units_.push_back(std::make_unique<Unit>(peers, RtpuId(r), switches, options, how));
-    if (n_receipts > 0) switches_.join(r, *peers.tasks(RtpuId(r)), true);
+    if (n_receipts > 0) switches_.join(r, *peers.tasks(RtpuId(r)), !units_.back()->is_preemptive(how));
   }
   silences_ = silences_of(peers.spec());
   of_dead_.reserve(kMostRefused);
