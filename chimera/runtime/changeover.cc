@@ -6,6 +6,25 @@
 
 namespace chimera {
 
+// Tasks with threads take their releases themselves.
+void Changeover::release_before(Nanoseconds instant) noexcept {
+  if (threads_.take_releases()) return;
+  queue_.release_due(instant - Nanoseconds{1}, [this](const DroppedRelease& dropped) { misses_.drop(dropped); });
+}
+
+// The next release of a task has come if this context is late by more than a period.
+void Changeover::change_releases(Nanoseconds at, Nanoseconds now) noexcept {
+  if (threads_.take_releases()) return;
+  release_before(at);
+  const TaskClasses& classes = queue_.classes();
+  for (const Task& each : set_.tasks()) {
+    if (each.is_busy || !classes.is_active(each.id.index) || !queue_.has_waiting(each.id, at)) continue;
+    Job job;
+    const bool is_replaced = classes[classes.class_of(each.id.index)].next <= now;
+    if (is_replaced && queue_.remove(each.id, job)) misses_.drop({each.id, job.release, 1});
+  }
+}
+
 void Changeover::hold(const SwitchPlan& plan, const TaskBits& before, Nanoseconds at) noexcept {
   bits_ = before;
   set_.sources().begin_handover(plan.handovers);

@@ -6,8 +6,10 @@
 #include "chimera/runtime/context_tap.h"
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/members.h"
+#include "chimera/runtime/miss_policy.h"
 #include "chimera/runtime/switch_plan.h"
 #include "chimera/runtime/task_set.h"
+#include "chimera/schedule/ready_queue.h"
 
 namespace chimera {
 
@@ -15,11 +17,17 @@ namespace chimera {
 class Changeover {
  public:
   /// All given outlive this.
-  Changeover(TaskSet& set, JobThreads& threads, Members& members, ContextTap& tap) noexcept
-      : set_(set), threads_(threads), members_(members), tap_(tap) {}
+  Changeover(TaskSet& set, ReadyQueue& queue, JobThreads& threads, Members& members, MissPolicy& misses,
+             ContextTap& tap) noexcept
+      : set_(set), queue_(queue), threads_(threads), members_(members), misses_(misses), tap_(tap) {}
   /// Context: setup.
   void prepare() { has_old_job_ = set_.setup_memory().take<bool>(set_.tasks().size()); }
 
+  /// Releases what was due before `instant`, so that those jobs keep the old bindings.
+  void release_before(Nanoseconds instant) noexcept;
+  /// Applies the instant `at` of the change to releases. A job that was released before `at` keeps the old bindings. If
+  /// its task has been released again by `now`, the old job is dropped: it would run after `at` with the old bindings.
+  void change_releases(Nanoseconds at, Nanoseconds now) noexcept;
   /// From now on what other contexts change of the tasks of the plan changes nothing here: `before` are ON. No task of
   /// this context takes a release at `at` or later before its change.
   void hold(const SwitchPlan& plan, const TaskBits& before, Nanoseconds at) noexcept;
@@ -34,8 +42,10 @@ class Changeover {
   void leave(Task& task, Nanoseconds at) noexcept;
 
   TaskSet& set_;
+  ReadyQueue& queue_;
   JobThreads& threads_;
   Members& members_;
+  MissPolicy& misses_;
   ContextTap& tap_;
   TaskBits bits_;                // what the set is judged as
   std::span<bool> has_old_job_;  // by task

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "chimera/runtime/missing_value.h"
+#include "chimera/runtime/arming.h"
 
 namespace chimera {
 namespace {
@@ -22,6 +22,25 @@ Nanoseconds period_of(const Task& task) noexcept {
 }
 
 }  // namespace
+
+void CreationSteps::prepare(std::size_t n_tasks, SetupMemory& memory) {
+  spawned_ = memory.take<bool>(n_tasks);
+  killed_ = memory.take<bool>(n_tasks);
+}
+
+void CreationSteps::begin() noexcept {
+  asked_ = TaskId();
+  std::fill(spawned_.begin(), spawned_.end(), false);
+  std::fill(killed_.begin(), killed_.end(), false);
+}
+
+StepEnd CreationSteps::cut(const Task& task, Signal signal) noexcept {
+  if (asked_ != task.id) return StepEnd::kFailed;
+  if (task.in_service) return StepEnd::kWaits;
+  asked_ = TaskId();
+  mark(task.id, signal, true);
+  return StepEnd::kDone;
+}
 
 void SlowSteps::begin(const SwitchOrder& order) noexcept {
   order_ = &order;

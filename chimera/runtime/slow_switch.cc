@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-#include "chimera/runtime/arrival.h"
-#include "chimera/runtime/missing_value.h"
+#include "chimera/runtime/arming.h"
 
 namespace chimera {
 namespace {

@@ -5,6 +5,8 @@
 #include <cstdint>
 
 #include "chimera/base/ids.h"
+#include "chimera/base/time.h"
+#include "chimera/runtime/switch_page.h"
 #include "chimera/runtime/task_lists.h"
 
 namespace chimera {
@@ -29,6 +31,15 @@ struct SwitchRequest {
   explicit operator bool() const noexcept { return set != UINT32_MAX || lists.are_there(); }
   /// The same is asked for, whoever does.
   bool is_for(const SwitchRequest& other) const noexcept { return set == other.set && lists == other.lists; }
+};
+
+/// Works out what the lists of a request lead to, which depends on the tasks that are ON then.
+class AskedTasks {
+ public:
+  virtual ~AskedTasks() = default;
+  /// Writes the tasks that are to be ON after `on` is and the lists of the request are carried out; false: they would
+  /// be no legal set, and nothing is switched. `now` is on the executor's clock. Context: edge; may allocate.
+  virtual bool find(const SwitchRequest& request, const TaskBits& on, Nanoseconds now, TaskBits& target) = 0;
 };
 
 }  // namespace chimera

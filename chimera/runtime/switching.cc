@@ -5,8 +5,6 @@
 #include <algorithm>
 
 #include "chimera/base/assert.h"
-#include "chimera/runtime/change_releases.h"
-#include "chimera/runtime/missing_value.h"
 
 namespace chimera {
 namespace {
@@ -45,7 +43,7 @@ bool have_adopted(SwitchPeers& peers, std::uint32_t members, std::uint16_t numbe
 Switching::Switching(const Parts& parts) noexcept
     : parts_(parts),
       gap_(parts.set.tasks(), parts.queue, parts.threads),
-      changeover_(parts.set, parts.threads, parts.members, parts.tap),
+      changeover_(parts.set, parts.queue, parts.threads, parts.members, parts.misses, parts.tap),
       slow_({parts.set, parts.threads, parts.settlement, parts.tap, parts.clock, gap_, record_}),
       record_(parts.set) {}
 
@@ -271,7 +269,7 @@ bool Switching::arm(Task& next, Nanoseconds now) noexcept {
 
 // What was released before `now` is a job of the time before the change.
 void Switching::propose(Nanoseconds now) noexcept {
-  release_before(parts_.queue, parts_.threads, parts_.misses, now);
+  changeover_.release_before(now);
   const Nanoseconds unused = parts_.threads.latest_release() + Nanoseconds{1};
   const Nanoseconds at = agreement().round_up(std::max(now + order_.lead, unused));
   if (at == kNever) return abort(NoSwitch::kLate, {}, {});
@@ -291,7 +289,7 @@ void Switching::agree(Nanoseconds now) noexcept {
 
 void Switching::change(Nanoseconds now) noexcept {
   if (now < at_) return;
-  change_releases(parts_.set, parts_.queue, parts_.threads, parts_.misses, at_, now);
+  changeover_.change_releases(at_, now);
   if (!is_changed_) {
     is_changed_ = true;
     parts_.set.constants().put_in_force(order_.constants_after());

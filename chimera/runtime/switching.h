@@ -26,10 +26,9 @@
 #include <cstdint>
 #include <span>
 
-#include "chimera/runtime/arrival.h"
+#include "chimera/runtime/arming.h"
 #include "chimera/runtime/changeover.h"
 #include "chimera/runtime/context_tap.h"
-#include "chimera/runtime/disturbance.h"
 #include "chimera/runtime/idle_gap.h"
 #include "chimera/runtime/miss_policy.h"
 #include "chimera/runtime/settlement.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/runtime/asked_tasks.h"
+#include "chimera/runtime/switch_request.h"
 
 namespace chimera {
 

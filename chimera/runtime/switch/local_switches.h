@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <span>
 
-#include "chimera/runtime/asked_tasks.h"
 #include "chimera/runtime/switch/switch_orders.h"
 #include "chimera/runtime/switch_peers.h"
+#include "chimera/runtime/switch_request.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera {
