@@ -3,12 +3,20 @@
 // producer after wrote.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "chimera/runtime/switch_receipt.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera {
+
+/// Compares the first `count` elements of an out-var. A boolean counts as 0 or 1; of a struct every field counts.
+/// `declared` is the component's declaration of the port. Requires: max_bytes() of the port at both. Context: cycle
+/// boundary; wait-free; O(elements).
+ValueStep step_between(const PortSpec& port, const chimera_port_decl& declared, std::uint32_t count,
+                       const std::byte* before, const std::byte* after) noexcept;
 
 /// Of the tasks of one context. Context of everything not marked: cycle boundary; O(bytes of the variables); no
 /// allocation.

@@ -17,7 +17,6 @@
 #include "chimera/runtime/switch_plan.h"
 #include "chimera/runtime/switch_request.h"
 #include "chimera/runtime/switch_way.h"
-#include "chimera/runtime/value_step.h"
 
 namespace chimera {
 
@@ -37,8 +36,18 @@ struct TaskPart {
   Nanoseconds on{-1};
   Nanoseconds off{-1};
   std::uint64_t lost = 0;  ///< releases of its grid within the switch, while it was ON, without a completed cycle
-  Nanoseconds delay{-1};         ///< longest start delay of its cycles within the switch (start_delays.h); -1: no cycle
+  Nanoseconds delay{-1};         ///< longest start delay of its cycles within the switch (StartDelays); -1: no cycle
   Nanoseconds delay_before{-1};  ///< the longest of the run before it; -1: it had no cycle
+};
+
+/// The element of a variable that moved farthest, measured by its limit where there is one.
+struct ValueStep {
+  double size = 0;   ///< |after - before| of that element; NaN: one of the two is not a number
+  double limit = 0;  ///< PortSpec::max_step there; 0: none
+  bool is_known = false;   ///< false: texts, or nobody had written a value
+  bool is_beyond = false;  ///< some element moved farther than its limit
+
+  constexpr bool operator==(const ValueStep&) const noexcept = default;
 };
 
 /// One variable that got another producer.

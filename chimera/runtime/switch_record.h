@@ -6,7 +6,6 @@
 #include <span>
 
 #include "chimera/runtime/handover_steps.h"
-#include "chimera/runtime/start_delays.h"
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/switch_receipt.h"
 #include "chimera/runtime/task_set.h"
@@ -15,6 +14,26 @@ namespace chimera {
 
 /// A first cycle that comes later than this after its task went ON is not waited for: who asked wants an answer.
 inline constexpr Nanoseconds kFirstCycleWithin = seconds(1);
+
+/// How long after their releases the cycles of tasks start within a window. Edges read count, sum and maximum of the
+/// profile, so that a job pays nothing. Of several cycles between two looks the mean counts, unless one was the longest of
+/// the run.
+/// Context of everything not marked: cycle boundary; wait-free. Requires: no job of the task is under way.
+class StartDelays {
+ public:
+  /// Context: setup.
+  void prepare(std::size_t n_tasks, SetupMemory& memory) { seen_ = memory.take<Spread>(n_tasks); }
+  /// A window of the task begins with the next look(): a job of it may be under way until then.
+  void begin_later(TaskId task) noexcept { seen_[task.index].count = kNotBegun; }
+  /// A window of the task begins. The longest of the run so far; -1: it had no cycle.
+  Nanoseconds begin(const Task& task) noexcept;
+  /// The longest since the last look; -1: there was no cycle.
+  Nanoseconds look(const Task& task) noexcept;
+
+ private:
+  static constexpr std::uint64_t kNotBegun = UINT64_MAX;
+  std::span<Spread> seen_;  // by task: its start_delay at the last look
+};
 
 /// Of tasks of its own context. Context of everything not marked: cycle boundary; no allocation.
 class SwitchRecord {

@@ -7,7 +7,6 @@
 
 #include "chimera/runtime/handover_steps.h"
 #include "chimera/runtime/job_threads.h"
-#include "chimera/runtime/start_delays.h"
 #include "chimera/runtime/switch_peers.h"
 #include "chimera/runtime/switch_record.h"
 #include "chimera/runtime/takeover.h"

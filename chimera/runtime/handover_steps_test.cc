@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/runtime/value_step.h"
+#include "chimera/runtime/handover_steps.h"
 
 #include <gtest/gtest.h>
 
