@@ -15,7 +15,6 @@ std::uint32_t bytes_of(const ApplicationSpec& spec, const PortOf& output) noexce
   return 0;
 }
 
-
 template <class T>
 double read_as(const std::byte* from) noexcept {
   T value;
