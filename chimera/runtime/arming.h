@@ -20,8 +20,8 @@ namespace chimera {
 /// True also if nothing is asked. Context: cycle boundary; no allocation.
 bool holds(TaskSet& set, const SafeCondition& asked) noexcept;
 
-/// An input of the task that has no value, invalid if there is none. Inputs whose variables are handed over do not count:
-/// an arriving task writes them. Context: cycle boundary; no allocation.
+/// The first variable that the task, which is OFF, reads and that never had a value; invalid if there is none. Variables
+/// of `handovers` do not count: an arriving task writes them. Context: cycle boundary; O(inputs).
 VariableId missing_value(TaskSet& set, Task& task, std::span<const Handover> handovers) noexcept;
 
 /// Result of follow_constants().
@@ -51,8 +51,8 @@ struct Disturbance {
   explicit operator bool() const noexcept { return why != NoSwitch::kNone; }
 };
 
-/// The first difference from what the plan was made from, in the context of `set`. Arriving tasks before place `n_armed`
-/// of the plan are armed. Context: cycle boundary; O(tasks of the plan).
+/// The first difference from what the plan was made from, in the context of `set`. Arriving tasks before place
+/// `n_armed` of the plan are armed. Context: cycle boundary; O(tasks of the plan).
 Disturbance find_disturbance(TaskSet& set, const SwitchPlan& plan, std::size_t n_armed,
                              const UndisturbedState& before, const SwitchPeers& peers) noexcept;
 

@@ -39,7 +39,7 @@ constexpr bool is_same_group(const Source& a, const Source& b) noexcept {
 }
 
 /// The copies through which the tasks of a context read groups that are produced elsewhere: one for each pair of a task
-/// and a group. Context of everything not marked: cycle boundary; no allocation. Everything given to prepare() outlives it.
+/// and a group. Context of everything not marked: cycle boundary; no allocation. What prepare() is given outlives this.
 class SourceCopies {
  public:
   /// As Sources::prepare(). Context: setup.

@@ -15,9 +15,9 @@ namespace chimera {
 /// A first cycle that comes later than this after its task went ON is not waited for: who asked wants an answer.
 inline constexpr Nanoseconds kFirstCycleWithin = seconds(1);
 
-/// How long after their releases the cycles of tasks start within a window. Edges read count, sum and maximum of the
-/// profile, so that a job pays nothing. Of several cycles between two looks the mean counts, unless one was the longest of
-/// the run.
+/// How long after their releases the cycles of tasks start within a window. Cycle boundaries read count, sum and
+/// maximum of the profile, so that a job pays nothing. If there were several cycles between two looks their mean
+/// counts, unless one was the longest of the run.
 /// Context of everything not marked: cycle boundary; wait-free. Requires: no job of the task is under way.
 class StartDelays {
  public:

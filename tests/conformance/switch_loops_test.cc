@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Switches on every executor of one context in which two tasks of one loop are exchanged, or in which a method of a task
-// fits no idle gap.
+// Switches on every executor of one context in which two tasks of a loop are exchanged, or a method of a task fits no
+// idle gap.
 #include <gtest/gtest.h>
 
 #include <memory>

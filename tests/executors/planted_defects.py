@@ -64,7 +64,8 @@ DEFECTS = (
     ("a thread takes a release before the change that comes after it", "preemptive/edge_access.cc",
      "job.release_end = std::min(end_, from);", "job.release_end = end_, (void)from;"),
     ("what was released before the change is released after it", "changeover.cc",
-     "  queue_.release_due(instant - Nanoseconds{1}, [this](const DroppedRelease& dropped) { misses_.drop(dropped); });",
+     "  queue_.release_due(instant - Nanoseconds{1}, [this](const DroppedRelease& dropped) { misses_.drop(dropped); "
+     "});",
      "  (void)instant;"),
     ("signals that come while a task is armed wait for the change", "switching.cc",
      "  if (armed != kNever && armed > edge) {", "  if (false && armed > edge) {"),

@@ -21,8 +21,8 @@ class LocalSwitches : private SwitchMembers {
   LocalSwitches(const LocalSwitches&) = delete;
   LocalSwitches& operator=(const LocalSwitches&) = delete;
 
-  /// Takes memory for `n_contexts` and for `n_receipts` receipts, above 0; if there are more switches, the first and the
-  /// last receipts are kept. `asked` may be null if no request has lists. What is given outlives this. Context: setup.
+  /// Takes memory for `n_contexts` and for `n_receipts` receipts, above 0. Of more switches the first receipts and the
+  /// last one are kept. `asked` may be null if no request has lists. What is given outlives this. Context: setup.
   void prepare(const ApplicationSpec& spec, std::uint32_t n_contexts, std::size_t n_receipts, AskedTasks* asked,
                SetupMemory& memory);
   /// `needs_gaps`: as SwitchMembers::needs_gaps() of its tasks. The tasks outlive this. Context: setup.
