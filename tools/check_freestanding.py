@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Floors 0, 2, 3 and 4, the runtime half for every machine (chimera/runtime, its executive and switch) and components
-build freestanding for x86-64 and for a 32-bit microcontroller (ARM Cortex-M3), without exceptions or RTTI, and ask
-for no heap, stream, thread or file. The hosted halves of these floors lie in subfolders (base/hosted, runtime/hosted), which a
-microcontroller replaces, and which the other half does not include."""
+build freestanding for x86-64 and for a 32-bit microcontroller (ARM Cortex-M3), without exceptions or RTTI, and ask for
+no heap, stream, thread or file. The hosted halves of these floors lie in subfolders (base/hosted, runtime/hosted),
+which a microcontroller replaces, and which the other half does not include."""
 import concurrent.futures
 import itertools
 import os

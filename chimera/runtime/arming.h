@@ -20,8 +20,8 @@ namespace chimera {
 /// True also if nothing is asked. Context: cycle boundary; no allocation.
 bool holds(TaskSet& set, const SafeCondition& asked) noexcept;
 
-/// The first variable that the task, which is OFF, reads and that never had a value; invalid if there is none. Variables
-/// of `handovers` do not count: an arriving task writes them. Context: cycle boundary; O(inputs).
+/// The first variable that the task, which is OFF, reads and that never had a value; invalid if there is none.
+/// Variables of `handovers` do not count: an arriving task writes them. Context: cycle boundary; O(inputs).
 VariableId missing_value(TaskSet& set, Task& task, std::span<const Handover> handovers) noexcept;
 
 /// Result of follow_constants().

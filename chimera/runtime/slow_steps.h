@@ -19,8 +19,8 @@ namespace chimera {
 enum class StepEnd : std::uint8_t { kDone, kWaits, kFailed };
 
 /// The steps that spawn and kill tasks, over several cycle boundaries if a service thread runs `init` and `kill`.
-/// Remembers the steps that were carried out, so that only those are undone. Context of everything not marked: cycle boundary; wait-free.
-/// `Move`, which is given the task and the signal, calls the methods.
+/// Remembers the steps that were carried out, so that only those are undone. Context of everything not marked: cycle
+/// boundary; wait-free. `Move`, which is given the task and the signal, calls the methods.
 class CreationSteps {
  public:
   /// Context: setup.
