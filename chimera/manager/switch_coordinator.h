@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the manager does for a switch of configurations: SwitchOrders (runtime/switch/switch_orders.h) judges the request,
-// orders the switch from the rtpus and collects the receipt; this class answers the people who ask, files the receipt, and
-// keeps in the journal what a successor needs to go on.
-// docs/formats/processes.md, docs/decisions/0045-a-switch-is-committed-by-the-rtpus.md.
+// What the manager does for a switch of configurations: SwitchOrders (runtime/switch/switch_orders.h) judges the
+// request, orders the switch from the rtpus and collects the receipt; this class answers the people who ask, files the
+// receipt, and keeps in the journal what a successor needs to go on. docs/formats/processes.md,
+// docs/decisions/0045-a-switch-is-committed-by-the-rtpus.md.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds a switch up before a task may go ON (`safe_when`, an input without a value, other constants, a hot standby),
-// and what disturbs a switch before it is committed.
+// What holds a switch up before a task may go ON (`safe_when`, an input without a value, other constants, a hot
+// standby), and what disturbs a switch before it is committed.
 #pragma once
 
 #include <cstdint>
