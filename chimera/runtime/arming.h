@@ -10,7 +10,7 @@
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/members.h"
 #include "chimera/runtime/safe_condition.h"
-#include "chimera/runtime/switch_page.h"
+#include "chimera/runtime/switch_agreement.h"
 #include "chimera/runtime/switch_peers.h"
 #include "chimera/runtime/switch_plan.h"
 #include "chimera/runtime/task_set.h"

@@ -21,7 +21,7 @@
 
 #include "chimera/runtime/constant_choice.h"
 #include "chimera/runtime/rivals.h"
-#include "chimera/runtime/switch_page.h"
+#include "chimera/runtime/switch_agreement.h"
 #include "chimera/runtime/switch_plan.h"
 
 namespace chimera {

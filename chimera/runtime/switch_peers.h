@@ -2,7 +2,7 @@
 // What the tasks of one context know of the other contexts that take part in a switch, and what they tell them.
 #pragma once
 
-#include "chimera/runtime/switch_page.h"
+#include "chimera/runtime/switch_agreement.h"
 #include "chimera/runtime/switch_receipt.h"
 #include "chimera/runtime/takeover.h"
 

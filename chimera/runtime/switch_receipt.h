@@ -13,7 +13,7 @@
 #include "chimera/base/fixed.h"
 #include "chimera/base/setup_memory.h"
 #include "chimera/base/time.h"
-#include "chimera/runtime/switch_page.h"
+#include "chimera/runtime/switch_agreement.h"
 #include "chimera/runtime/switch_plan.h"
 #include "chimera/runtime/switch_request.h"
 #include "chimera/runtime/switch_way.h"

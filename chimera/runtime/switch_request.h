@@ -6,7 +6,7 @@
 
 #include "chimera/base/ids.h"
 #include "chimera/base/time.h"
-#include "chimera/runtime/switch_page.h"
+#include "chimera/runtime/switch_agreement.h"
 #include "chimera/runtime/task_lists.h"
 
 namespace chimera {

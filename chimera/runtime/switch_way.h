@@ -11,7 +11,7 @@
 #include "chimera/runtime/constant_choice.h"
 #include "chimera/runtime/idle_gap.h"
 #include "chimera/runtime/rivals.h"
-#include "chimera/runtime/switch_page.h"
+#include "chimera/runtime/switch_agreement.h"
 #include "chimera/runtime/switch_schedule.h"
 
 namespace chimera {

@@ -5,7 +5,6 @@
 
 #include <span>
 
-#include "chimera/runtime/handover_steps.h"
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/switch_peers.h"
 #include "chimera/runtime/switch_record.h"

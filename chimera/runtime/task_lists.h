@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "chimera/runtime/switch_page.h"
+#include "chimera/runtime/switch_agreement.h"
 
 namespace chimera {
 

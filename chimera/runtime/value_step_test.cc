@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/runtime/handover_steps.h"
+#include "chimera/runtime/switch_record.h"
 
 #include <gtest/gtest.h>
 
