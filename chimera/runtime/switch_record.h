@@ -23,8 +23,8 @@ ValueStep step_between(const PortSpec& port, const chimera_port_decl& declared, 
                        const std::byte* before, const std::byte* after) noexcept;
 
 /// How far each variable moves that is handed over in a switch: from the last value of the producer before to the value
-/// that the producer after wrote. Of the tasks of one context. Context of everything not marked: cycle boundary; O(bytes of the variables); no
-/// allocation.
+/// that the producer after wrote. Of the tasks of one context. Context of everything not marked: cycle boundary;
+/// O(bytes of the variables); no allocation.
 class HandoverSteps {
  public:
   explicit HandoverSteps(TaskSet& set) noexcept : set_(set) {}
