@@ -7,13 +7,6 @@
 #include "chimera/runtime/arming.h"
 
 namespace chimera {
-namespace {
-
-// How long after the deadline a context aborts that another one is to abort first, which knows why.
-constexpr Nanoseconds kGrace = milliseconds(100);
-constexpr Nanoseconds kLookForSafety = milliseconds(1);
-
-}  // namespace
 
 void SlowSwitch::prepare() {
   planner_.prepare(parts_.set.spec(), parts_.set.setup_memory());
@@ -105,7 +98,7 @@ bool SlowSwitch::step(SwitchAgreement agreement, Nanoseconds now) noexcept {
       if (end == StepEnd::kWaits) return false;
       if (end == StepEnd::kDone) pass_on(done + 1, 0);
     } else {
-      wake_ = order_.until + kGrace;
+      wake_ = order_.until + kAbortGrace;
       return false;
     }
     now = std::max(now, parts_.clock.now());
@@ -124,7 +117,7 @@ bool SlowSwitch::may_go_on(SwitchAgreement agreement, std::size_t done, Nanoseco
     return fails(NoSwitch::kFlagRaised, parts_.set.flag().raised_by());
   if ((order_.members & ~peers_->living()) != 0) return fails(NoSwitch::kMemberDied, {});
   const bool is_next = done < steps_.size() && is_mine(done);
-  if (now < order_.until + (is_next ? Nanoseconds{} : kGrace)) return true;
+  if (now < order_.until + (is_next ? Nanoseconds{} : kAbortGrace)) return true;
   const SafeCondition& asked = asked_of(parts_.set.spec(), order_.after);
   if (is_next && !is_safe_ && asked.is_there()) return fails(NoSwitch::kNotSafe, {}, asked.variable);
   if (!is_next) return fails(NoSwitch::kNotReady, {});
@@ -213,7 +206,7 @@ StepEnd SlowSwitch::carry_out(SwitchAgreement agreement, const SlowStep& step, N
   TaskSet& set = parts_.set;
   const SafeCondition& asked = asked_of(set.spec(), order_.after);
   if (!is_safe_ && !set.flag().is_held() && !holds(set, asked)) {
-    wake_ = std::min(order_.until, now + kLookForSafety);
+    wake_ = std::min(order_.until, now + kLookForValue);
     return StepEnd::kWaits;
   }
   is_safe_ = true;

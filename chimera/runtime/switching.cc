@@ -5,14 +5,10 @@
 #include <algorithm>
 
 #include "chimera/base/assert.h"
+#include "chimera/runtime/switch/switch_orders.h"
 
 namespace chimera {
 namespace {
-
-// How long after the deadline a context aborts that another one is to abort first, which knows why.
-constexpr Nanoseconds kGrace = milliseconds(100);
-// How often a value that is waited for is looked at where no job ends meanwhile: nobody rings for one.
-constexpr Nanoseconds kLookForValue = milliseconds(1);
 
 void note_standing(const TaskSet& set, std::span<TaskStanding> standing) noexcept {
   for (const Task& each : set.tasks()) {
@@ -21,14 +17,14 @@ void note_standing(const TaskSet& set, std::span<TaskStanding> standing) noexcep
   }
 }
 
-// Whose tasks are armed next; behind the last run, which nobody has when nothing arrives, the first member's turn.
+// This context arms next. If no task arrives, the member with the lowest number has the turn.
 bool is_turn_of(const TaskSet& set, const SwitchPlan& plan, const SwitchRun& run, std::uint16_t members) noexcept {
   if (set.others() == nullptr) return true;
   if (run.begin < run.end) return set.is_mine(plan.arriving[run.begin]);
   return plan.arriving.empty() && (members & ((1u << set.context()) - 1u)) == 0;
 }
 
-// Of the members that live, the own context left out.
+// The jobs of all `members` that live use the bindings of that plan.
 bool have_adopted(SwitchPeers& peers, std::uint32_t members, std::uint16_t number) noexcept {
   for (std::uint32_t context = 0; context < kMaxContexts; ++context) {
     if (((members & peers.living()) >> context & 1u) == 0) continue;
@@ -52,7 +48,7 @@ void Switching::prepare(SwitchPeers* peers) {
   TaskSet& set = parts_.set;
   CHIMERA_ASSERT(set.spec().tasks.size() <= kMaxSwitchedTasks);
   peers_ = peers;
-  me_ = set.context();
+  me_ = set.others() == nullptr ? 0 : set.context();
   slow_.prepare();
   planner_.prepare(set.spec(), set.setup_memory());
   record_.prepare();
@@ -60,7 +56,7 @@ void Switching::prepare(SwitchPeers* peers) {
   standing_ = set.setup_memory().take<TaskStanding>(set.tasks().size());
 }
 
-// Another incarnation of this context took part in a plan that is open; this one knows nothing of it.
+// An earlier incarnation of this context may have taken part in the open plan; this one knows nothing of the plan.
 void Switching::begin(Nanoseconds origin) noexcept {
   origin_ = origin;
   if (peers_ == nullptr) return;
@@ -127,7 +123,7 @@ void Switching::step(Nanoseconds edge) noexcept {
   if (phase_ == Phase::kAfter || phase_ == Phase::kUndoing) settle(parts_.clock.now());
 }
 
-// A plan that this context cannot take part in is aborted, and over here at once.
+// Aborts a plan in which this context cannot take part; the plan is over here at once.
 void Switching::take_up(const PlanWord& plan, Nanoseconds now) noexcept {
   seen_ = plan.number;
   const auto order = agreement().order(plan, parts_.set.spec().sets.size(), parts_.set.tasks().size());
@@ -171,7 +167,7 @@ void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
   const auto number = agreement().run(order_.number);
   const SwitchRun run = find_run(plan_, parts_.set.spec().tasks, number.value_or(UINT16_MAX));
   if (!is_turn_of(parts_.set, plan_, run, order_.members)) {
-    due_ = wake_ = order_.until + kGrace;
+    due_ = wake_ = order_.until + kAbortGrace;
     return;
   }
   // The context that arms first asks before it arms, the last to arm before it proposes.
@@ -190,7 +186,7 @@ void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
     record_.receipt().armed = now;
   }
   const Nanoseconds armed = record_.receipt().armed;
-  if (armed != kNever && armed > edge) {  // what came meanwhile goes first: a signal may abort the plan
+  if (armed != kNever && armed > edge) {  // signals that came while tasks were armed go first: one may abort the plan
     due_ = wake_ = now;
     return;
   }
@@ -202,10 +198,10 @@ void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
   }
   (void)agreement().hand_on(order_.number, *number);
   peers_->ring();
-  due_ = wake_ = order_.until + kGrace;
+  due_ = wake_ = order_.until + kAbortGrace;
 }
 
-// Whoever takes part is as the plan found it, and there is still time; else the switch is aborted.
+// Aborts the switch if a task or a member is not as the plan found it, or if the deadline is over.
 bool Switching::may_go_on(Nanoseconds now) noexcept {
   TaskSet& set = parts_.set;
   if (const auto found = find_disturbance(set, plan_, next_armed_, before_, *peers_)) {
@@ -215,7 +211,7 @@ bool Switching::may_go_on(Nanoseconds now) noexcept {
   const auto number = agreement().run(order_.number);
   const SwitchRun run = find_run(plan_, set.spec().tasks, number.value_or(UINT16_MAX));
   const bool is_mine = is_turn_of(parts_.set, plan_, run, order_.members);
-  if (now < order_.until + (is_mine ? Nanoseconds{} : kGrace)) return true;
+  if (now < order_.until + (is_mine ? Nanoseconds{} : kAbortGrace)) return true;
   const SafeCondition& asked = asked_of(set.spec(), order_.after);
   if (is_mine && next_armed_ == 0 && run.begin == 0 && !holds(parts_.set, asked)) {
     abort(NoSwitch::kNotSafe, {}, asked.variable);
@@ -255,7 +251,7 @@ bool Switching::arm(Task& next, Nanoseconds now) noexcept {
   record_.took(next.id, Method::kOn, parts_.clock.now() - began);
   if (report) {
     ++next_armed_;
-  } else if (report.why == Refusal::kNotYet) {  // what it has begun is ended with the `off` of those that are armed
+  } else if (report.why == Refusal::kNotYet) {  // `off` of this task is called with that of the armed tasks
     next.is_half_on = false;
     next.owes_off = true;
     ++next_armed_;
@@ -267,7 +263,7 @@ bool Switching::arm(Task& next, Nanoseconds now) noexcept {
   return static_cast<bool>(report);
 }
 
-// What was released before `now` is a job of the time before the change.
+// Jobs that were released before `now` keep the old bindings.
 void Switching::propose(Nanoseconds now) noexcept {
   changeover_.release_before(now);
   const Nanoseconds unused = parts_.threads.latest_release() + Nanoseconds{1};
@@ -277,7 +273,7 @@ void Switching::propose(Nanoseconds now) noexcept {
   if (agreement().plan().phase == SwitchPhase::kProposed) agree(now);
 }
 
-// From here on until the change, or the end, the tasks of other contexts count as they were.
+// From here to the change, or to the end, tasks of other contexts count as they were before.
 void Switching::agree(Nanoseconds now) noexcept {
   at_ = agreement().at(agreement().plan());
   if (now > at_ || parts_.threads.latest_release() >= at_) return abort(NoSwitch::kLate, {}, {});
@@ -298,7 +294,7 @@ void Switching::change(Nanoseconds now) noexcept {
   }
   record_.keep_last_of_leaving();
   if (!changeover_.follow(plan_, at_)) {
-    due_ = now;  // with the end of each job, or of their row
+    due_ = now;  // at the end of each job, or when no job waits any more
     wake_ = parts_.threads.next_look(now);
     waits_for_row_ = true;
     return;
@@ -322,7 +318,7 @@ void Switching::go_slowly(Nanoseconds now) noexcept {
   peers_->tell_adopted(order_.number);
 }
 
-// The plan is aborted on the page, unless it is, or is committed: then it goes on.
+// Aborts the plan on the page. A plan that is committed goes on.
 void Switching::abort(NoSwitch why, TaskId of, VariableId variable) noexcept {
   if (agreement().abort(order_.number)) {
     record_.receipt().why = why;
@@ -343,7 +339,7 @@ void Switching::abort(NoSwitch why, TaskId of, VariableId variable) noexcept {
 void Switching::settle(Nanoseconds now) noexcept {
   const bool undoes = phase_ == Phase::kUndoing;
   if (!undoes && is_held_ && !have_adopted(*peers_, order_.members & ~(1u << me_), order_.number)) {
-    due_ = wake_ = kNever;  // they ring
+    due_ = wake_ = kNever;  // the other members ring
     return;
   }
   if (is_held_) changeover_.release();
@@ -359,15 +355,15 @@ void Switching::settle(Nanoseconds now) noexcept {
   waits_for_row_ = true;
 }
 
-// `off` of those that left, or were armed in vain, each in a gap unless it is to be at once. False: some are left for
-// the next gap.
+// Calls `off` of leaving tasks, or of tasks armed in vain, each in a gap unless `at_once`. False: some tasks wait for the
+// next gap.
 bool Switching::turn_off_all(Nanoseconds now, bool at_once) noexcept {
   const bool undoes = phase_ == Phase::kUndoing;
   const std::size_t n = undoes ? next_armed_ : plan_.leaving.size();
   if (off_since_ == kNever) off_since_ = now;
   for (; n_off_ < n; ++n_off_) {
     Task& next = task(undoes ? plan_.arriving[n - 1 - n_off_] : plan_.leaving[n_off_]);
-    // Not a task of this context, or a signal that came before had it turned off.
+    // A task of another context, or a signal has turned the task OFF before.
     if (!parts_.set.is_mine(next.id) || !next.owes_off) continue;
     const bool is_unknown = next.profile.execution[static_cast<int>(Method::kOff)].count == 0;
     const Nanoseconds most = is_unknown ? IdleGap::kLongestWait : kSwitchPatience;
@@ -420,8 +416,8 @@ void Switching::end(Nanoseconds now) noexcept {
   finish(was_committed ? SwitchEnd::kDone : SwitchEnd::kAborted, parts_.clock.now());
 }
 
-// The next step is worth while when jobs have ended, or at the next release where the processor is idle; where jobs
-// have threads only a value is waited for.
+// The next step is due when jobs have ended, or at the next release if the processor is idle. Where jobs preempt each
+// other only a value is waited for.
 void Switching::wait(Nanoseconds now, Nanoseconds at_most) noexcept {
   const Nanoseconds limit = std::max(order_.until, now + Nanoseconds{1});
   const Nanoseconds next = std::max(parts_.threads.next_look(now), now);

@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// A switch among the configurations of an application, as one context carries out its part while its tasks cycle. All
-// or nothing, in this order:
+// Carries out a switch among configurations in one context while its tasks cycle. All or nothing, in this order:
 //
 //   plan     made from the order on the page that all contexts share (switch/switch_orders.h writes it)
-//            what the set asks by `safe_when` is waited for
-//   arm      `on` of each arriving task, producers first, beside its predecessor: the task reads what it will read,
-//            takes over the outputs that stand, writes into its own group
-//            what fails: `off` of those armed; nobody else saw them
-//   agree    the last context to arm proposes the instant T of the change; each agrees that has used no release from T
-//            on; the last to agree commits
-//            late, or a member died: as above
+//            waits until `safe_when` of the set holds
+//   arm      `on` of each arriving task, producers first, beside its predecessor: the task reads the producers that are
+//            armed before it and else the present ones, takes over the outputs that stand, writes into its own group
+//            on failure: `off` of the armed tasks, which no other task has read
+//   agree    the last context to arm proposes the instant T of the change; a context agrees if it has used no release
+//            from T on; the last one to agree commits
+//            on failure (late, or a member died): as above
 //   change   jobs released before T keep what they read and write; from T on arriving tasks are ON, leaving ones are
 //            OFF, readers read the new ones (changeover.h)
 //   after    when all contexts have changed: `off` of each leaving task, against the data flow; the first cycles are
-//            looked at for the receipt
+//            measured for the receipt
 //
-// What cannot be done so goes the slow way: runtime/slow_switch.h.
+// A switch that cannot be made so goes the slow way: runtime/slow_switch.h.
 //
-// `on` and `off` run while the processor is idle (idle_gap.h), where jobs have threads of their own at the urgency of
-// the task (job_threads.h). Jobs take no part: each step is an act of an edge.
+// `on` and `off` run while the processor is idle (idle_gap.h); where jobs preempt each other they run at the urgency of
+// the task (job_threads.h). Jobs take no part: each step is an act of a cycle boundary.
 // docs/decisions/0045-a-switch-is-committed-by-the-rtpus.md, docs/decisions/0049-switch-in-one-context.md,
 // docs/decisions/0055-a-switch-among-threads.md.
 #pragma once
@@ -65,21 +64,20 @@ class Switching {
   bool ask(const SwitchRequest& request, Nanoseconds now) noexcept;
   /// A switch of which only the first cycles of arriving tasks are awaited is over: another one is to begin.
   void stop_watching(Nanoseconds now) noexcept;
-  /// None is under way, or one of which only the first cycles of arriving tasks are looked at yet.
+  /// No switch is under way, or only the first cycles of arriving tasks are awaited.
   bool is_free() const noexcept;
-  /// Goes on with the switch that is under way, or takes up one that others have planned. No effect without one.
+  /// Goes on with the switch that is under way, or takes up the plan on the page. No effect without one.
   void step(Nanoseconds edge) noexcept;
-  /// A task is to go ON in place of one that failed: a switch that is not committed is aborted. False: not now, the
-  /// change is under way.
+  /// A task is to go ON in place of a failed one: aborts a switch that is not committed. False: the change is under way.
   bool give_way(TaskId to) noexcept;
-  /// The run is over: what is not committed is aborted, what is committed is finished.
+  /// The run is over: aborts a switch that is not committed, finishes one that is.
   void end(Nanoseconds now) noexcept;
 
-  /// From this instant on a step may have something to do; kNever: only when others say so. `in_row`: while jobs wait,
-  /// and none is under way at an edge; what is due with the end of each job is then as well looked at when none waits
-  /// any more, or before the next release: a step takes as long as there are tasks. Wait-free.
+  /// From this instant on a step may have something to do; kNever: only when other contexts ring. `in_row`: jobs wait,
+  /// and none is under way at a cycle boundary. A step that is due at the end of each job is then due when no job waits
+  /// any more, or before the next release, because a step takes time for each task. Wait-free.
   Nanoseconds due(bool in_row = false) const noexcept { return in_row && waits_for_row_ ? kNever : due_; }
-  /// The next instant at which a step is worth while although no job ends before. Wait-free.
+  /// The next instant at which a step is due if no job ends before. Wait-free.
   Nanoseconds wake() const noexcept { return wake_; }
 
  private:
