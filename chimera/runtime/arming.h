@@ -17,8 +17,8 @@
 
 namespace chimera {
 
-/// Extra wait after the deadline. The context whose turn it is aborts first, because only it knows the reason; the others
-/// abort this time later.
+/// Extra wait after the deadline. The context whose turn it is aborts first, because only it knows the reason; the
+/// others abort this time later.
 inline constexpr Nanoseconds kAbortGrace = milliseconds(100);
 /// A value that is waited for is read again after this time if no job ends before: no context rings for a value.
 inline constexpr Nanoseconds kLookForValue = milliseconds(1);

@@ -355,8 +355,8 @@ void Switching::settle(Nanoseconds now) noexcept {
   waits_for_row_ = true;
 }
 
-// Calls `off` of leaving tasks, or of tasks armed in vain, each in a gap unless `at_once`. False: some tasks wait for the
-// next gap.
+// Calls `off` of leaving tasks, or of tasks armed in vain, each in a gap unless `at_once`. False: some tasks wait for
+// the next gap.
 bool Switching::turn_off_all(Nanoseconds now, bool at_once) noexcept {
   const bool undoes = phase_ == Phase::kUndoing;
   const std::size_t n = undoes ? next_armed_ : plan_.leaving.size();

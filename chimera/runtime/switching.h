@@ -68,7 +68,8 @@ class Switching {
   bool is_free() const noexcept;
   /// Goes on with the switch that is under way, or takes up the plan on the page. No effect without one.
   void step(Nanoseconds edge) noexcept;
-  /// A task is to go ON in place of a failed one: aborts a switch that is not committed. False: the change is under way.
+  /// A task is to go ON in place of a failed one: aborts a switch that is not committed. False: the change is under
+  /// way.
   bool give_way(TaskId to) noexcept;
   /// The run is over: aborts a switch that is not committed, finishes one that is.
   void end(Nanoseconds now) noexcept;
