@@ -18,7 +18,7 @@
 #include "chimera/manager/switch_journal.h"
 #include "chimera/manager/switch_members.h"
 #include "chimera/runtime/hosted/heap_memory.h"
-#include "chimera/runtime/slow_plan.h"
+#include "chimera/runtime/switch/slow_plan.h"
 
 namespace chimera::manager {
 

@@ -12,7 +12,7 @@
 #include "chimera/runtime/run_options.h"
 #include "chimera/runtime/settlement.h"
 #include "chimera/runtime/switch/local_switches.h"
-#include "chimera/runtime/switching.h"
+#include "chimera/runtime/switch/switching.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "chimera/base/message.h"
-#include "chimera/runtime/arming.h"
+#include "chimera/runtime/switch/arming.h"
 
 namespace chimera {
 namespace {

@@ -11,9 +11,9 @@
 #include <span>
 
 #include "chimera/runtime/boundary_signals.h"
-#include "chimera/runtime/idle_gap.h"
 #include "chimera/runtime/settlement.h"
-#include "chimera/runtime/switching.h"
+#include "chimera/runtime/switch/idle_gap.h"
+#include "chimera/runtime/switch/switching.h"
 #include "chimera/runtime/takeover_record.h"
 #include "chimera/runtime/task_set.h"
 

@@ -9,8 +9,8 @@
 #include "chimera/runtime/boundary_listener.h"
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/script.h"
-#include "chimera/runtime/switch_peers.h"
-#include "chimera/runtime/switch_request.h"
+#include "chimera/runtime/switch/switch_peers.h"
+#include "chimera/runtime/switch/switch_request.h"
 #include "chimera/runtime/tap_ring.h"
 #include "chimera/schedule/policy.h"
 

@@ -16,7 +16,7 @@
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/context_table.h"
 #include "chimera/runtime/peer_view.h"
-#include "chimera/runtime/switch_plan.h"
+#include "chimera/runtime/switch/switch_plan.h"
 #include "chimera/runtime/task_memory.h"
 #include "chimera/runtime/variable_view.h"
 #include "chimera/table/group.h"

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "chimera/runtime/job_threads.h"
-#include "chimera/runtime/switch_peers.h"
-#include "chimera/runtime/switch_record.h"
+#include "chimera/runtime/switch/switch_peers.h"
+#include "chimera/runtime/switch/switch_record.h"
 #include "chimera/runtime/takeover.h"
 
 namespace chimera {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/runtime/switch_request.h"
+#include "chimera/runtime/switch/switch_request.h"
 
 namespace chimera {
 

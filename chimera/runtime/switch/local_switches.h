@@ -8,8 +8,8 @@
 #include <span>
 
 #include "chimera/runtime/switch/switch_orders.h"
-#include "chimera/runtime/switch_peers.h"
-#include "chimera/runtime/switch_request.h"
+#include "chimera/runtime/switch/switch_peers.h"
+#include "chimera/runtime/switch/switch_request.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera {

@@ -12,12 +12,12 @@
 #include <span>
 
 #include "chimera/base/setup_memory.h"
-#include "chimera/runtime/constant_choice.h"
-#include "chimera/runtime/idle_gap.h"
-#include "chimera/runtime/switch_agreement.h"
-#include "chimera/runtime/switch_plan.h"
-#include "chimera/runtime/switch_receipt.h"
-#include "chimera/runtime/switch_way.h"
+#include "chimera/runtime/switch/constant_choice.h"
+#include "chimera/runtime/switch/idle_gap.h"
+#include "chimera/runtime/switch/switch_agreement.h"
+#include "chimera/runtime/switch/switch_plan.h"
+#include "chimera/runtime/switch/switch_receipt.h"
+#include "chimera/runtime/switch/switch_way.h"
 #include "chimera/task/profile.h"
 
 namespace chimera {
