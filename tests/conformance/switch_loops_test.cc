@@ -135,5 +135,19 @@ TEST_P(SwitchLoops, OnlyAContextWhoseJobsDoNotPreemptEachOtherNeedsAGapForOn) {
   EXPECT_EQ(receipt.way.slow, GetParam() == Kind::kPreemptive ? 0 : kSlowForGap);
 }
 
+// As with `run --isolation none` of a description with two rtpus.
+TEST_P(SwitchLoops, TasksOfTwoRtpusInOneContextArmInOneTurn) {
+  app_.rtpus = {{"main", 0, Policy::kEdf}, {"other", 1, Policy::kEdf}};
+  for (const char* name : {"a", "b", "c", "d"}) {
+    const TaskId task = add(name, testing::component<Busy>("busy"), milliseconds(1), microseconds(20));
+    app_.link(task.index, 0, name);
+    app_.tasks[task.index].rtpu = RtpuId(task.index % 2);
+    sets_[task.index / 2].push_back(task);
+  }
+  const SwitchReceipt& receipt = go(milliseconds(50));
+  ASSERT_EQ(receipt.end, SwitchEnd::kDone) << static_cast<int>(receipt.why);
+  EXPECT_LE(receipt.at - receipt.asked, milliseconds(1));
+}
+
 }  // namespace
 }  // namespace chimera::toy
