@@ -80,10 +80,12 @@ bool Switching::is_free() const noexcept {
 }
 
 bool Switching::leads_to(const SwitchRequest& request) noexcept {
+  if (phase_ == Phase::kUndoing) return false;
   const bool has_lists = request.lists.are_there();
-  if (phase_ != Phase::kNone || !is_free())
-    return phase_ != Phase::kUndoing &&
-           (has_lists ? request.lists.are_met_by(target_of(plan_)) : plan_.after == request.set);
+  if (phase_ != Phase::kNone || !is_free()) {
+    const auto order = agreement().order(agreement().plan(), parts_.set.spec().sets.size(), standing_.size());
+    return order && (has_lists ? request.lists.are_met_by(order->target) : order->after == request.set);
+  }
   note_standing(parts_.set, standing_);
   return has_lists ? request.lists.are_met_by(tasks_on(standing_)) : planner_.set_in_force(standing_) == request.set;
 }
