@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "chimera/runtime/application_spec.h"
 #include "chimera/runtime/switch/switch_request.h"
 
 namespace chimera {

@@ -17,7 +17,7 @@ void LocalSwitches::prepare(const ApplicationSpec& spec, std::uint32_t n_context
   members_ = memory.take<Member>(n_contexts);
   for (std::uint32_t c = 0; c < n_contexts; ++c) {
     members_[c].all = this;
-    members_[c].context = c;
+    members_[c].me = c;
   }
   orders_.prepare(spec, n_contexts == 1, memory);
   receipts_.prepare(spec, n_receipts, memory);
@@ -40,7 +40,7 @@ const LocalSwitches::Member& LocalSwitches::member_of(TaskId task) const noexcep
 std::uint16_t LocalSwitches::living() const noexcept {
   std::uint32_t living = 0;
   for (const Member& each : members_)
-    if (each.tasks != nullptr && !each.is_dead) living |= 1u << each.context;
+    if (each.tasks != nullptr && !each.is_dead) living |= 1u << each.me;
   return static_cast<std::uint16_t>(living);
 }
 
@@ -80,7 +80,7 @@ bool LocalSwitches::read_part(std::uint32_t context, std::uint16_t plan, SwitchR
 
 void LocalSwitches::Member::tell_adopted(std::uint16_t number) noexcept {
   shown.adopted = number;
-  all->show(context);
+  all->show(me);
 }
 
 void LocalSwitches::Member::tell_over(const SwitchReceipt& receipt) noexcept {

@@ -9,6 +9,7 @@
 
 #include "chimera/runtime/switch/switch_orders.h"
 #include "chimera/runtime/switch/switch_peers.h"
+#include "chimera/runtime/switch/switch_wish.h"
 #include "chimera/runtime/switch/switch_request.h"
 #include "chimera/runtime/task_set.h"
 
@@ -58,7 +59,7 @@ class LocalSwitches : private SwitchMembers {
       return &all->members_[context].shown;
     }
     void ring() noexcept override { all->ring(); }
-    void show() noexcept override { all->show(context); }
+    void show() noexcept override { all->show(me); }
     void tell_adopted(std::uint16_t number) noexcept override;
     void tell_over(const SwitchReceipt& receipt) noexcept override;
     void tell_takeover(const Takeover& takeover) noexcept override { keep_receipt(takeover, all->receipts_); }
@@ -66,7 +67,7 @@ class LocalSwitches : private SwitchMembers {
     bool is_wish_open() const noexcept override { return static_cast<bool>(all->wish_); }
 
     LocalSwitches* all = nullptr;
-    std::uint32_t context = 0;
+    std::uint32_t me = 0;
     TaskSet* tasks = nullptr;  // null: no task is in this context
     bool needs_gaps = true, is_dead = false;
     SwitchProgress shown;
