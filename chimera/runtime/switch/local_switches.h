@@ -9,8 +9,8 @@
 
 #include "chimera/runtime/switch/switch_orders.h"
 #include "chimera/runtime/switch/switch_peers.h"
-#include "chimera/runtime/switch/switch_wish.h"
 #include "chimera/runtime/switch/switch_request.h"
+#include "chimera/runtime/switch/switch_wish.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera {
