@@ -9,7 +9,7 @@
 namespace chimera {
 namespace {
 
-bool names(std::span<const TaskId> tasks, TaskId task) noexcept {
+bool has_task(std::span<const TaskId> tasks, TaskId task) noexcept {
   return std::find(tasks.begin(), tasks.end(), task) != tasks.end();
 }
 
@@ -30,7 +30,7 @@ std::string_view common_resource(const TaskSpec& a, const TaskSpec& b) noexcept 
 }
 
 bool run_together(const ApplicationSpec& spec, TaskId a, TaskId b) noexcept {
-  const auto names_both = [&](std::span<const TaskId> tasks) { return names(tasks, a) && names(tasks, b); };
+  const auto names_both = [&](std::span<const TaskId> tasks) { return has_task(tasks, a) && has_task(tasks, b); };
   return names_both(spec.start) ||
          std::any_of(spec.sets.begin(), spec.sets.end(), [&](const NamedSet& set) { return names_both(set.order); });
 }
