@@ -63,7 +63,7 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
   if (is_alone && n_receipts > 0) {
     LocalSwitches& switches = switches_.emplace();
     switches.prepare(set.spec(), 1, n_receipts, options.asked, set.setup_memory());
-    switches.join(0, set, !threads_.run_beside_methods());
+    switches.join(0, set, !threads_.preempt());
     signals_.order_by(switches);
   }
   SwitchPeers* const peers = switches_ ? &switches_->of(0) : options.switch_peers;

@@ -12,20 +12,22 @@ bool holds(TaskSet& set, const SafeCondition& asked) noexcept {
   return !asked.is_there() || is_safe(asked, present_value(set, asked));
 }
 
-Followed follow_constants(TaskSet& set, const IdleGap& gap, Task& task, const SwitchOrder& order,
-                          Nanoseconds now) noexcept {
+bool is_behind(TaskSet& set, const Task& task, const SwitchOrder& order) noexcept {
   ContextConstants& constants = set.constants();
-  if (!constants.has_choice()) return Followed::kNothing;
+  if (!constants.has_choice()) return false;
   constants.read_foreign();
   constants.put_in_force(order.constants_after());
   const bool is_behind = constants.uses_changed(task.id);
-  const bool has_gap = !is_behind || gap.is_for(task, Method::kReinit, now);
-  const std::uint64_t faults = task.faults.count;
-  if (is_behind && has_gap) (void)set.life().move(task.id, Signal::kReinit, now);
   constants.put_in_force(order.constants);
-  if (!has_gap) return Followed::kNoGap;
-  if (!is_behind) return Followed::kNothing;
-  return task.state == State::kOff && task.faults.count == faults ? Followed::kDone : Followed::kFailed;
+  return is_behind;
+}
+
+bool follow_constants(TaskSet& set, Task& task, const SwitchOrder& order, Nanoseconds now) noexcept {
+  const std::uint64_t faults = task.faults.count;
+  set.constants().put_in_force(order.constants_after());
+  (void)set.life().move(task.id, Signal::kReinit, now);
+  set.constants().put_in_force(order.constants);
+  return task.state == State::kOff && task.faults.count == faults;
 }
 
 bool cool_down(TaskSet& set, JobThreads& threads, Members& members, const SwitchPlan& plan, Nanoseconds now) noexcept {

@@ -30,13 +30,12 @@ bool holds(TaskSet& set, const SafeCondition& asked) noexcept;
 /// Variables of `handovers` do not count: an arriving task writes them. Context: cycle boundary; O(inputs).
 VariableId missing_value(TaskSet& set, Task& task, std::span<const Handover> handovers) noexcept;
 
-/// Result of follow_constants().
-enum class Followed : std::uint8_t { kNothing, kNoGap, kDone, kFailed };
-
-/// Re-initialises a task that arrives in a fast switch if it was initialised with other constants than those of the set
-/// after. Waits for a gap. Context: cycle boundary; as long as its `reinit` takes.
-Followed follow_constants(TaskSet& set, const IdleGap& gap, Task& task, const SwitchOrder& order,
-                          Nanoseconds now) noexcept;
+/// A task that arrives in a fast switch was initialised with other constants than those of the set after. Context:
+/// cycle boundary; O(constants).
+bool is_behind(TaskSet& set, const Task& task, const SwitchOrder& order) noexcept;
+/// Re-initialises the task with those constants; false: that failed. Context: cycle boundary; as long as `reinit`
+/// takes.
+bool follow_constants(TaskSet& set, Task& task, const SwitchOrder& order, Nanoseconds now) noexcept;
 
 /// Hot standbys of this context that arrive are turned OFF first, and armed as any task. False: a job of one of them is
 /// under way. Context: cycle boundary; as long as `off` takes.

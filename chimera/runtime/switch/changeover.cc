@@ -8,13 +8,13 @@ namespace chimera {
 
 // Tasks with threads take their releases themselves.
 void Changeover::release_before(Nanoseconds instant) noexcept {
-  if (threads_.take_releases()) return;
+  if (threads_.run_beside_methods()) return;
   queue_.release_due(instant - Nanoseconds{1}, [this](const DroppedRelease& dropped) { misses_.drop(dropped); });
 }
 
 // The next release of a task has come if this context is late by more than a period.
 void Changeover::change_releases(Nanoseconds at, Nanoseconds now) noexcept {
-  if (threads_.take_releases()) return;
+  if (threads_.run_beside_methods()) return;
   release_before(at);
   const TaskClasses& classes = queue_.classes();
   for (const Task& each : set_.tasks()) {

@@ -23,7 +23,7 @@ class NeededGaps {
 };
 
 /// Context: cycle boundary; wait-free.
-class IdleGap final : public NeededGaps {
+class IdleGap {
  public:
   /// A method that was never called is taken to need the budget of its task; without one, so long.
   static constexpr Nanoseconds kUnknownMethod = microseconds(100);
@@ -44,9 +44,13 @@ class IdleGap final : public NeededGaps {
     if (threads_.run_beside_methods()) return true;
     return is_there() && queue_.next_release() - now >= needed(*task.spec, task.profile, method);
   }
-  Nanoseconds for_on(TaskId task) const noexcept override {
-    const Task& of = tasks_[task.index];
-    return threads_.run_beside_methods() ? Nanoseconds{} : needed(*of.spec, of.profile, Method::kOn);
+  /// A gap that comes at all comes within this time: one period of the slowest task that is ON, at most kLongestWait.
+  /// O(tasks).
+  Nanoseconds soon() const noexcept {
+    Nanoseconds longest = milliseconds(1);
+    for (const Task& task : tasks_)
+      if (task.state == State::kOn && !task.spec->aperiodic) longest = std::max(longest, task.spec->period);
+    return std::min(longest, kLongestWait);
   }
   static Nanoseconds needed(const TaskSpec& task, const Profile& profile, Method method) noexcept {
     const Nanoseconds guess = task.budget > Nanoseconds{} ? task.budget : kUnknownMethod;

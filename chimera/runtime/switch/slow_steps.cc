@@ -9,14 +9,6 @@
 namespace chimera {
 namespace {
 
-Nanoseconds longest_period(const TaskSet& set) noexcept {
-  Nanoseconds longest = milliseconds(1);
-  for (const Task& task : set.tasks())
-    if (set.is_mine(task.id) && task.state == State::kOn && !task.spec->aperiodic)
-      longest = std::max(longest, task.spec->period);
-  return longest;
-}
-
 Nanoseconds period_of(const Task& task) noexcept {
   return task.spec->aperiodic ? milliseconds(1) : task.spec->period;
 }
@@ -86,7 +78,7 @@ StepEnd SlowSteps::wait_until(Nanoseconds instant) noexcept {
 // The flag is up: a gap is taken where one comes soon.
 bool SlowSteps::waits_for_gap(const Task& task, Method method, Nanoseconds now) noexcept {
   if (waits_since_ == kNever) waits_since_ = now;
-  const Nanoseconds at_most = std::min(longest_period(parts_.set), IdleGap::kLongestWait);
+  const Nanoseconds at_most = parts_.gap.soon();
   const bool is_vain = (order_->slow & kSlowForGap) != 0 && method == Method::kOn;
   if (!is_vain && now < waits_since_ + at_most && !parts_.gap.is_for(task, method, now)) {
     wake_ = std::min(waits_since_ + at_most, std::max(parts_.threads.next_look(now), now));

@@ -79,19 +79,20 @@ bool Switching::is_free() const noexcept {
   return phase_ == Phase::kAfter && n_off_ == plan_.leaving.size();
 }
 
-bool Switching::leads_to(const SwitchRequest& request) noexcept {
-  if (phase_ == Phase::kUndoing) return false;
+// The request changes nothing if it is for the tasks that are ON, or are being switched to.
+bool Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   const bool has_lists = request.lists.are_there();
+  bool changes_nothing = false;
   if (phase_ != Phase::kNone || !is_free()) {
     const auto order = agreement().order(agreement().plan(), parts_.set.spec().sets.size(), standing_.size());
-    return order && (has_lists ? request.lists.are_met_by(order->target) : order->after == request.set);
+    const bool leads_there =
+        order && (has_lists ? request.lists.are_met_by(order->target) : order->after == request.set);
+    changes_nothing = phase_ != Phase::kUndoing && leads_there;
+  } else {
+    note_standing(parts_.set, standing_);
+    changes_nothing =
+        has_lists ? request.lists.are_met_by(tasks_on(standing_)) : planner_.set_in_force(standing_) == request.set;
   }
-  note_standing(parts_.set, standing_);
-  return has_lists ? request.lists.are_met_by(tasks_on(standing_)) : planner_.set_in_force(standing_) == request.set;
-}
-
-bool Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
-  const bool changes_nothing = leads_to(request);
   peers_->wish(request, changes_nothing, now);
   return !changes_nothing;
 }
@@ -146,7 +147,7 @@ void Switching::take_up(const PlanWord& plan, Nanoseconds now) noexcept {
     record_.take_up(plan_);
     before_ = {order_.members, parts_.set.flag().is_up(), parts_.set.flag().is_raised()};
     next_armed_ = n_off_ = 0;
-    at_ = off_since_ = kNever;
+    at_ = gap_since_ = off_since_ = kNever;
     is_changed_ = false;
     phase_ = order_.slow != 0 ? Phase::kSlow : Phase::kArming;
     if (phase_ == Phase::kSlow) slow_.begin(agreement(), plan_, order_, *peers_, me_);
@@ -177,12 +178,10 @@ void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
   if (next_armed_ == 0 && run.begin == 0 && !holds(parts_.set, asked)) return wait(now, kLookForValue);
   for (next_armed_ = std::max(next_armed_, run.begin); next_armed_ < run.end;) {
     Task& next = task(plan_.arriving[next_armed_]);
-    if (!gap_.is_for(next, Method::kOn, now)) return wait(now);
+    if (!has_gap(next, Method::kOn, now)) return wait(now);
     parts_.set.sources().read_ahead(next.id, plan_.handovers, plan_.arriving.first(next_armed_));
     if (missing_value(parts_.set, next, plan_.handovers).is_valid()) return wait(now, kLookForValue);
-    const Followed followed = follow_constants(parts_.set, gap_, next, order_, now);
-    if (followed == Followed::kNoGap) return wait(now);
-    if (followed != Followed::kNothing) return reinitialised(next, followed);
+    if (is_behind(parts_.set, next, order_)) return has_gap(next, Method::kReinit, now) ? reinit(next, now) : wait(now);
     if (!arm(next, now)) return;
     now = parts_.clock.now();
     record_.receipt().armed = now;
@@ -200,7 +199,7 @@ void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
   }
   (void)agreement().hand_on(order_.number, *number);
   peers_->ring();
-  due_ = wake_ = order_.until + kAbortGrace;
+  due_ = wake_ = parts_.set.others() == nullptr ? now : order_.until + kAbortGrace;  // alone it has each turn
 }
 
 // Aborts the switch if a task or a member is not as the plan found it, or if the deadline is over.
@@ -231,9 +230,19 @@ bool Switching::may_go_on(Nanoseconds now) noexcept {
   return false;
 }
 
-void Switching::reinitialised(Task& next, Followed followed) noexcept {
+// Where jobs preempt each other a gap is taken only if it comes soon.
+bool Switching::has_gap(const Task& next, Method method, Nanoseconds now) noexcept {
+  if (gap_since_ == kNever) gap_since_ = now;
+  const bool is_late = parts_.threads.preempt() && now >= gap_since_ + gap_.soon();
+  if (!is_late && !gap_.is_for(next, method, now)) return false;
+  gap_since_ = kNever;
+  return true;
+}
+
+void Switching::reinit(Task& next, Nanoseconds now) noexcept {
+  const bool is_done = follow_constants(parts_.set, next, order_, now);
   parts_.settlement.record_faults(next);
-  if (followed == Followed::kDone) {
+  if (is_done) {
     record_.reinitialised(next.id);
   } else {
     abort(NoSwitch::kStepFailed, next.id, {});
@@ -368,7 +377,8 @@ bool Switching::turn_off_all(Nanoseconds now, bool at_once) noexcept {
     // A task of another context, or a signal has turned the task OFF before.
     if (!parts_.set.is_mine(next.id) || !next.owes_off) continue;
     const bool is_unknown = next.profile.execution[static_cast<int>(Method::kOff)].count == 0;
-    const Nanoseconds most = is_unknown ? IdleGap::kLongestWait : kSwitchPatience;
+    const Nanoseconds patience = is_unknown ? IdleGap::kLongestWait : kSwitchPatience;
+    const Nanoseconds most = parts_.threads.preempt() ? gap_.soon() : patience;
     const bool may_wait = !at_once && now < off_since_ + most;
     if (may_wait && !gap_.is_for(next, Method::kOff, now)) return false;
     const Nanoseconds began = parts_.clock.now();

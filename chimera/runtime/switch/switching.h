@@ -85,11 +85,11 @@ class Switching {
   enum class Phase : std::uint8_t { kNone, kArming, kAgreed, kChanging, kAfter, kUndoing, kSlow };
 
   SwitchAgreement agreement() const noexcept { return {peers_->page(), origin_}; }
-  bool leads_to(const SwitchRequest& request) noexcept;
   void take_up(const PlanWord& plan, Nanoseconds now) noexcept;
   void go_slowly(Nanoseconds now) noexcept;
   void arm(Nanoseconds edge, Nanoseconds now) noexcept;
-  void reinitialised(Task& next, Followed followed) noexcept;
+  void reinit(Task& next, Nanoseconds now) noexcept;
+  bool has_gap(const Task& next, Method method, Nanoseconds now) noexcept;
   bool arm(Task& next, Nanoseconds now) noexcept;
   bool may_go_on(Nanoseconds now) noexcept;
   void propose(Nanoseconds now) noexcept;
@@ -114,6 +114,7 @@ class Switching {
   UndisturbedState before_;
   std::span<TaskStanding> standing_;  // by task, when a plan is made
   Nanoseconds origin_, at_ = kNever;
+  Nanoseconds gap_since_ = kNever;    // a gap is awaited
   Nanoseconds off_since_ = kNever;    // `off` of the first task is due
   Nanoseconds due_ = kNever, wake_ = kNever;
   std::uint32_t me_ = 0;              // number of this context
