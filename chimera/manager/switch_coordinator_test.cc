@@ -160,6 +160,28 @@ start: run
   EXPECT_EQ(agreement.order(agreement.plan(), 3, 3)->slow, kSlowForDeadlines);
 }
 
+TEST(SwitchCoordinator, ForeseesAnOffThatFitsNoGap) {
+  FakeSubsystem fake(R"(subsystem: fake
+rtpus: {servo: {cpu: 3, policy: edf}}
+tasks:
+  sensor: {rtpu: servo, rate: 100 Hz, budget: 500 us}
+  filter: {rtpu: servo, rate: 100 Hz, offset: 5 ms, budget: 500 us}
+  law:    {rtpu: servo, rate: 10 Hz, budget: 6 ms}
+operator: {kp: [1 N.m/rad, 2 N.m/rad]}
+configurations: {run: [sensor, filter, law], rest: [sensor, filter], least: [sensor]}
+start: run
+)");
+  fake.start_manager();
+  ASSERT_TRUE(fake.until_on("law"));
+  ASSERT_TRUE(fake.until([&] { return fake.driver().world().logic.is_settled(); }));
+  SwitchCoordinator& switches = fake.driver().switches();
+  const ForeseenSwitch foreseen = switches.foresee(tasks_of(fake.spec(), 1));
+  EXPECT_EQ(foreseen.receipt.way.slow, 0);
+  EXPECT_EQ(foreseen.late_off, fake.task("law"));
+  EXPECT_EQ(foreseen.needed, milliseconds(6));
+  EXPECT_FALSE(switches.foresee(tasks_of(fake.spec(), 2)).late_off.is_valid()) << "a gap of 10 ms is left then";
+}
+
 TEST_F(SwitchCoordinatorTest, OneAtATimeAndItCanBeCancelled) {
   EXPECT_FALSE(coordinator().cancel(kBen, [](const SwitchOutcome&) {}));
   ask(kRest);
