@@ -109,7 +109,8 @@ TEST(AnswerText, WhyTellsWhatFailedInTimeAndStillStaysOnOneScreen) {
 
 TEST(AnswerText, DryRunNamesAnOffThatFitsNoGap) {
   const Json answer = {{"from", "both"}, {"to", "light"}, {"end", "possible"}, {"way", "fast"},
-                       {"expected_ns", 1000000}, {"late_off", {{"task", "old"}, {"needs_ns", 880000}}}, {"leaves", {"old"}}};
+                       {"expected_ns", 1000000}, {"late_off", {{"task", "old"}, {"needs_ns", 880000}}},
+                       {"leaves", {"old"}}};
   EXPECT_EQ(plan_text(answer),
             "switch from 'both' to 'light' would begin, the fast way; it is expected to take 1 ms\n"
             "  leaves: old\n"
