@@ -8,7 +8,7 @@
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/testing/test_application.h"
 
-namespace chimera {
+namespace chimera::rivals_test {
 namespace {
 
 struct Tool {
@@ -99,4 +99,4 @@ TEST_F(RivalsTest, AnEmptyTextIsNoResource) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::rivals_test

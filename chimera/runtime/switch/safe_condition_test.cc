@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-namespace chimera {
+namespace chimera::safe_condition_test {
 namespace {
 
 std::string holds_at(Relation comparison) {
@@ -38,4 +38,4 @@ TEST(SafeCondition, IsAskedOnlyWhereThereIsAVariable) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::safe_condition_test

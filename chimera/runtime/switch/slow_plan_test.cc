@@ -9,7 +9,7 @@
 #include "chimera/runtime/switch/switch_way.h"
 #include "chimera/runtime/testing/test_application.h"
 
-namespace chimera {
+namespace chimera::slow_plan_test {
 namespace {
 
 struct Tool {  // has as many outputs as its own constant says
@@ -202,4 +202,4 @@ TEST_F(SlowPlanTest, TheFlagIsUpForThePeriodOfTheSlowestDeviceThatIsOn) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::slow_plan_test

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace chimera {
+namespace chimera::switch_agreement_test {
 namespace {
 
 constexpr Nanoseconds kOrigin = seconds(5);
@@ -251,4 +251,4 @@ TEST_F(SwitchAgreementTest, ThreadsComeToOneOutcome) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::switch_agreement_test

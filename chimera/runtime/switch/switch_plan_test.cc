@@ -10,7 +10,7 @@
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/testing/test_application.h"
 
-namespace chimera {
+namespace chimera::switch_plan_test {
 namespace {
 
 using testing::component;
@@ -221,4 +221,4 @@ TEST(SwitchPlanner, OfTheTasksOfASetIsThePlanOfThatSet) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::switch_plan_test

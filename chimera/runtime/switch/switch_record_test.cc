@@ -5,7 +5,7 @@
 
 #include "chimera/runtime/hosted/heap_memory.h"
 
-namespace chimera {
+namespace chimera::switch_record_test {
 namespace {
 
 TEST(StartDelays, TellsTheLongestOfAWindow) {
@@ -39,4 +39,4 @@ TEST(StartDelays, TellsTheLongestOfAWindow) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::switch_record_test

@@ -7,7 +7,7 @@
 
 #include "chimera/runtime/hosted/heap_memory.h"
 
-namespace chimera {
+namespace chimera::switch_schedule_test {
 namespace {
 
 TaskSpec task(std::int64_t period_ms, std::int64_t budget_ms, std::uint32_t rtpu = 0, std::int64_t offset_ms = 0) {
@@ -110,4 +110,4 @@ TEST(SwitchSchedule, TellsOfACpuWhatWasConsidered) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::switch_schedule_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace chimera {
+namespace chimera::switch_wish_test {
 namespace {
 
 TEST(SwitchWish, ComesBackFromItsWord) {
@@ -52,4 +52,4 @@ TEST(SwitchWish, IsDealtWithInOneIncarnation) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::switch_wish_test

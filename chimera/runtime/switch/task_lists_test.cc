@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace chimera {
+namespace chimera::task_lists_test {
 namespace {
 
 using Kind = ListsFault::Kind;
@@ -66,4 +66,4 @@ TEST(TaskLists, BeginAsNoConfigurationDoes) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::task_lists_test

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-namespace chimera {
+namespace chimera::value_step_test {
 namespace {
 
 template <class T>
@@ -79,4 +79,4 @@ TEST(ValueStep, EveryFieldOfAStructIsMeasured) {
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::value_step_test
