@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Floors 0, 2, 3 and 4, the runtime half for every machine (chimera/runtime, runtime/executive) and components build
-freestanding for x86-64 and for a 32-bit microcontroller (ARM Cortex-M3), without exceptions or RTTI, and ask for no
-heap, stream, thread or file. The hosted halves of these floors lie in subfolders (base/hosted, runtime/hosted), which a
-microcontroller replaces, and which the other half does not include."""
+"""Floors 0, 2, 3 and 4, the runtime half for every machine (chimera/runtime, its executive and switch) and components
+build freestanding for x86-64 and for a 32-bit microcontroller (ARM Cortex-M3), without exceptions or RTTI, and ask for
+no heap, stream, thread or file. The hosted halves of these floors lie in subfolders (base/hosted, runtime/hosted),
+which a microcontroller replaces, and which the other half does not include."""
 import concurrent.futures
 import itertools
 import os
@@ -16,7 +16,7 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "check"))
 import sources  # noqa: E402
 
-FOLDERS = ("base", "table", "task", "schedule", "runtime", "runtime/executive")
+FOLDERS = ("base", "table", "task", "schedule", "runtime", "runtime/executive", "runtime/switch")
 FILE = re.compile(rf"chimera/({'|'.join(FOLDERS)})/[^/]+(?<!_test)(?<!_stress)(?<!_fuzz)\.(h|cc)$")
 HOSTED = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"(chimera/\w+/hosted/[^"]+)"', re.MULTILINE)
 COMPONENTS = ("library/gain/gain.cc", "library/pid_joint/pid_joint.cc", "library/tderiv/tderiv.cc")

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <optional>
 
-#include "chimera/runtime/constant_choice.h"
 #include "chimera/runtime/hosted/asked_set.h"
 #include "chimera/runtime/hosted/heap_memory.h"
-#include "chimera/runtime/switch_plan.h"
+#include "chimera/runtime/switch/constant_choice.h"
+#include "chimera/runtime/switch/switch_plan.h"
 
 namespace chimera {
 namespace {

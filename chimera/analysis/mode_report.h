@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The configurations of a description as nodes, also with a standby in the place of its primary, and the switches
 // and takeovers between them as edges: who asks for each without a person, whether the deadlines hold over it
-// (runtime/switch_schedule.h), and whether a constant may become another one (runtime/constant_choice.h).
+// (runtime/switch/switch_schedule.h), and whether a constant may become another one (runtime/switch/constant_choice.h).
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "chimera/catalogue/library.h"
-#include "chimera/runtime/switch_schedule.h"
+#include "chimera/runtime/switch/switch_schedule.h"
 #include "chimera/verify/configuration.h"
 
 namespace chimera {
@@ -33,7 +33,7 @@ struct ModeConstant {
   std::vector<std::size_t> users;     ///< those that stay
 };
 
-/// A resource that changes hands: runtime/rivals.h.
+/// A resource that changes hands: runtime/switch/rivals.h.
 struct ModeResource {
   std::string text;
   std::size_t before = 0, after = 0;  ///< who has it, in Configuration::tasks()

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "chimera/runtime/switch_receipt.h"
+#include "chimera/runtime/switch/switch_receipt.h"
 
 namespace chimera::control {
 

@@ -143,6 +143,9 @@ Json plan_json(const ManagerState& world, const ForeseenSwitch& foreseen) {
     variables.push_back({{"variable", spec.variables[handover.variable.index].name},
                          {"from", handover.from.task.is_valid() ? Json(world.name(handover.from.task)) : Json()},
                          {"to", world.name(handover.to.task)}});
+  Json late_off;
+  if (foreseen.late_off.is_valid())
+    late_off = {{"task", world.name(foreseen.late_off)}, {"needs_ns", foreseen.needed.count}};
   const bool is_refused = receipt.end == SwitchEnd::kRefused;
   return {{"from", receipt.before == kNoSet ? Json() : Json(spec.sets[receipt.before].name)},
           {"to", receipt.after == kNoSet ? Json() : Json(spec.sets[receipt.after].name)},
@@ -154,6 +157,7 @@ Json plan_json(const ManagerState& world, const ForeseenSwitch& foreseen) {
           {"slow_because", control::slow_words(receipt.way)},
           {"slow_why", receipt.way.slow != 0 ? Json(control::slow_text(receipt, spec)) : Json()},
           {"expected_ns", foreseen.expected.count},
+          {"late_off", std::move(late_off)},
           {"arrives", names(foreseen.plan.arriving)},
           {"leaves", names(foreseen.plan.leaving)},
           {"stays", names(foreseen.plan.staying)},

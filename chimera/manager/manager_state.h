@@ -15,7 +15,7 @@
 #include "chimera/platform/clock.h"
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/hosted/pages.h"
-#include "chimera/runtime/rivals.h"
+#include "chimera/runtime/switch/rivals.h"
 #include "chimera/subsystem/subsystem.h"
 
 namespace chimera::manager {

@@ -7,7 +7,7 @@
 
 #include "chimera/manager/switch_coordinator.h"
 #include "chimera/manager/testing/fake_subsystem.h"
-#include "chimera/runtime/switch_agreement.h"
+#include "chimera/runtime/switch/switch_agreement.h"
 
 namespace chimera::manager {
 namespace {

@@ -9,26 +9,11 @@
 #include "chimera/control/receipt_json.h"
 #include "chimera/control/receipt_text.h"
 #include "chimera/control/switch_reason.h"
-#include "chimera/runtime/idle_gap.h"
 
 namespace chimera::manager {
 namespace {
 
 constexpr Nanoseconds kGrace = milliseconds(500);  // within which the units abort by themselves
-
-bool is_in_range(const TaskPart& part, const ApplicationSpec& spec, std::uint32_t rtpu) {
-  return part.task.index < spec.tasks.size() && spec.tasks[part.task.index].rtpu.index == rtpu &&
-         part.move <= TaskMove::kStays;
-}
-
-bool is_in_range(const VariablePart& part, const ApplicationSpec& spec, std::uint32_t rtpu) {
-  const Handover& h = part.handover;
-  return h.variable.index < spec.variables.size() && h.to.task.index < spec.tasks.size() &&
-         spec.tasks[h.to.task.index].rtpu.index == rtpu &&
-         (!h.from.task.is_valid() || h.from.task.index < spec.tasks.size());
-}
-
-Nanoseconds later(Nanoseconds a, Nanoseconds b) { return a == kNever ? b : b == kNever ? a : std::max(a, b); }
 
 /// "14:03:07", of the wall clock.
 std::string time_of_day(Nanoseconds at) {
@@ -38,52 +23,6 @@ std::string time_of_day(Nanoseconds at) {
   if (::localtime_r(&seconds_since, &broken_down) != nullptr) std::strftime(text, sizeof text, "%T", &broken_down);
   return text;
 }
-
-/// By how long `on` took, as their units show it.
-class ShownGaps final : public NeededGaps {
- public:
-  explicit ShownGaps(const ManagerState& world) : world_(world) {}
-  Nanoseconds for_on(TaskId task) const noexcept override {
-    const TaskSpec& spec = world_.spec().tasks[task.index];
-    const PeerSegment& there = world_.peers.of(task);
-    const bool is_needed = there.is_there() && !world_.spec().rtpus[spec.rtpu.index].preemptive;
-    return is_needed ? IdleGap::needed(spec, world_.profile(task), Method::kOn) : Nanoseconds{};
-  }
-
- private:
-  const ManagerState& world_;
-};
-
-/// What producers made, as their units show it.
-class ShownConstants final : public MadeConstants {
- public:
-  explicit ShownConstants(const ManagerState& world) : world_(world) {}
-  bool differ(ConstantId constant, std::uint32_t a, std::uint32_t b) const noexcept override {
-    const std::vector<std::byte> one = value(constant, a), other = value(constant, b);
-    return one.empty() || one != other;
-  }
-
- private:
-  std::vector<std::byte> value(ConstantId constant, std::uint32_t producer) const {
-    const TaskId task = world_.spec().constants[constant.index].producers[producer].task;
-    const PeerLayout& layout = world_.peers.layout(world_.spec().tasks[task.index].rtpu);
-    const GroupId group = layout.constants(task);
-    if (!world_.peers.of(task).is_there()) return {};
-    std::vector<std::byte> payload(layout.place(group).payload_bytes);
-    chimera_slot slot;
-    const GroupReader reader = world_.peers.of(task).group(group);
-    if (!reader.is_bound() || !reader.try_read(slot, payload.data()) || slot.sequence == 0) return {};
-    std::size_t i = 0;
-    for (const PortSpec& port : world_.spec().tasks[task.index].ports) {
-      if (port.kind != CHIMERA_OUT_CONST) continue;
-      const std::byte* const at = payload.data() + layout.variables(group)[i++].offset;
-      if (port.constant == constant) return {at, at + port.max_bytes()};
-    }
-    return {};
-  }
-
-  const ManagerState& world_;
-};
 
 /// It may have been left by a manager that wrote where it should not.
 bool is_cause(const BegunSwitch& begun, const ApplicationSpec& spec) {
@@ -97,6 +36,30 @@ bool is_way(const SwitchWay& way, const ApplicationSpec& spec) {
   return way.slow <= kSlowReasons && is_task(found.task) && is_task(way.deadline.task) && is_task(way.gapless) &&
          is_task(way.absent) && is_task(way.rival) &&
          (!found.task.is_valid() || found.constant.index < spec.constants.size());
+}
+
+/// No gap of the rtpu is longer while the tasks `on` cycle: the longest time between two releases of those tasks that
+/// have the shortest period.
+Nanoseconds longest_gap(const ApplicationSpec& spec, const TaskBits& on, RtpuId rtpu) {
+  std::vector<const TaskSpec*> fastest;
+  for (std::size_t t = 0; t < spec.tasks.size(); ++t) {
+    const TaskSpec& task = spec.tasks[t];
+    if (!on.has(TaskId(t)) || task.rtpu != rtpu || task.aperiodic) continue;
+    if (!fastest.empty() && task.period < fastest[0]->period) fastest.clear();
+    if (fastest.empty() || task.period == fastest[0]->period) fastest.push_back(&task);
+  }
+  if (fastest.empty()) return kNever;
+  const std::int64_t period = fastest[0]->period.count;
+  std::int64_t longest = 0;
+  for (const TaskSpec* each : fastest) {
+    std::int64_t next = period;
+    for (const TaskSpec* other : fastest) {
+      const std::int64_t behind = ((other->offset - each->offset).count % period + period) % period;
+      if (behind > 0) next = std::min(next, behind);
+    }
+    longest = std::max(longest, next);
+  }
+  return Nanoseconds{longest};
 }
 
 std::string asker_text(const BegunSwitch& begun, const ApplicationSpec& spec) {
@@ -148,9 +111,10 @@ SwitchCoordinator::SwitchCoordinator(ManagerState& world, ReceiptArchive& archiv
     : world_(world),
       archive_(archive),
       journal_(world.own.block().journal()),
-      standing_(world.spec().tasks.size()) {
-  planner_.prepare(world.spec(), memory_);
-  ways_.prepare(world.spec(), memory_);
+      members_(world),
+      orders_(members_) {
+  orders_.prepare(world.spec(), false, memory_);
+  orders_.begin(world.keeper.origin);
   slow_.prepare(world.spec(), memory_);
   take_over();
 }
@@ -194,84 +158,20 @@ std::string SwitchCoordinator::progress() const {
   return "?";
 }
 
-// Those that live and serve this manager have done what they have to do.
-bool SwitchCoordinator::is_over(std::uint16_t number, std::uint16_t members) const noexcept {
-  for (std::uint32_t r = 0; r < world_.peers.n_rtpus(); ++r) {
-    if (((members >> r) & 1u) == 0 || !world_.rtpus[r].is_alive || !world_.peers[RtpuId(r)].is_there()) continue;
-    const SwitchProgress& progress = world_.peers[RtpuId(r)].block().head().switching;
-    if (progress.over.load(std::memory_order_acquire) != number) return false;  // SwitchProgress
-  }
-  return true;
-}
-
-PlanAnswer SwitchCoordinator::judge(const TaskBits& target) {
-  for (std::size_t t = 0; t < standing_.size(); ++t) {
-    const TaskId task(t);
-    const RtpuRecord& rtpu = world_.rtpus[world_.spec().tasks[t].rtpu.index];
-    const State state = world_.state(task);
-    const bool is_dead = !rtpu.is_alive && state != State::kNotCreated;
-    const bool is_away = !rtpu.is_alive || world_.peers.status(task).in_service;  // nothing can be done with it now
-    standing_[t] = {is_dead ? State::kError : state, is_away};
-  }
-  const PlanAnswer answer = planner_.plan(target, standing_, plan_);
-  way_ = answer ? ways_.judge(plan_, standing_, constants_in_force(), ShownConstants(world_), ShownGaps(world_))
-                : SwitchWay();
-  return answer;
-}
-
-/// Those of the configuration that was switched to last; at first of the start.
-std::uint32_t SwitchCoordinator::constants_in_force() const {
-  const PlanWord plan = agreement().plan();
-  const auto order = agreement().order(plan, world_.spec().sets.size(), world_.spec().tasks.size());
-  if (!order) return set_of_start(world_.spec());
-  return plan.phase == SwitchPhase::kCommitted ? order->constants_after() : order->constants;
-}
-
-Nanoseconds SwitchCoordinator::lead() const noexcept {
-  Nanoseconds longest;
-  for (std::size_t t = 0; t < standing_.size(); ++t) {
-    if (standing_[t].state != State::kOn) continue;
-    const Profile profile = world_.profile(TaskId(t));
-    longest = std::max(longest, profile.execution[static_cast<int>(Method::kCycle)].max);
-  }
-  return lead_of(plan_, world_.spec().tasks, longest);
-}
-
-SwitchOrder SwitchCoordinator::make_order(const TaskBits& target, std::uint8_t slow, Nanoseconds until) const {
-  SwitchOrder order;
-  order.number = next_plan(agreement().plan().number);
-  for (std::uint32_t r = 0; r < world_.peers.n_rtpus(); ++r)
-    if (world_.rtpus[r].is_alive) order.members = static_cast<std::uint16_t>(order.members | 1u << r);
-  order.after = plan_.after;
-  order.target = target;
-  order.slow = slow;
-  order.constants = constants_in_force();
-  order.until = until;
-  order.lead = lead();
-  for (std::size_t t = 0; t < standing_.size(); ++t)
-    if (standing_[t].state == State::kOn) order.on.add(TaskId(t));
-  return order;
-}
-
-void SwitchCoordinator::announce(const SwitchOrder& order) {
-  agreement().announce(order);
-  world_.announce();
-}
-
 bool SwitchCoordinator::is_free() const noexcept {
   const PlanWord open = agreement().plan();
-  return !present_ && !open.is_open() && (open.number == 0 || is_over(open.number, UINT16_MAX));
+  return !present_ && !open.is_open() && (open.number == 0 || orders_.are_over(open.number, UINT16_MAX));
 }
 
 /// What may begin is kDone, for as long as nothing has gone wrong.
 void SwitchCoordinator::assess(const TaskBits& target, SwitchOutcome& outcome) {
   SwitchReceipt& receipt = outcome.receipt;
-  const PlanAnswer answer = judge(target);
-  receipt.before = planner_.set_in_force(standing_);
+  const PlanAnswer answer = orders_.judge(target);
+  receipt.before = orders_.set_in_force();
   receipt.after = set_of(world_.spec(), target);
   receipt.why = answer.why;
   receipt.task = answer.task;
-  receipt.way = way_;
+  receipt.way = orders_.way();
   if (present_) {
     receipt.said.assign(under_way() + ", is under way: " + progress());
   } else if (!is_free()) {
@@ -297,7 +197,30 @@ ForeseenSwitch SwitchCoordinator::foresee(const TaskBits& target) {
   SwitchOutcome outcome;
   assess(target, outcome);
   const bool has_plan = outcome.receipt.end == SwitchEnd::kDone;
-  return {outcome.receipt, has_plan ? plan_ : SwitchPlan{}, outcome.remedy, has_plan ? expected() : Nanoseconds{}};
+  ForeseenSwitch foreseen;
+  foreseen.receipt = outcome.receipt;
+  foreseen.remedy = outcome.remedy;
+  if (!has_plan) return foreseen;
+  foreseen.plan = orders_.plan();
+  foreseen.expected = expected();
+  find_late_off(foreseen);
+  return foreseen;
+}
+
+/// A slow switch does not wait for a gap for longer anyway.
+void SwitchCoordinator::find_late_off(ForeseenSwitch& foreseen) const {
+  if (foreseen.receipt.way.slow != 0) return;
+  const TaskBits after = target_of(foreseen.plan);
+  for (const TaskId task : foreseen.plan.leaving) {
+    const TaskSpec& spec = world_.spec().tasks[task.index];
+    const Profile profile = world_.profile(task);
+    const bool was_called = profile.execution[static_cast<int>(Method::kOff)].count != 0;
+    const Nanoseconds needed = IdleGap::needed(spec, profile, Method::kOff);
+    if (was_called || !members_.needs_gaps(task) || needed <= longest_gap(world_.spec(), after, spec.rtpu)) continue;
+    foreseen.late_off = task;
+    foreseen.needed = needed;
+    return;
+  }
 }
 
 /// Of methods that were never called: as IdleGap takes them.
@@ -308,19 +231,19 @@ Nanoseconds SwitchCoordinator::method_time(TaskId task, Method method) const {
   return profile.execution[static_cast<int>(method)].count == 0 ? guess : profile.of_late(method);
 }
 
-/// To the change, when nothing has to be waited for but the flag. Requires: plan_ and way_ were judged.
+/// To the change, when nothing has to be waited for but the flag. Requires: orders_ has judged.
 Nanoseconds SwitchCoordinator::expected() {
   Nanoseconds sum;
-  if (way_.slow == 0) {
-    for (const TaskId task : plan_.arriving) sum = sum + method_time(task, Method::kOn);
-    return sum + lead();
+  const std::uint8_t slow = orders_.way().slow;
+  if (slow == 0) {
+    for (const TaskId task : orders_.plan().arriving) sum = sum + method_time(task, Method::kOn);
+    return sum + orders_.lead();
   }
   const Method methods[] = {Method::kCycle, Method::kOff, Method::kKill, Method::kInit, Method::kReinit, Method::kOn};
   static_assert(std::size(methods) == static_cast<std::size_t>(SlowAct::kOn) + 1);
-  for (const SlowStep& step : slow_.plan(plan_, constants_in_force(), way_.slow))
+  for (const SlowStep& step : slow_.plan(orders_.plan(), orders_.constants_in_force(), slow))
     if (step.act != SlowAct::kCheck) sum = sum + method_time(step.task, methods[static_cast<int>(step.act)]);
-  const TaskBits on = make_order(target_of(plan_), way_.slow, {}).on;
-  return (way_.slow & kSlowForConstants) != 0 ? sum + flag_lead(world_.spec(), on) : sum;
+  return (slow & kSlowForConstants) != 0 ? sum + flag_lead(world_.spec(), orders_.on()) : sum;
 }
 
 void SwitchCoordinator::ask(const SwitchRequest& request, const TaskBits& target, Asker asked_by, Nanoseconds wait,
@@ -333,7 +256,6 @@ void SwitchCoordinator::ask(const SwitchRequest& request, const TaskBits& target
   outcome->receipt.by = request.by;
   BegunSwitch begun;
   begun.number = journal_.next();
-  begun.before = outcome->receipt.before;
   begun.cause = request.cause;
   begun.by = request.by;
   begun.asked_by = asked_by;
@@ -345,12 +267,11 @@ void SwitchCoordinator::ask(const SwitchRequest& request, const TaskBits& target
     one.push_back(std::move(switched));
     return file(std::move(outcome), begun, now, std::move(one));
   }
-  begun.way = way_;
-  begun.order = make_order(target, way_.slow, now + wait);
+  orders_.make(begun, target, now + wait);
   journal_.begin(begun);
   present_ = Present{begun, {}};
   present_->switched.push_back(std::move(switched));
-  announce(begun.order);
+  orders_.announce(begun);
   world_.tell("switch", TaskId{}, RtpuId{}, under_way() + ": begun", now);
 }
 
@@ -360,13 +281,12 @@ bool SwitchCoordinator::cancel(Asker cancelled_by, Switched switched) {
   BegunSwitch cancelled = present_->begun;
   cancelled.cancelled_by = cancelled_by;
   journal_.change(cancelled);
-  if (!agreement().abort(cancelled.order.number)) {
+  if (!orders_.abort(cancelled)) {
     journal_.change(present_->begun);
     return false;
   }
   present_->begun = cancelled;
   present_->switched.push_back(std::move(switched));
-  world_.announce();
   return true;
 }
 
@@ -375,21 +295,12 @@ Nanoseconds SwitchCoordinator::next_due() const noexcept {
   return is_open ? present_->begun.order.until + kGrace : kNever;
 }
 
-/// Of one that was only late, and that nobody has cancelled: it has more time then.
 bool SwitchCoordinator::is_tried_again(const SwitchReceipt& receipt, Nanoseconds now) {
-  BegunSwitch& begun = present_->begun;
-  const std::uint8_t slow = begun.order.slow == 0 ? reason_to_go_slowly(receipt.why) : 0;
-  const bool was_late = receipt.why == NoSwitch::kLate && now < begun.order.until;
-  const bool is_cancelled = begun.cancelled_by.role != control::Role::kNone;
-  if ((!was_late && slow == 0) || is_cancelled || world_.is_ending()) return false;
-  if (begun.tries >= kMostTries || !judge(begun.order.target)) return false;
-  ++begun.tries;
-  if (slow != 0) begun.way.slow = slow;
-  const Nanoseconds until = slow != 0 ? now + (begun.order.until - begun.asked) : begun.order.until;
-  begun.order = make_order(begun.order.target, begun.way.slow, until);
-  begun.order.lead = lead_of_try(begun.order.lead, begun.tries);
-  journal_.change(begun);
-  announce(begun.order);
+  const bool is_cancelled = present_->begun.cancelled_by.role != control::Role::kNone;
+  if (is_cancelled || world_.is_ending()) return false;
+  if (!orders_.make_next_try(present_->begun, receipt.why, now)) return false;
+  journal_.change(present_->begun);
+  orders_.announce(present_->begun);
   return true;
 }
 
@@ -398,10 +309,9 @@ void SwitchCoordinator::look(Nanoseconds now) {
   const PlanWord plan = agreement().plan();
   if (!present_ && plan.is_open() && agreement().abort(plan.number)) world_.announce();
   if (!present_) return;
-  const SwitchOrder& order = present_->begun.order;
-  const bool is_due = now >= order.until + kGrace || world_.is_ending();
-  if (is_due && agreement().abort(order.number)) world_.announce();
-  if (agreement().plan().is_open() || !is_over(order.number, order.members)) return;
+  const bool is_due = now >= present_->begun.order.until + kGrace || world_.is_ending();
+  if (is_due) (void)orders_.abort(present_->begun);
+  if (!orders_.is_over(present_->begun)) return;
   auto outcome = collect(present_->begun, now);
   if (is_tried_again(outcome->receipt, now)) return;
   const Present over = *std::exchange(present_, std::nullopt);
@@ -409,69 +319,23 @@ void SwitchCoordinator::look(Nanoseconds now) {
   file(std::move(outcome), over.begun, now, over.switched);
 }
 
-/// A part says anything when its unit has died: what does not fit the application is left out.
-void SwitchCoordinator::add_part(const SwitchPart& part, std::uint32_t rtpu, Nanoseconds now,
-                                 SwitchOutcome& outcome) const {
-  const ApplicationSpec& spec = world_.spec();
-  SwitchReceipt& receipt = outcome.receipt;
-  const auto is_possible = [&](Nanoseconds at) { return at >= receipt.asked && at <= now; };
-  if (is_possible(part.armed)) receipt.armed = later(receipt.armed, part.armed);
-  if (part.flag > Nanoseconds{} && part.flag <= now - receipt.asked) receipt.flag = std::max(receipt.flag, part.flag);
-  const auto is_its = [&](TaskId task) {
-    return task.index < spec.tasks.size() && spec.tasks[task.index].rtpu.index == rtpu;
-  };
-  if (is_its(part.not_back)) receipt.not_back = part.not_back;
-  for (std::uint32_t i = 0; i < std::min<std::size_t>(part.n_reinitialised, part.reinitialised.size()); ++i)
-    if (is_its(part.reinitialised[i])) outcome.reinitialised.push_back(part.reinitialised[i]);
-  if (is_possible(part.ended)) receipt.ended = later(receipt.ended, part.ended);
-  const bool says_more = receipt.why == NoSwitch::kNone || is_of_another(receipt.why);
-  if (part.why != NoSwitch::kNone && says_more && receipt.end == SwitchEnd::kAborted) {
-    receipt.why = part.why;
-    if (part.task.index < spec.tasks.size()) receipt.task = part.task;
-    if (part.variable.index < spec.variables.size()) receipt.variable = part.variable;
-    receipt.value = part.value;
-    receipt.said.assign({part.said, ::strnlen(part.said, SwitchPart::kSaid)});
-  }
-  for (std::uint32_t i = 0; i < std::min<std::size_t>(part.n_tasks, part.tasks.size()); ++i)
-    if (is_in_range(part.tasks[i], spec, rtpu)) outcome.tasks.push_back(part.tasks[i]);
-  for (std::uint32_t i = 0; i < std::min(part.n_variables, SwitchPart::kVariablesKept); ++i)
-    if (is_in_range(part.variables[i], spec, rtpu)) outcome.variables.push_back(part.variables[i]);
-}
-
 std::shared_ptr<SwitchOutcome> SwitchCoordinator::collect(const BegunSwitch& over, Nanoseconds now) const {
-  const PlanWord word = agreement().plan();
-  const bool is_committed = word.number == over.order.number && word.phase == SwitchPhase::kCommitted;
   auto outcome = std::make_shared<SwitchOutcome>();
   SwitchReceipt& receipt = outcome->receipt;
-  receipt.number = over.number;
-  receipt.before = over.before;
-  receipt.after = over.order.after;
-  receipt.asked = over.asked;
-  receipt.cause = over.cause;
-  receipt.by = over.by;
-  receipt.way = over.way;
-  receipt.tries = over.tries;
-  receipt.end = is_committed ? SwitchEnd::kDone : SwitchEnd::kAborted;
-  if (is_committed) receipt.at = agreement().at(word);
-  for (std::uint32_t r = 0; r < world_.peers.n_rtpus(); ++r) {
-    if (((over.order.members >> r) & 1u) == 0 || !world_.peers[RtpuId(r)].is_there()) continue;
-    const SwitchPart& part = world_.peers[RtpuId(r)].block().switch_part();
-    if (part.number == over.order.number) add_part(part, r, now, *outcome);
-  }
-  if (receipt.ended == kNever) receipt.ended = now;
-  if (over.cancelled_by.role != control::Role::kNone && !is_committed) {
-    receipt.why = NoSwitch::kCancelled;
-    receipt.said.assign(over.cancelled_by.text());
-  } else if (!is_committed && receipt.why == NoSwitch::kNone) {
-    receipt.why = world_.is_ending() ? NoSwitch::kRunEnded : NoSwitch::kMemberDied;
-  }
-  std::ranges::stable_sort(outcome->tasks, {}, &TaskPart::move);
-  const std::span<const TaskId> order = world_.spec().init_order;
-  const auto place = [order](TaskId task) { return std::ranges::find(order, task) - order.begin(); };
-  std::ranges::sort(outcome->reinitialised, {}, place);
-  receipt.reinitialised = outcome->reinitialised;
+  outcome->tasks.resize(world_.spec().tasks.size());
+  outcome->variables.resize(world_.spec().variables.size());
+  outcome->reinitialised.resize(world_.spec().tasks.size());
   receipt.tasks = outcome->tasks;
   receipt.variables = outcome->variables;
+  receipt.reinitialised = outcome->reinitialised;
+  orders_.collect(over, world_.is_ending() ? NoSwitch::kRunEnded : NoSwitch::kMemberDied, now, receipt);
+  outcome->tasks.resize(receipt.tasks.size());
+  outcome->variables.resize(receipt.variables.size());
+  outcome->reinitialised.resize(receipt.reinitialised.size());
+  if (over.cancelled_by.role != control::Role::kNone && receipt.end == SwitchEnd::kAborted) {
+    receipt.why = NoSwitch::kCancelled;
+    receipt.said.assign(over.cancelled_by.text());
+  }
   return outcome;
 }
 

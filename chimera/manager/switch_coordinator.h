@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the manager does for a switch of configurations: it judges the request, orders the switch from the real-time
-// units, which carry it out and decide by themselves, and puts their parts together into one receipt. What it must not
-// forget stands in the journal: a successor goes on where it stopped.
-// docs/formats/processes.md, docs/decisions/0045-a-switch-is-committed-by-the-rtpus.md.
+// What the manager does for a switch of configurations: SwitchOrders (runtime/switch/switch_orders.h) judges the
+// request, orders the switch from the rtpus and collects the receipt; this class answers the people who ask, files the
+// receipt, and keeps in the journal what a successor needs to go on. docs/formats/processes.md,
+// docs/decisions/0045-a-switch-is-committed-by-the-rtpus.md.
 #pragma once
 
 #include <functional>
@@ -16,11 +16,9 @@
 #include "chimera/manager/manager_state.h"
 #include "chimera/manager/receipt_archive.h"
 #include "chimera/manager/switch_journal.h"
+#include "chimera/manager/switch_members.h"
 #include "chimera/runtime/hosted/heap_memory.h"
-#include "chimera/runtime/switch_agreement.h"
-#include "chimera/runtime/slow_plan.h"
-#include "chimera/runtime/switch_receipt.h"
-#include "chimera/runtime/switch_way.h"
+#include "chimera/runtime/switch/slow_plan.h"
 
 namespace chimera::manager {
 
@@ -40,7 +38,9 @@ struct ForeseenSwitch {
   SwitchReceipt receipt;  ///< `before`, `after` and, where it would be refused, `why`, `task` and `said`
   SwitchPlan plan;        ///< empty where it would be refused
   std::string remedy;
-  Nanoseconds expected;   ///< about so long from the request to the change; gaps, inputs and `safe_when` come on top
+  Nanoseconds expected;   ///< from the request to the change, about; gaps, inputs and `safe_when` come on top
+  TaskId late_off;        ///< its `off` was never called and fits no gap, so it comes IdleGap::kLongestWait late
+  Nanoseconds needed;     ///< by the `off` of late_off
 };
 
 /// The status word of a task of a unit that is dead, as it would be had the unit lived to make a change that was
@@ -73,11 +73,7 @@ class SwitchCoordinator {
   /// One that is asked for now would not be refused as under way; of a manager before this one neither.
   bool is_free() const noexcept;
   /// What is asked for is under way.
-  bool leads_to(const SwitchRequest& request) const noexcept {
-    if (!present_) return false;
-    const SwitchOrder& order = present_->begun.order;
-    return request.lists.are_there() ? request.lists.are_met_by(order.target) : order.after == request.set;
-  }
+  bool leads_to(const SwitchRequest& request) const noexcept { return present_ && present_->begun.leads_to(request); }
   /// "switch 3 to 'hand', asked for by operate:ann", or "by task law", or "by on_fault of law"; "" without one.
   std::string under_way() const;
   /// How far it is, and until when it may take: "arming, until 14:03:07". Requires: is_under_way().
@@ -94,22 +90,14 @@ class SwitchCoordinator {
     std::vector<Switched> switched;  // none: who asked, asked a predecessor
   };
 
-  SwitchAgreement agreement() const noexcept { return {world_.page.switching, world_.keeper.origin}; }
+  SwitchAgreement agreement() const noexcept { return orders_.agreement(); }
   void take_over();
-  bool is_over(std::uint16_t number, std::uint16_t members) const noexcept;
-  /// Can it be? Leaves the plan in `plan_` and the way that it would go in `way_`.
-  PlanAnswer judge(const TaskBits& target);
   void assess(const TaskBits& target, SwitchOutcome& outcome);
-  /// Of the plan that was judged last.
-  SwitchOrder make_order(const TaskBits& target, std::uint8_t slow, Nanoseconds until) const;
-  std::uint32_t constants_in_force() const;
-  Nanoseconds lead() const noexcept;
   Nanoseconds method_time(TaskId task, Method method) const;
   Nanoseconds expected();
-  void announce(const SwitchOrder& order);
+  void find_late_off(ForeseenSwitch& foreseen) const;
   bool is_tried_again(const SwitchReceipt& receipt, Nanoseconds now);
   std::shared_ptr<SwitchOutcome> collect(const BegunSwitch& over, Nanoseconds now) const;
-  void add_part(const SwitchPart& part, std::uint32_t rtpu, Nanoseconds now, SwitchOutcome& outcome) const;
   void file(std::shared_ptr<SwitchOutcome> outcome, const BegunSwitch& of, Nanoseconds now,
             std::vector<Switched> switched);
   void tell(const SwitchOutcome& outcome, Nanoseconds now);
@@ -117,13 +105,10 @@ class SwitchCoordinator {
   ManagerState& world_;
   ReceiptArchive& archive_;
   SwitchJournal journal_;
-  HeapMemory memory_;  // behind the planner
-  SwitchPlanner planner_;
-  SwitchWays ways_;
-  SwitchWay way_;  // of plan_
+  HeapMemory memory_;  // behind orders_ and slow_
+  ShownMembers members_;
+  SwitchOrders orders_;
   SlowPlanner slow_;
-  SwitchPlan plan_;
-  std::vector<TaskStanding> standing_;  // by task, when a plan is judged
   std::optional<Present> present_;
 };
 

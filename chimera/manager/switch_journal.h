@@ -19,24 +19,14 @@
 
 #include "chimera/manager/asker.h"
 #include "chimera/runtime/hosted/rtpu_block.h"
-#include "chimera/runtime/switch_plan.h"
-#include "chimera/runtime/switch_request.h"
-#include "chimera/runtime/switch_way.h"
+#include "chimera/runtime/switch/switch_orders.h"
 
 namespace chimera::manager {
 
 /// A switch that is under way. Plain value.
-struct BegunSwitch {
-  std::uint32_t number = 0;  ///< of its receipt
-  std::uint32_t tries = 1;
-  std::uint32_t before = kNoSet;
-  SwitchCause cause = SwitchCause::kScript;
-  TaskId by;           ///< as SwitchRequest::by
+struct BegunSwitch : OrderedSwitch {
   Asker asked_by;      ///< kNone: a task or reaction did
   Asker cancelled_by;  ///< kNone: it was not
-  Nanoseconds asked;
-  SwitchWay way;       ///< that it goes, and why
-  SwitchOrder order;   ///< that was announced last, or is about to be
 };
 
 /// One writer. Context: setup; never blocks.

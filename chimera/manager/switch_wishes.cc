@@ -8,9 +8,6 @@
 namespace chimera::manager {
 namespace {
 
-// As where one context carries its switches out itself.
-constexpr Nanoseconds kPatience = seconds(10);
-
 // The words say anything when their unit has died or writes where it should not.
 bool is_in_range(const OpenWish& open, RtpuId rtpu, const ApplicationSpec& spec) {
   const SwitchWish& wish = open.wish;
@@ -75,7 +72,7 @@ void SwitchWishes::ask(SwitchRequest request, Nanoseconds now) {
     target = asked.tasks;
     request.set = set_of(spec, target);
   }
-  switches_.ask(request, target, Asker{}, kPatience, now, [this, by](const SwitchOutcome& outcome) {
+  switches_.ask(request, target, Asker{}, kSwitchPatience, now, [this, by](const SwitchOutcome& outcome) {
     const SwitchReceipt& receipt = outcome.receipt;
     if (receipt.end == SwitchEnd::kRefused)
       tell_refused("to " + control::set_text(receipt.after, world_.spec()), by,

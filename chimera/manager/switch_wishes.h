@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chimera/manager/switch_coordinator.h"
-#include "chimera/runtime/switch_wish.h"
+#include "chimera/runtime/switch/switch_wish.h"
 
 namespace chimera::manager {
 

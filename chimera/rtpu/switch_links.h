@@ -4,7 +4,7 @@
 #pragma once
 
 #include "chimera/rtpu/peer_links.h"
-#include "chimera/runtime/switch_peers.h"
+#include "chimera/runtime/switch/switch_peers.h"
 
 namespace chimera {
 

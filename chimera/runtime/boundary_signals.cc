@@ -23,33 +23,37 @@ void BoundarySignals::look_ahead(Nanoseconds due, Nanoseconds wake) noexcept {
 
 void BoundarySignals::act(Nanoseconds now) noexcept {
   while (const ScriptAct* next = script_.take(now - origin_)) act(*next, now);
-  (void)take_request(now);
-  switching_.step(now);
-  if (take_request(now)) switching_.step(now);
+  pass_request_on(now);
+  step(now);
 }
 
-// The last request stands, and is taken when no switch is under way; one that changes nothing is dropped. A task may
-// ask in each cycle for what is refused.
-bool BoundarySignals::take_request(Nanoseconds now) noexcept {
+// The last request stands. A task may ask in each cycle for what is refused.
+void BoundarySignals::pass_request_on(Nanoseconds now) noexcept {
   if (const SwitchRequest last = set_.sent().take_request()) request_ = last;
   asks_again_ = kNever;
-  if (!request_) return false;
-  const bool has_others = set_.others() != nullptr;  // another one plans for all, and keeps the last request
+  if (!request_) return;
   const bool is_the_same = request_.is_for(asked_) && request_.by == asked_.by && request_.cause == asked_.cause;
   if (!is_the_same) asked_ = {};
-  if (!has_others && switching_.leads_to(request_)) request_ = {};
-  if (!request_ || (!has_others && !switching_.is_free())) return false;
   if (asked_ && now < asked_at_ + kAskAgain) {
     asks_again_ = asked_at_ + kAskAgain;
-    return false;
+    return;
   }
   const SwitchRequest next = std::exchange(request_, {});
   if (switching_.ask(next, now)) asked_ = next, asked_at_ = now;
-  return !has_others;
+}
+
+// A switch may end in the step, and another one or another try be ordered.
+void BoundarySignals::step(Nanoseconds now) noexcept {
+  if (orders_ != nullptr) (void)orders_->look(now);
+  switching_.step(now);
+  if (orders_ != nullptr && orders_->look(now)) switching_.step(now);
 }
 
 void BoundarySignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
-  if (act.kind == ScriptAct::Kind::kSwitch) return (void)switching_.ask(act.request(), now);
+  if (act.kind == ScriptAct::Kind::kSwitch) {
+    switching_.stop_watching(now);
+    return orders_->ask(act.request(), now);
+  }
   if (act.kind == ScriptAct::Kind::kSet) return set_.table().set_operator(act.operator_index, act.value, now);
   if (act.kind != ScriptAct::Kind::kSignal) {
     const bool up = act.kind == ScriptAct::Kind::kRaiseFlag;

@@ -11,7 +11,8 @@
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/run_options.h"
 #include "chimera/runtime/settlement.h"
-#include "chimera/runtime/switching.h"
+#include "chimera/runtime/switch/local_switches.h"
+#include "chimera/runtime/switch/switching.h"
 #include "chimera/runtime/task_set.h"
 
 namespace chimera {
@@ -27,7 +28,7 @@ struct RefusedSignal {
 
 inline constexpr std::size_t kRefusedKept = 64;
 
-/// So long after a request of a task was taken, the same one is not taken again: it waits, and gives way to another.
+/// The same request of a task is passed on again after this time. It waits until then, and gives way to another one.
 inline constexpr Nanoseconds kAskAgain = milliseconds(100);
 
 /// Context of everything not marked: edge; as long as the methods of components take; no allocation but theirs.
@@ -38,6 +39,8 @@ class BoundarySignals {
                   Switching& switching) noexcept
       : set_(set), script_(options.script), tap_(tap), settlement_(settlement), threads_(threads),
         switching_(switching), guest_(options.guest) {}
+  /// Switches are ordered here, by these, which outlive this; else elsewhere. Context: setup.
+  void order_by(LocalSwitches& switches) noexcept { orders_ = &switches; }
 
   /// The script counts from `origin`.
   void begin(Nanoseconds origin) noexcept;
@@ -51,9 +54,10 @@ class BoundarySignals {
   Nanoseconds next_wake() const noexcept { return next_wake_; }
   /// All of an edge is done: next_act() and next_wake() anew; `due` and `wake` are those of Recovery.
   void look_ahead(Nanoseconds due, Nanoseconds wake) noexcept;
-  /// Carries out the acts of the script that are due, goes on with a switch that is under way, and begins the one that
-  /// a task asked for last.
+  /// Carries out the acts of the script that are due, and step().
   void act(Nanoseconds now) noexcept;
+  /// Goes on with a switch that is under way, and begins the one that a task asked for last.
+  void step(Nanoseconds now) noexcept;
   /// Carries out an act of a script that is kept elsewhere; not kDie.
   void act(const ScriptAct& act, Nanoseconds now) noexcept;
   /// Carries out the signals that tasks sent to tasks of this context; those for a task with an unfinished job wait.
@@ -72,7 +76,7 @@ class BoundarySignals {
   std::span<const RefusedSignal> refused() const noexcept { return {refused_.begin(), refused_.end()}; }
 
  private:
-  bool take_request(Nanoseconds now) noexcept;
+  void pass_request_on(Nanoseconds now) noexcept;
   void carry_out(Task& task, Signal signal, Nanoseconds now) noexcept;
   void ring(Task& task, Nanoseconds now) noexcept;
   void record(const SignalReport& report, bool was_illegal, Nanoseconds now) noexcept;
@@ -85,9 +89,10 @@ class BoundarySignals {
   JobThreads& threads_;
   Switching& switching_;
   BoundaryListener* guest_;
-  SwitchRequest request_;  // of a task: waits for the switch that is under way to end, or for kAskAgain
-  SwitchRequest asked_;    // that was taken last; none when another one came since
-  Nanoseconds asked_at_, asks_again_ = kNever;  // when; when request_ is taken that waits for that
+  LocalSwitches* orders_ = nullptr;
+  SwitchRequest request_;  // of a task: waits for kAskAgain
+  SwitchRequest asked_;    // was passed on last; none if another one came since
+  Nanoseconds asked_at_, asks_again_ = kNever;  // instants at which asked_ was, and request_ is to be, passed on
   Nanoseconds origin_;
   Nanoseconds next_act_ = kNever, next_act_in_row_ = kNever, next_wake_ = kNever;
   FixedVector<RefusedSignal, kRefusedKept> refused_;

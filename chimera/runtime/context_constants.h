@@ -8,10 +8,10 @@
 
 #include "chimera/base/fixed.h"
 #include "chimera/base/setup_memory.h"
-#include "chimera/runtime/constant_choice.h"
 #include "chimera/runtime/constant_store.h"
 #include "chimera/runtime/context_table.h"
 #include "chimera/runtime/peer_view.h"
+#include "chimera/runtime/switch/constant_choice.h"
 #include "chimera/runtime/task_memory.h"
 #include "chimera/task/task.h"
 

@@ -31,6 +31,9 @@ class JobThreads {
 
   /// call() delays no job that is more urgent than the task: no idle gap has to be waited for.
   virtual bool run_beside_methods() const noexcept = 0;
+  /// Jobs preempt each other: a method needs no idle gap. In virtual time, where a method holds the processor all the
+  /// same, it runs in a gap that comes soon.
+  virtual bool preempt() const noexcept = 0;
   /// No job has taken a later release.
   virtual Nanoseconds latest_release() const noexcept = 0;
   /// A job that was released before `at` is under way, or waits.
@@ -53,12 +56,15 @@ class JobThreads {
 class JobsInLoop : public JobThreads {
  public:
   /// Both outlive this; `queue` may be null where nothing is switched. Context: setup.
-  JobsInLoop(std::span<const Task> tasks, const ReadyQueue* queue) noexcept : tasks_(tasks), queue_(queue) {}
+  /// `preemptive`: in virtual time jobs preempt each other.
+  JobsInLoop(std::span<const Task> tasks, const ReadyQueue* queue, bool preemptive = false) noexcept
+      : tasks_(tasks), queue_(queue), preemptive_(preemptive) {}
 
   bool claim(TaskId task) noexcept override { return !tasks_[task.index].is_busy; }
   Nanoseconds used_by_job(TaskId) noexcept override { return {}; }
   bool is_blocked(TaskId) noexcept override { return false; }
   bool run_beside_methods() const noexcept override { return false; }
+  bool preempt() const noexcept override { return preemptive_; }
   Nanoseconds latest_release() const noexcept override { return queue_->latest_release(); }
   bool has_job_before(TaskId task, Nanoseconds at) const noexcept override {
     return tasks_[task.index].is_busy || queue_->has_waiting(task, at);
@@ -71,6 +77,7 @@ class JobsInLoop : public JobThreads {
  private:
   std::span<const Task> tasks_;
   const ReadyQueue* queue_;
+  bool preemptive_;
 };
 
 }  // namespace chimera

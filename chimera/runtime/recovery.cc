@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "chimera/base/message.h"
-#include "chimera/runtime/missing_value.h"
+#include "chimera/runtime/switch/arming.h"
 
 namespace chimera {
 namespace {

@@ -11,9 +11,9 @@
 #include <span>
 
 #include "chimera/runtime/boundary_signals.h"
-#include "chimera/runtime/idle_gap.h"
 #include "chimera/runtime/settlement.h"
-#include "chimera/runtime/switching.h"
+#include "chimera/runtime/switch/idle_gap.h"
+#include "chimera/runtime/switch/switching.h"
 #include "chimera/runtime/takeover_record.h"
 #include "chimera/runtime/task_set.h"
 
@@ -35,8 +35,8 @@ class Recovery {
   explicit Recovery(const Parts& parts) noexcept
       : parts_(parts),
         gap_(parts.set.tasks(), parts.queue, parts.threads),
-        record_(parts.set, parts.threads, parts.switching) {}
-  /// Takeovers are told to the peers, which outlive this; null: their receipts are kept here. Context: setup.
+        record_(parts.set, parts.threads) {}
+  /// Takeovers are told to the peers, which outlive this; null: they are not told. Context: setup.
   void prepare(SwitchPeers* peers);
 
   /// Does what is due. Of no effect where no task has a standby or is restarted.

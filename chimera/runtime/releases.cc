@@ -44,7 +44,8 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
     : set_(set), guest_(options.guest), stop_(options.stop != nullptr ? options.stop : &kNoStop),
       records_(set.setup_memory().take<JobRecord>(set.tasks().size())),
       tap_(set.tasks(), options.tap, options.rtpu, options.threads != nullptr, set.setup_memory()),
-      in_loop_(set.tasks(), &queue_), threads_(options.threads != nullptr ? *options.threads : in_loop_),
+      in_loop_(set.tasks(), &queue_, options.preemptive),
+      threads_(options.threads != nullptr ? *options.threads : in_loop_),
       queue_(options.policy, set.spec().tasks, storage_for(records_.size(), set.setup_memory())),
       misses_(set.tasks(), records_, tap_,
               guest_ != nullptr ? &cause_.emplace(set.tasks(), threads_, set.setup_memory()) : nullptr, clock),
@@ -58,14 +59,22 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
   const bool is_alone = set.others() == nullptr;
   CHIMERA_ASSERT(is_alone ? options.switch_peers == nullptr : n_switches == 0);
   const bool takes_requests = (is_alone || options.switch_peers != nullptr) && may_request(set.spec());
-  switching_.prepare(n_switches + (is_alone ? kept_of_unscripted(set.spec()) : 0), options.switch_peers, options.asked);
+  const std::size_t n_receipts = n_switches + kept_of_unscripted(set.spec());
+  if (is_alone && n_receipts > 0) {
+    LocalSwitches& switches = switches_.emplace();
+    switches.prepare(set.spec(), 1, n_receipts, options.asked, set.setup_memory());
+    switches.join(0, set, !threads_.preempt());
+    signals_.order_by(switches);
+  }
+  SwitchPeers* const peers = switches_ ? &switches_->of(0) : options.switch_peers;
+  switching_.prepare(peers);
   const bool takes_lists = options.asked != nullptr || options.switch_peers != nullptr;
   if (takes_requests)
     set.sent().allow_requests(set.setup_memory().take<TaskLists>(takes_lists ? set.tasks().size() : 0));
-  recovery_.prepare(options.switch_peers);
+  recovery_.prepare(peers);
   for (Task& task : set.tasks()) {
     const TaskSpec& spec = *task.spec;
-    const bool can = options.can_demote || !set.is_mine(task.id);
+    const bool can = options.preemptive || !set.is_mine(task.id);
     const bool switches = takes_requests || !set.is_mine(task.id);
     CHIMERA_ASSERT(is_built(spec.on_miss, can, switches) && is_built(spec.on_overrun, can, switches));
     CHIMERA_ASSERT(switches || spec.on_fault_set == UINT16_MAX);
@@ -81,6 +90,7 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
 void Releases::begin(Nanoseconds origin) noexcept {
   origin_ = origin;
   queue_.set_origin(origin);
+  if (switches_) switches_->begin(origin);
   switching_.begin(origin);
   signals_.begin(origin);
   members_.follow_all(origin);
@@ -94,7 +104,7 @@ void Releases::take_edge(Nanoseconds now, bool puts_off) noexcept {
   signals_.act(now);
   if (guest_ != nullptr) {
     guest_->take(signals_, now);
-    switching_.step(now);  // what rang after the step in act() was heard by the guest: nobody rings again for it
+    signals_.step(now);  // the guest has heard the bell for what changed after the step in act(): no one rings again
   }
   signals_.carry_out_pending(now);
   recovery_.act(now);

@@ -25,6 +25,7 @@
 #include "chimera/runtime/recovery.h"
 #include "chimera/runtime/run_options.h"
 #include "chimera/runtime/settlement.h"
+#include "chimera/runtime/switch/local_switches.h"
 #include "chimera/runtime/task_set.h"
 #include "chimera/schedule/ready_queue.h"
 
@@ -84,6 +85,7 @@ class Releases {
   void end(Nanoseconds now) noexcept {
     recovery_.end(now);
     switching_.end(now);
+    if (switches_) switches_->end(now);
   }
   bool stop_requested() const noexcept { return stop_->load(std::memory_order_relaxed); }
 
@@ -120,14 +122,15 @@ class Releases {
   Members& members() noexcept { return members_; }
   BoundarySignals& signals() noexcept { return signals_; }
   Settlement& settlement() noexcept { return settlement_; }
-  /// Switches of configurations.
-  Switching& switching() noexcept { return switching_; }
+  /// Of the switches and takeovers of a context that is alone; none of another one. Context: setup, between runs.
+  const SwitchReceipts& receipts() noexcept { return switches_ ? switches_->receipts() : kNoReceipts; }
   /// What happens is recorded here.
   ContextTap& tap() noexcept { return tap_; }
 
  private:
   static constexpr Nanoseconds kAtOnce{INT64_MIN};
   static constexpr std::atomic<bool> kNoStop{false};
+  static constexpr SwitchReceipts kNoReceipts{};
 
   bool decide_start(const Job& job, Nanoseconds now) noexcept;
 
@@ -146,6 +149,7 @@ class Releases {
   JobCycle jobs_;
   Members members_;
   Settlement settlement_;
+  std::optional<LocalSwitches> switches_;  // of a context that is alone
   Switching switching_;
   BoundarySignals signals_;
   Recovery recovery_;

@@ -5,12 +5,12 @@
 #include <atomic>
 #include <cstdint>
 
-#include "chimera/runtime/asked_tasks.h"
 #include "chimera/runtime/background_threads.h"
 #include "chimera/runtime/boundary_listener.h"
 #include "chimera/runtime/job_threads.h"
 #include "chimera/runtime/script.h"
-#include "chimera/runtime/switch_peers.h"
+#include "chimera/runtime/switch/switch_peers.h"
+#include "chimera/runtime/switch/switch_request.h"
 #include "chimera/runtime/tap_ring.h"
 #include "chimera/schedule/policy.h"
 
@@ -29,7 +29,7 @@ struct RunOptions {
   AskedTasks* asked = nullptr;
   JobThreads* threads = nullptr;             ///< null: jobs run where the edges do
   BackgroundThreads* writer = nullptr;        ///< runs what components do beside their cycles; MethodRunner::writer
-  bool can_demote = false;                   ///< jobs may go on below all others
+  bool preemptive = false;                   ///< jobs preempt each other, and may go on below all others
 };
 
 /// Why a run ended.

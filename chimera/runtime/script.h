@@ -11,7 +11,7 @@
 #include "chimera/base/assert.h"
 #include "chimera/base/ids.h"
 #include "chimera/base/time.h"
-#include "chimera/runtime/switch_request.h"
+#include "chimera/runtime/switch/switch_request.h"
 #include "chimera/task/signal.h"
 
 namespace chimera {

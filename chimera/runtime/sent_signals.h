@@ -7,7 +7,7 @@
 #include <span>
 
 #include "chimera/runtime/peer_view.h"
-#include "chimera/runtime/switch_request.h"
+#include "chimera/runtime/switch/switch_request.h"
 #include "chimera/runtime/task_memory.h"
 #include "chimera/task/task.h"
 

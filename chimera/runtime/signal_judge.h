@@ -8,7 +8,7 @@
 
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/refusal.h"
-#include "chimera/runtime/rivals.h"
+#include "chimera/runtime/switch/rivals.h"
 #include "chimera/task/signal.h"
 
 namespace chimera {

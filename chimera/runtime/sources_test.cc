@@ -9,7 +9,7 @@
 #include "chimera/runtime/job_step.h"
 #include "chimera/runtime/testing/test_application.h"
 
-namespace chimera {
+namespace chimera::sources_test {
 namespace {
 
 struct First {
@@ -83,4 +83,4 @@ TEST_F(SourcesTest, AJobReleasedBeforeTheChangeKeepsTheLastProducerAlsoWhenItBeg
 }
 
 }  // namespace
-}  // namespace chimera
+}  // namespace chimera::sources_test

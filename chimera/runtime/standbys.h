@@ -10,8 +10,8 @@
 
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/application_spec.h"
-#include "chimera/runtime/rivals.h"
-#include "chimera/runtime/switch_page.h"
+#include "chimera/runtime/switch/rivals.h"
+#include "chimera/runtime/switch/switch_agreement.h"
 #include "chimera/task/state_machine.h"
 
 namespace chimera {

@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "chimera/runtime/switch_receipt.h"
+#include "chimera/runtime/switch/switch_receipt.h"
 #include "chimera/table/shared_copy.h"
 
 namespace chimera {

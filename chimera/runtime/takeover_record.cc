@@ -126,7 +126,6 @@ void TakeoverRecord::close(std::size_t group, NoSwitch why, Nanoseconds now) noe
 void TakeoverRecord::tell(Takeover& takeover) noexcept {
   if (takeover.number == 0) takeover.number = ++n_told_;
   if (peers_ != nullptr) peers_->tell_takeover(takeover);
-  else keep_receipt(takeover, switching_.receipts());
 }
 
 void TakeoverRecord::end(Open& open, Nanoseconds now) noexcept {

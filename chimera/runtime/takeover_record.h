@@ -5,11 +5,9 @@
 
 #include <span>
 
-#include "chimera/runtime/handover_steps.h"
 #include "chimera/runtime/job_threads.h"
-#include "chimera/runtime/start_delays.h"
-#include "chimera/runtime/switch_peers.h"
-#include "chimera/runtime/switching.h"
+#include "chimera/runtime/switch/switch_peers.h"
+#include "chimera/runtime/switch/switch_record.h"
 #include "chimera/runtime/takeover.h"
 
 namespace chimera {
@@ -19,9 +17,8 @@ namespace chimera {
 class TakeoverRecord {
  public:
   /// All of it outlives this.
-  TakeoverRecord(TaskSet& set, JobThreads& threads, Switching& switching) noexcept
-      : set_(set), threads_(threads), switching_(switching), steps_(set) {}
-  /// Tells the peers, which outlive this; null: keeps receipts beside those of switches. Context: setup.
+  TakeoverRecord(TaskSet& set, JobThreads& threads) noexcept : set_(set), threads_(threads), steps_(set) {}
+  /// Tells the peers, which outlive this; null: nothing is told. Context: setup.
   void prepare(SwitchPeers* peers);
 
   /// The standby is about to go ON in place of the one that failed in its group: what that one published last is kept.
@@ -55,7 +52,6 @@ class TakeoverRecord {
 
   TaskSet& set_;
   JobThreads& threads_;
-  Switching& switching_;
   SwitchPeers* peers_ = nullptr;
   HandoverSteps steps_;
   StartDelays delays_;

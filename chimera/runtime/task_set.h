@@ -16,7 +16,7 @@
 #include "chimera/runtime/slow_methods.h"
 #include "chimera/runtime/sources.h"
 #include "chimera/runtime/standbys.h"
-#include "chimera/runtime/switch_page.h"
+#include "chimera/runtime/switch/switch_agreement.h"
 #include "chimera/runtime/task_host.h"
 #include "chimera/runtime/task_life.h"
 #include "chimera/runtime/task_memory.h"

@@ -114,7 +114,7 @@ inline void run(const ProcessorPlace& place, Nanoseconds period, int n, Nanoseco
   };
   if (place.ceiling > 0) at_the_ceiling(go);
   else go();
-  for (const SwitchReceipt& receipt : executor.releases().switching().receipts().all()) {
+  for (const SwitchReceipt& receipt : executor.releases().receipts().all()) {
     seen.receipts.push_back(receipt);
     for (const TaskPart& part : receipt.tasks) seen.lost += part.lost;
     seen.receipts.back().tasks = {};

@@ -11,17 +11,25 @@
 namespace {
 
 using chimera::switching_trial::Kind;
+using chimera::switching_trial::run_loop_trial;
 using chimera::switching_trial::run_trial;
 using chimera::switching_trial::run_virtual_trial;
 using chimera::switching_trial::Tally;
 
 constexpr std::uint32_t kSwitches = 40, kOfModel = 3;
 
+Tally run(std::uint64_t seed) {
+  switch (seed % 4) {
+    case 0: return run_virtual_trial(seed, kSwitches);
+    case 1: return run_loop_trial(seed, kSwitches);
+    default: return run_trial(seed, kSwitches);
+  }
+}
+
 unsigned long long number(std::uint64_t n) { return n; }
 
 int replay(std::uint64_t seed, bool records) {
-  const Tally tally = records ? run_trial(seed, kOfModel, Kind::kOfModel)
-                        : seed % 4 == 0 ? run_virtual_trial(seed, kSwitches) : run_trial(seed, kSwitches);
+  const Tally tally = records ? run_trial(seed, kOfModel, Kind::kOfModel) : run(seed);
   for (const std::string& event : tally.events) std::printf("%s\n", event.c_str());
   if (!records || !tally.failure.empty())
     std::fprintf(stderr, "seed %llu: %s\n", number(seed), tally.failure.empty() ? "all held" : tally.failure.c_str());
@@ -37,7 +45,7 @@ int campaign(double limit, std::uint64_t first, std::uint64_t most) {
   std::uint64_t faults = 0;
   for (std::uint64_t n = 0; n < most && (limit <= 0 || elapsed() < limit); ++n) {
     const std::uint64_t seed = first + n;
-    const Tally one = seed % 4 == 0 ? run_virtual_trial(seed, kSwitches) : run_trial(seed, kSwitches);
+    const Tally one = run(seed);
     sum.switches += one.switches;
     sum.done += one.done;
     sum.aborted += one.aborted;

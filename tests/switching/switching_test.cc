@@ -36,5 +36,15 @@ TEST(SwitchingTrial, ExecutivesAndPreemptiveRtpusSwitchTogetherInVirtualTime) {
   EXPECT_GT(all.done, 100u);
 }
 
+TEST(SwitchingTrial, ExchangedTasksOfALoopReadNoOldValue) {
+  Tally all;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Tally one = run_loop_trial(seed, 20);
+    ASSERT_EQ(one.failure, "") << "seed " << seed;
+    all.done += one.done;
+  }
+  EXPECT_GT(all.done, 300u);
+}
+
 }  // namespace
 }  // namespace chimera::switching_trial

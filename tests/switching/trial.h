@@ -32,5 +32,7 @@ struct Tally {
 Tally run_trial(std::uint64_t seed, std::uint32_t n_switches, Kind kind = Kind::kAll);
 /// One trial of three rtpus in virtual time, some of them preemptive, that nothing disturbs but other requests.
 Tally run_virtual_trial(std::uint64_t seed, std::uint32_t n_switches);
+/// One trial of a random loop of tasks on one to three rtpus in virtual time.
+Tally run_loop_trial(std::uint64_t seed, std::uint32_t n_switches);
 
 }  // namespace chimera::switching_trial

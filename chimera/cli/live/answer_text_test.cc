@@ -104,6 +104,17 @@ TEST(AnswerText, WhyTellsWhatFailedInTimeAndStillStaysOnOneScreen) {
   EXPECT_NE(text.find("\n  in time      3 missed, 1 demoted\n"), std::string::npos) << text;
 }
 
+TEST(AnswerText, DryRunNamesAnOffThatFitsNoGap) {
+  const Json answer = {{"from", "both"}, {"to", "light"}, {"end", "possible"}, {"way", "fast"},
+                       {"expected_ns", 1000000}, {"late_off", {{"task", "old"}, {"needs_ns", 880000}}},
+                       {"leaves", {"old"}}};
+  EXPECT_EQ(plan_text(answer),
+            "switch from 'both' to 'light' would begin, the fast way; it is expected to take 1 ms\n"
+            "  leaves: old\n"
+            "  off of old was never called and is taken to need 880 us; no gap is as long, so it runs 100 ms after the "
+            "change and may delay cycles\n");
+}
+
 TEST(AnswerText, WhyOfAnOperatorVariable) {
   const Json answer = {{"chain", {{{"variable", "kp"}, {"producer", "operator"}, {"state", "ON"}, {"valid", true},
                                    {"value", "3"}, {"published_ns", 0}, {"verdict", "ok"}}}},

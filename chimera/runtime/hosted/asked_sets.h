@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "chimera/runtime/asked_tasks.h"
+#include "chimera/runtime/application_spec.h"
+#include "chimera/runtime/switch/switch_request.h"
 
 namespace chimera {
 

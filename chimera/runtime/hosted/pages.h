@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "chimera/base/time.h"
-#include "chimera/runtime/switch_page.h"
+#include "chimera/runtime/switch/switch_agreement.h"
 
 namespace chimera {
 

@@ -12,11 +12,11 @@
 #include <span>
 
 #include "chimera/base/ids.h"
+#include "chimera/runtime/hosted/pages.h"
 #include "chimera/runtime/outbox.h"
 #include "chimera/runtime/safe_frame.h"
-#include "chimera/runtime/hosted/pages.h"
-#include "chimera/runtime/switch_part.h"
-#include "chimera/runtime/switch_wish.h"
+#include "chimera/runtime/switch/switch_receipt.h"
+#include "chimera/runtime/switch/switch_wish.h"
 #include "chimera/runtime/takeover.h"
 #include "chimera/runtime/tap_ring.h"
 #include "chimera/runtime/task_status.h"

@@ -28,6 +28,7 @@ class EdgeAccess final : public JobThreads {
   Answer call(Task& task, Method method, Nanoseconds now) noexcept override;
 
   bool run_beside_methods() const noexcept override { return true; }
+  bool preempt() const noexcept override { return true; }
   Nanoseconds latest_release() const noexcept override;
   bool has_job_before(TaskId task, Nanoseconds at) const noexcept override;
   void await_job(TaskId task) noexcept override;

@@ -13,7 +13,7 @@ namespace {
 
 RunOptions with_threads(RunOptions options, JobThreads* threads) noexcept {
   options.threads = threads;
-  options.can_demote = true;
+  options.preemptive = true;
   return options;
 }
 

@@ -138,7 +138,7 @@ class PreemptiveParts {
       made.policy = policy;
       made.guest = &guest;
       made.threads = &access;
-      made.can_demote = true;
+      made.preemptive = true;
       return made;
     }
 

@@ -31,7 +31,7 @@ class SporadicTasksTest : public ::testing::Test {
     auto made = HeapTaskSet::create(app.make(), app.components, ContextPlace{});
     set = *std::move(made);
     RunOptions options;
-    options.can_demote = true;
+    options.preemptive = true;
     releases = std::make_unique<Releases>(*set, clock, options);
     processor = std::make_unique<VirtualProcessor>(releases->tap(), 2);
     sporadic = std::make_unique<SporadicTasks>(*releases, set->spec().tasks, *processor);

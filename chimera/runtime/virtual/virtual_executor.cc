@@ -43,15 +43,15 @@ struct ModelledTime {
   }
 };
 
-RunOptions with_demotion(RunOptions options, bool can_demote) noexcept {
-  options.can_demote = can_demote;
+RunOptions with_preemption(RunOptions options, bool preemptive) noexcept {
+  options.preemptive = preemptive;
   return options;
 }
 
 }  // namespace
 
 VirtualExecutor::VirtualExecutor(TaskSet& set, const RunOptions& options, const VirtualOptions& how)
-    : set_(set), how_(how), releases_(set, clock_, with_demotion(options, how.preemptive)),
+    : set_(set), how_(how), releases_(set, clock_, with_preemption(options, how.preemptive)),
       preemptive_(releases_, set.spec().tasks, clock_, {how.seed, how.quantum}) {
   CHIMERA_ASSERT(how.quantum > Nanoseconds{});
   for (const TaskSpec& task : set.spec().tasks) CHIMERA_ASSERT(how.preemptive || !task.server);

@@ -42,7 +42,7 @@ class VirtualExecutor {
   /// Context: setup, between runs.
   std::span<const RefusedSignal> refused() noexcept { return releases_.signals().refused(); }
   /// Of the switches that were asked for. Context: setup, between runs.
-  const SwitchReceipts& receipts() noexcept { return releases_.switching().receipts(); }
+  const SwitchReceipts& receipts() noexcept { return releases_.receipts(); }
 
  private:
   TaskSet& set_;

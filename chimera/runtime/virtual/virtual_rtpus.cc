@@ -52,7 +52,7 @@ struct VirtualRtpus::Unit {
     run.script = Script();
     run.guest = &control;
     run.switch_peers = switches;
-    run.can_demote = is_preemptive(how);
+    run.preemptive = is_preemptive(how);
     return run;
   }
 
@@ -71,14 +71,16 @@ VirtualRtpus::VirtualRtpus(VirtualPeers& peers, const RunOptions& options, const
     : peers_(peers),
       stop_(options.stop != nullptr ? options.stop : &kNoStop),
       script_(options.script),
-      switches_(peers, options.script.count(ScriptAct::Kind::kSwitch) + kept_of_unscripted(peers.spec()),
-                options.asked) {
+      switches_(peers) {
   CHIMERA_ASSERT(how.quantum > Nanoseconds{} && options.guest == nullptr);
-  const bool has_switches = script_.count(ScriptAct::Kind::kSwitch) > 0 || kept_of_unscripted(peers.spec()) > 0;
-  for (std::size_t r = 0; r < peers.spec().rtpus.size(); ++r) {
-    SwitchPeers* const switches = has_switches ? &switches_.of(RtpuId(r)) : nullptr;
-    if (peers.tasks(RtpuId(r)) != nullptr)
-      units_.push_back(std::make_unique<Unit>(peers, RtpuId(r), switches, options, how));
+  const auto n_rtpus = static_cast<std::uint32_t>(peers.spec().rtpus.size());
+  const std::size_t n_receipts = script_.count(ScriptAct::Kind::kSwitch) + kept_of_unscripted(peers.spec());
+  if (n_receipts > 0) switches_.prepare(peers.spec(), n_rtpus, n_receipts, options.asked, memory_);
+  for (std::uint32_t r = 0; r < n_rtpus; ++r) {
+    if (peers.tasks(RtpuId(r)) == nullptr) continue;
+    SwitchPeers* const switches = n_receipts > 0 ? &switches_.of(r) : nullptr;
+    units_.push_back(std::make_unique<Unit>(peers, RtpuId(r), switches, options, how));
+    if (n_receipts > 0) switches_.join(r, *peers.tasks(RtpuId(r)), !units_.back()->is_preemptive(how));
   }
   silences_ = silences_of(peers.spec());
   of_dead_.reserve(kMostRefused);
@@ -169,7 +171,7 @@ RunEnd VirtualRtpus::run_to(Nanoseconds duration) noexcept {
     take_acts();
     if (!silences_.empty()) look_for_silence();
     take_edges();
-    switches_.look(now_);
+    (void)switches_.look(now_);
     if (begin_jobs()) continue;
     if (!is_anything_left()) return RunEnd::kNothingLeft;
     const Nanoseconds next = std::min(next_event(), until);
@@ -246,6 +248,7 @@ void VirtualRtpus::die(RtpuId rtpu) noexcept {
   unit.is_dead = true;
   unit.acts_now = false;
   peers_.die(rtpu, now_);
+  switches_.die(rtpu.index);
   for (Task& task : unit.tasks.tasks()) {
     if (!unit.tasks.is_mine(task.id) || task.state == State::kNotCreated) continue;
     unit.releases.tap().record(TapKind::kState, now_, task.id, static_cast<std::uint64_t>(State::kError));
@@ -321,7 +324,7 @@ void VirtualRtpus::shut_down() {
     unit->clock.set(now_);
     unit->releases.end(now_);
   }
-  switches_.look(now_);
+  switches_.end(now_);
   for (const auto& unit : units_)
     if (!unit->is_dead) unit->tasks.life().shut_down(now_);
 }

@@ -49,7 +49,7 @@ class VirtualRtpus {
   /// In order of time. Context: setup, between runs.
   std::vector<RefusedSignal> refused();
   /// Of every switch that the script or a task asked for. Context: setup, between runs.
-  const SwitchReceipts& receipts() const noexcept { return switches_.receipts(); }
+  const SwitchReceipts& receipts() noexcept { return switches_.receipts(); }
 
  private:
   struct Unit;
@@ -74,6 +74,7 @@ class VirtualRtpus {
   VirtualPeers& peers_;
   const std::atomic<bool>* stop_;  // as RunOptions::stop
   Script script_;
+  HeapMemory memory_;  // behind switches_
   VirtualSwitches switches_;
   std::vector<std::unique_ptr<Unit>> units_;  // with tasks, in the order of the rtpus
   std::vector<Silence> silences_;             // for the sake of standbys

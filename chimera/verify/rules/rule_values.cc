@@ -59,7 +59,8 @@ const LinkedPort* same_resource(const LinkedPort& port, const TaskModel& other) 
   return nullptr;
 }
 
-/// Tasks that are never ON together take turns with a resource (runtime/rivals.h); these open it beside each other.
+/// Tasks that are never ON together take turns with a resource (runtime/switch/rivals.h). Tasks of one set open it
+/// beside each other.
 void check_users(Model& model, std::size_t a, std::size_t b) {
   const auto names_both = [&](const SetModel& set) { return set.has(a) && set.has(b); };
   const auto set = std::ranges::find_if(model.sets, names_both);

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rtpus as the orderer of switches sees them: by their segments and by what the keeper says of their processes.
+#pragma once
+
+#include <vector>
+
+#include "chimera/manager/manager_state.h"
+#include "chimera/runtime/switch/switch_orders.h"
+
+namespace chimera::manager {
+
+/// Context: setup.
+class ShownMembers final : public SwitchMembers, private MadeConstants {
+ public:
+  /// The state outlives this.
+  explicit ShownMembers(ManagerState& world) noexcept : world_(world) {}
+
+  SwitchPage& page() noexcept override { return world_.page.switching; }
+  std::uint16_t living() const noexcept override;
+  TaskStanding standing(TaskId task) const noexcept override;
+  Profile profile(TaskId task) const noexcept override { return world_.profile(task); }
+  bool needs_gaps(TaskId task) const noexcept override;
+  const MadeConstants& constants() noexcept override { return *this; }
+  bool is_busy_with(std::uint32_t context, std::uint16_t plan) const noexcept override;
+  bool read_part(std::uint32_t context, std::uint16_t plan, SwitchReceipt& part) const noexcept override;
+  void ring() noexcept override { world_.announce(); }
+
+ private:
+  bool differ(ConstantId constant, std::uint32_t a, std::uint32_t b) const noexcept override;
+  std::vector<std::byte> value(ConstantId constant, std::uint32_t producer) const;
+
+  ManagerState& world_;
+};
+
+}  // namespace chimera::manager

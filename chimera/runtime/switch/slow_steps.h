@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// The steps of a slow switch (slow_plan.h) as one context carries them out on its tasks: each forwards, and back. Whose
+// turn it is, and what becomes of a step that fails: runtime/switch/slow_switch.h.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "chimera/runtime/context_tap.h"
+#include "chimera/runtime/settlement.h"
+#include "chimera/runtime/switch/idle_gap.h"
+#include "chimera/runtime/switch/slow_plan.h"
+#include "chimera/runtime/switch/switch_record.h"
+#include "chimera/task/state_machine.h"
+
+namespace chimera {
+
+/// How far a step is.
+enum class StepEnd : std::uint8_t { kDone, kWaits, kFailed };
+
+/// The steps that spawn and kill tasks, over several cycle boundaries if a service thread runs `init` and `kill`.
+/// Remembers the steps that were carried out, so that only those are undone. Context of everything not marked: cycle
+/// boundary; wait-free. `Move`, which is given the task and the signal, calls the methods.
+class CreationSteps {
+ public:
+  /// Context: setup.
+  void prepare(std::size_t n_tasks, SetupMemory& memory);
+  /// Of another switch: nothing is done.
+  void begin() noexcept;
+  /// The task is handed over to the service thread by one of these steps.
+  bool is_under_way(TaskId task) const noexcept { return asked_ == task; }
+
+  /// `signal` is kSpawn or kKill. Done at once where there is nothing to do. kFailed: nothing is to be undone.
+  template <class Move>
+  StepEnd carry_out(Task& task, Signal signal, Move move) {
+    if (asked_ != task.id && task.state == after(signal)) return StepEnd::kDone;
+    if (const StepEnd end = go_on(task, signal, move); end != StepEnd::kDone) return end;
+    if (task.state != after(signal)) return StepEnd::kFailed;
+    mark(task.id, signal, true);
+    return StepEnd::kDone;
+  }
+  /// Takes the step back that was carried out here; kDone also where the other method failed.
+  template <class Move>
+  StepEnd undo(Task& task, Signal signal, Move move) {
+    if (!is_done(task.id, signal)) return StepEnd::kDone;
+    const Signal back = signal == Signal::kSpawn ? Signal::kKill : Signal::kSpawn;
+    if (asked_ != task.id && next(task.state, back, false).kind == Next::Kind::kImpossible) return StepEnd::kDone;
+    if (go_on(task, back, move) == StepEnd::kWaits) return StepEnd::kWaits;
+    mark(task.id, signal, false);
+    return StepEnd::kDone;
+  }
+  /// The switch was aborted while the step was under way. kDone: it is to be undone. kFailed: it had not begun.
+  StepEnd cut(const Task& task, Signal signal) noexcept;
+
+ private:
+  static State after(Signal signal) noexcept { return signal == Signal::kSpawn ? State::kOff : State::kNotCreated; }
+  template <class Move>
+  StepEnd go_on(Task& task, Signal signal, Move move) {
+    if (asked_ != task.id) {
+      asked_ = task.id;
+      move(task, signal);
+    }
+    if (task.in_service) return StepEnd::kWaits;
+    asked_ = TaskId();
+    return StepEnd::kDone;
+  }
+  bool is_done(TaskId task, Signal signal) const noexcept { return of(signal)[task.index]; }
+  void mark(TaskId task, Signal signal, bool is_done) noexcept { of(signal)[task.index] = is_done; }
+  std::span<bool> of(Signal signal) const noexcept { return signal == Signal::kSpawn ? spawned_ : killed_; }
+
+  std::span<bool> spawned_, killed_;  // by task
+  TaskId asked_;
+};
+
+/// Why a step failed, or what it did is too much. Plain value.
+struct StepFailure {
+  NoSwitch why = NoSwitch::kNone;
+  TaskId task;
+  VariableId variable;
+  FixedString<160> said;  ///< by the method
+};
+
+/// Context of everything not marked: cycle boundary; as long as the methods of components take; no allocation but
+/// theirs.
+class SlowSteps {
+ public:
+  /// All of it outlives this.
+  struct Parts {
+    TaskSet& set;
+    JobThreads& threads;
+    Settlement& settlement;
+    ContextTap& tap;
+    JobClock& clock;
+    IdleGap& gap;
+    SwitchRecord& record;
+  };
+  explicit SlowSteps(const Parts& parts) noexcept : parts_(parts) {}
+  /// Context: setup.
+  void prepare() { created_.prepare(parts_.set.tasks().size(), parts_.set.setup_memory()); }
+  /// Of another order, which outlives the switch.
+  void begin(const SwitchOrder& order) noexcept;
+
+  /// Carries out a step of a task of this context, once or until it is no longer kWaits. failure() may say that the
+  /// switch is to be aborted also where the step is kDone.
+  StepEnd carry_out(const SlowStep& step, Nanoseconds now) noexcept;
+  const StepFailure& failure() const noexcept { return failure_; }
+  /// The switch was aborted when the step was next. kDone: it was carried out, and is to be undone. kFailed: it was
+  /// not.
+  StepEnd leave(const SlowStep& step, Nanoseconds now) noexcept;
+  /// Takes back what carry_out() did. What cannot be undone, because a signal or an error came between, is left as it
+  /// is.
+  StepEnd undo(const SlowStep& step, Nanoseconds now) noexcept;
+  /// The service thread has the task, for one of these steps.
+  bool is_under_way(TaskId task) const noexcept { return created_.is_under_way(task); }
+  /// When a step that waits is worth another try although nobody rings and no job ends.
+  Nanoseconds wake() const noexcept { return wake_; }
+
+ private:
+  StepEnd check(const Task& task) noexcept;
+  StepEnd turn_off(Task& task, Nanoseconds now) noexcept;
+  StepEnd create(Task& task, Signal signal, Nanoseconds now) noexcept;
+  StepEnd reinit(Task& task, Nanoseconds now) noexcept;
+  StepEnd turn_on(Task& task, Nanoseconds now) noexcept;
+  StepEnd turn_on_again(Task& task, Nanoseconds now) noexcept;
+  StepEnd fail(NoSwitch why, const Task& task) noexcept;
+  StepEnd wait_until(Nanoseconds instant) noexcept;
+  bool waits_for_idle(Nanoseconds now) noexcept;
+  bool waits_for_gap(const Task& task, Method method, Nanoseconds now) noexcept;
+  bool waits_for_device(const Task& task, Nanoseconds now) noexcept;
+  SignalReport move(Task& task, Signal signal, Nanoseconds now) noexcept;
+  Task& task(TaskId id) noexcept { return parts_.set.tasks()[id.index]; }
+
+  Parts parts_;
+  CreationSteps created_;
+  StepFailure failure_;
+  const SwitchOrder* order_ = nullptr;
+  Nanoseconds wake_ = kNever;
+  Nanoseconds waits_since_ = kNever;  // for a gap
+  Nanoseconds again_at_ = kNever;     // a device that is not ready is asked then
+  Nanoseconds back_until_ = kNever;   // and so long on the way back
+  bool was_idle_ = false;             // the processor, since who leaves is OFF
+};
+
+}  // namespace chimera

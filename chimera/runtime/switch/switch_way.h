@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which way a switch goes, and why: fast, while the tasks cycle (switching.h), or slow, leaving tasks first
+// (slow_switch.h). Asked once by whoever orders it.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
+#include "chimera/base/setup_memory.h"
+#include "chimera/runtime/switch/constant_choice.h"
+#include "chimera/runtime/switch/idle_gap.h"
+#include "chimera/runtime/switch/rivals.h"
+#include "chimera/runtime/switch/switch_agreement.h"
+#include "chimera/runtime/switch/switch_schedule.h"
+
+namespace chimera {
+
+/// Plain value.
+struct SwitchWay {
+  std::uint8_t slow = 0;          ///< SlowReason; 0: fast
+  ConstantUsers::Found constant;  ///< of kSlowForConstants: who stays ON, and what becomes another one for it
+  PlanAnswer deadline;            ///< of kSlowForDeadlines: as SwitchSchedule::judge()
+  TaskId gapless;                 ///< of kSlowForGap: its `on` fits no gap; invalid: none was found by the deadline
+  Nanoseconds needed;             ///< the gap that `gapless` needs
+  TaskId absent;                  ///< of kSlowForResource: the first task of the plan that is NOT-CREATED
+  TaskId rival;                   ///< and who has its resource; invalid: it waits for a constant of such a task
+};
+
+/// Why a fast switch that ended so is made the slow way next; 0: it is not. Context: any.
+constexpr std::uint8_t reason_to_go_slowly(NoSwitch why) noexcept {
+  return why == NoSwitch::kNoGap ? kSlowForGap : why == NoSwitch::kNotReady ? kSlowForDevice : 0;
+}
+
+/// SwitchOrder::lead of that try, by the lead of the first. Its longest job is in it already: only what else held a
+/// context up is given more time, eight times as much with each try. Context: any.
+constexpr Nanoseconds lead_of_try(Nanoseconds first, std::uint32_t tries) noexcept {
+  constexpr std::int64_t kMoreTime = 8;
+  if (tries <= 1) return first;
+  Nanoseconds more = std::min(first, milliseconds(1));
+  for (std::uint32_t i = 1; i < tries; ++i) more = more * kMoreTime;
+  return first + more;
+}
+
+/// Context of everything not marked: setup, or an edge of virtual time; no allocation.
+class SwitchWays {
+ public:
+  /// The spec outlives this. Context: setup.
+  void prepare(const ApplicationSpec& spec, SetupMemory& memory);
+  /// The way of a plan that was made from `standing`, while the constants of sets[constants] are in force.
+  SwitchWay judge(const SwitchPlan& plan, std::span<const TaskStanding> standing, std::uint32_t constants,
+                  const MadeConstants& made, const NeededGaps& gaps) noexcept;
+
+ private:
+  void find_gapless(const SwitchPlan& plan, std::span<const TaskStanding> standing, const NeededGaps& gaps,
+                    SwitchWay& way) const noexcept;
+
+  const ApplicationSpec* spec_ = nullptr;
+  Rivals rivals_;
+  SwitchSchedule schedule_;
+  ConstantUsers users_;
+};
+
+}  // namespace chimera
