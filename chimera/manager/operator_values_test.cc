@@ -8,7 +8,7 @@
 #include "chimera/manager/testing/test_bundle.h"
 #include "chimera/text/json.h"
 
-namespace chimera::manager {
+namespace chimera::manager::operator_values_test {
 namespace {
 
 PortDescriptor in_var(const std::string& name, const std::string& unit, const std::string& shape,
@@ -126,4 +126,4 @@ TEST_F(OperatorValues, RefusesInTheWordsOfTheRulesAndChangesNothing) {
 }
 
 }  // namespace
-}  // namespace chimera::manager
+}  // namespace chimera::manager::operator_values_test

@@ -9,7 +9,7 @@
 #include "chimera/control/receipt_file.h"
 #include "chimera/manager/testing/fake_subsystem.h"
 
-namespace chimera::manager {
+namespace chimera::manager::switch_wishes_test {
 namespace {
 
 constexpr std::uint16_t kRun = 0, kRest = 1;
@@ -195,4 +195,4 @@ TEST_F(SwitchWishesTest, ForTasksThatAreNoLegalSetAreToldOnce) {
 }
 
 }  // namespace
-}  // namespace chimera::manager
+}  // namespace chimera::manager::switch_wishes_test

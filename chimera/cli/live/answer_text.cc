@@ -183,7 +183,7 @@ std::string plan_text(const Json& answer) {
     text += "  " + text_of(variable, "variable") + ": from " + (producer.empty() ? "nobody" : producer) + " to " +
             text_of(variable, "to") + "\n";
   }
-  if (const Json& off = field(answer, "late_off"); off.is_object())
+  if (const Json& off = answer["late_off"]; off.is_object())
     text += "  off of " + text_of(off, "task") + " was never called and is taken to need " +
             duration_text(whole_of(off, "needs_ns")) +
             "; no gap is as long, so it runs 100 ms after the change and may delay cycles\n";
