@@ -7,8 +7,8 @@ import time
 import unittest
 
 from campaign import ROUNDS, begin, counted
-from descriptions import (DEVICE_SEEN, DEVICE_SETS, DEVICE_SWITCH, SEEN, SETS, SLOW_SEEN, SLOW_SETS, SLOW_SWITCH, SWITCH,
-                          mixed, preemptive)
+from descriptions import (DEVICE_SEEN, DEVICE_SETS, DEVICE_SWITCH, SEEN, SETS, SLOW_SEEN, SLOW_SETS, SLOW_SWITCH,
+                          SWITCH, mixed, preemptive)
 from plan_page import PlanPage
 from system import Refused, System, await_that
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Switches over real processes, by executives and by preemptive rtpus: fast, slow, and between two tasks with one device;
-and their receipts in the file. What is decided about a switch: tests/stepped."""
+"""Switches over real processes, by executives and by preemptive rtpus: fast, slow, and between two tasks with one
+device; and their receipts in the file. What is decided about a switch: tests/stepped."""
 import json
 import pathlib
 import signal
@@ -8,8 +8,8 @@ import unittest
 
 import jsonschema
 
-from descriptions import (DEVICE_SEEN, DEVICE_SETS, DEVICE_SWITCH, SEEN, SETS, SLOW_SEEN, SLOW_SETS, SLOW_SWITCH, SWITCH,
-                          mixed, preemptive)
+from descriptions import (DEVICE_SEEN, DEVICE_SETS, DEVICE_SWITCH, SEEN, SETS, SLOW_SEEN, SLOW_SETS, SLOW_SWITCH,
+                          SWITCH, mixed, preemptive)
 from system import System, await_that
 
 SCHEMA = json.loads((pathlib.Path(__file__).resolve().parents[2] / "docs/formats/run.schema.json").read_text())

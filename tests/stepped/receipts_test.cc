@@ -141,7 +141,8 @@ std::vector<std::pair<Nanoseconds, std::string>> history_of(const Json& receipts
     EXPECT_TRUE(numbers.insert(receipt["number"].as_int64()).second) << receipt;
     if (receipt["end"] != "done") continue;
     EXPECT_EQ(receipt["from"], history.back().second) << receipt;
-    history.push_back({Nanoseconds{whole_at(receipt, "origin_ns") + whole_at(receipt, "at_ns")}, text_at(receipt, "to")});
+    const Nanoseconds at{whole_at(receipt, "origin_ns") + whole_at(receipt, "at_ns")};
+    history.push_back({at, text_at(receipt, "to")});
   }
   EXPECT_EQ(numbers.size(), receipts.size());
   EXPECT_EQ(*numbers.rbegin(), static_cast<std::int64_t>(receipts.size())) << "no number is missing";

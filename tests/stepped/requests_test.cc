@@ -41,7 +41,8 @@ TEST(SteppedRequests, CarryOutWhatATaskAsksForAndNameTheTask) {
 }
 
 TEST(SteppedRequests, RefuseTasksThatAreNoLegalSetByName) {
-  SteppedSubsystem system(replaced(kTasksAsk, "{first: low, second: high}", "{first: --on one, second: --off one two}"));
+  SteppedSubsystem system(
+      replaced(kTasksAsk, "{first: low, second: high}", "{first: --on one, second: --off one two}"));
   ASSERT_TRUE(system.until_started());
   system.set("wish", 2);
   ASSERT_TRUE(system.until([&] { return !system.events("switch").empty(); }));

@@ -57,7 +57,8 @@ TEST(SteppedSameDevice, IsClosedBeforeItIsOpenedInASwitch) {
 }
 
 TEST(SteppedSameDevice, TheStartWaitsForADeviceThatIsNotReady) {
-  SteppedSubsystem system(with_device(replaced(kDevice, "constants: {value: 1}", "constants: {value: 1, late: 20}") + kSwitch));
+  SteppedSubsystem system(
+      with_device(replaced(kDevice, "constants: {value: 1}", "constants: {value: 1, late: 20}") + kSwitch));
   EXPECT_TRUE(system.until_started());
   EXPECT_EQ(system.on(), kWithHand);
 }
@@ -78,7 +79,8 @@ TEST(SteppedSameDevice, AStandbyOpensItWhenTheProcessOfThePrimaryIsDead) {
 }
 
 TEST(SteppedSameDevice, AStandbyOpensItWhenThePrimaryIsInErrorAndKilled) {
-  SteppedSubsystem system(with_standby(replaced(kDevice, "constants: {value: 1}", "constants: {value: 1, fails_at: 30}")));
+  SteppedSubsystem system(
+      with_standby(replaced(kDevice, "constants: {value: 1}", "constants: {value: 1, fails_at: 30}")));
   EXPECT_TRUE(system.until([&] { return system.on() == kWithDrill && sees_drill(system); })) << system.on();
   EXPECT_EQ(system.state("hand"), State::kNotCreated);
   EXPECT_TRUE(had_one_user(system)) << system.events("fault");

@@ -122,7 +122,8 @@ TEST(SteppedSwitch, IsRefusedWithTheNearestNameAndWithTheCommandThatHelps) {
 TEST(SteppedSwitch, OverWhichATaskMightMissItsDeadlineGoesTheSlowWayUnderTheFlag) {
   std::string text = kSwitch;
   const auto replace = [&](const std::string& what, const std::string& with) {
-    for (std::size_t at = 0; (at = text.find(what, at)) != text.npos; at += with.size()) text.replace(at, what.size(), with);
+    for (std::size_t at = 0; (at = text.find(what, at)) != text.npos; at += with.size())
+      text.replace(at, what.size(), with);
   };
   replace("rate: 1 kHz", "rate: 100 Hz");
   replace("rate: 500 Hz", "rate: 50 Hz");
