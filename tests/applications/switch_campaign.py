@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Lesson 17 with switches at random instants instead of the task that watches for singular poses: one receipt each, no
 cycle lost, no step above its limit. In virtual time, where tasks that stay publish bit for bit what they publish
-without a switch; with --real in real-time processes, beside a busy program on each processor. The last line counts switches.
+without a switch; with --real in real-time processes, beside a busy program on each processor. The last line counts
+switches.
 
 A switch in real time is judged if a witness above everything on the same processor was never later than a tenth of the
 robot's period during the switch.
