@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Lesson 17 with switches at random instants instead of the task that watches for singular poses: one receipt each, no
-cycle lost, no step above its limit. In virtual time, where tasks that stay publish bit for bit what they publish without
-a switch; with --real in real-time processes, beside a busy program on each processor. The last line counts switches.
+cycle lost, no step above its limit. In virtual time, where tasks that stay publish bit for bit what they publish
+without a switch; with --real in real-time processes, beside a busy program on each processor. The last line counts
+switches.
 
 A switch in real time is judged if a witness above everything on the same processor was never later than a tenth of the
 robot's period during the switch.
@@ -104,7 +105,8 @@ class Switches:
 
     def __init__(self, arguments):
         build = pathlib.Path(arguments.build).resolve()
-        self.program, self.folder, self.is_real = str(build / "bin/chimera"), tempfile.TemporaryDirectory(), arguments.real
+        self.program, self.is_real = str(build / "bin/chimera"), arguments.real
+        self.folder = tempfile.TemporaryDirectory()
         os.environ.setdefault("CHIMERA_PATH", str(build / "components"))
         os.environ["XDG_RUNTIME_DIR"] = os.environ["XDG_STATE_HOME"] = self.folder.name
         self.path, self.n, self.unjudged = description(self.folder.name), 0, 0

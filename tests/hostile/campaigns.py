@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The frame of the campaigns of this folder: again and again for a time, with a seed, and one line of JSON at the end."""
+"""The frame of the campaigns of this folder: again and again for a time, with a seed, and a line of JSON at the end."""
 import argparse
 import json
 import os
@@ -13,8 +13,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "processes"
 
 def run(name, doc, begin, *options):
     """`begin(arguments)` makes an object with once(number), which gives a list of what is wrong, and figures(), a dict
-    for the last line, which may have "n". `options`: more of the command line, as (name, arguments of argparse). Modules
-    that need CHIMERA_BUILD are imported by `begin`. Returns the exit code."""
+    for the last line, which may have "n". `options`: more of the command line, as (name, arguments of argparse).
+    Modules that need CHIMERA_BUILD are imported by `begin`. Returns the exit code."""
     parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", required=True, help="the tree whose programs are tested")
     parser.add_argument("--seconds", type=float, required=True)

@@ -48,7 +48,8 @@ class Components:
             for ending, is_damaged in ((".so", number % 5 != 4), (".component.json", number % 5 == 4)):
                 file = self.source / f"{name}{ending}"
                 (place / file.name).write_bytes(damaged(file) if is_damaged else file.read_bytes())
-            (pathlib.Path(folder) / "subject.yaml").write_text(TEXT.replace("NAME", name).replace("CONSTANTS", constants))
+            text = TEXT.replace("NAME", name).replace("CONSTANTS", constants)
+            (pathlib.Path(folder) / "subject.yaml").write_text(text)
             return list(self.judge(name, folder, place))
 
     def judge(self, name, folder, place):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Random deaths of any process of a subsystem beside two clients that ask all the time: each call of a client ends, each
-process but the keeper has a successor, the tasks of the others go on, and in the end nothing is left. A subsystem ends
-with its twentieth death, or with its keeper. The last line counts the deaths and has the longest call.
+"""Random deaths of any process of a subsystem beside two clients that ask all the time: each call of a client ends,
+each process but the keeper has a successor, the tasks of the others go on, and in the end nothing is left. A subsystem
+ends with its twentieth death, or with its keeper. The last line counts the deaths and has the longest call.
 
 usage: deaths_campaign.py --build TREE --seconds N
 """

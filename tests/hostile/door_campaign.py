@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Attacks the socket of a running subsystem: mutated lines, lines that do not end, connections that come and go or never
-read, by its own user and by two users with the role observe. The last line counts lines and has the cycles that were
-lost. How long the owner waits: bench row 21.
+"""Attacks the socket of a running subsystem: mutated lines, lines that do not end, connections that come and go or
+never read, by its own user and by two users with the role observe. The last line counts lines and has the cycles that
+were lost. How long the owner waits: bench row 21.
 
 usage: door_campaign.py --build TREE --seconds N
 """

@@ -55,7 +55,7 @@ class Files(unittest.TestCase):
         was["ports"][0]["doc"] = ESCAPES
         self.stranger(doc=ESCAPES, source=ESCAPES, ports=was["ports"])
         (self.path / "stranger.md").write_text(f"# stranger\n\n{ESCAPES}\n")
-        (self.path / f"b\u202ead\x1b[2J.component.json").write_text("{}")
+        (self.path / "b\u202ead\x1b[2J.component.json").write_text("{}")
         for words in (("list",), ("describe", "stranger"), ("check", "FILE"),
                       ("run", "FILE", "--virtual", "--for", "1 s")):
             code, out, err = self.chimera(*words, text=ONE.replace("NAME", "stranger"))

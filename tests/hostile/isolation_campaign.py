@@ -28,7 +28,8 @@ rtpus:
   evil: {cpu: 1, policy: edf, executor: EXECUTOR}
 tasks:
   good: {component: t_counter, rtpu: good, rate: 1 kHz, deadline: 900 us}
-  evil: {component: COMPONENT, rtpu: evil, rate: 100 Hz, alias: {y: z}, constants: {how: WAY}, resources: {armed: ARMED}}
+  evil: {component: COMPONENT, rtpu: evil, rate: 100 Hz, alias: {y: z}, constants: {how: WAY},
+         resources: {armed: ARMED}}
 configurations: {all: [good, evil]}
 start: all
 """

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every command refuses nonsense - nothing, a lot, huge and negative numbers, bytes that are no UTF-8 - with an exit code
-of its own, without an effect on what runs, and with `--json` in JSON.
+"""Every command refuses nonsense - nothing, a lot, huge and negative numbers, bytes that are no UTF-8 - with an exit
+code of its own, without an effect on what runs, and with `--json` in JSON.
 
 usage: nonsense_test.py                                 a share of the calls
        nonsense_test.py --build DIR --seconds N         all of them, again and again for that time (a campaign)

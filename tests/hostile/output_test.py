@@ -14,7 +14,7 @@ import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "processes"))
-from system import BUILD, CHIMERA, HANG, QUIET, RTPUS, TWO_RTPUS, System, await_that, duration  # noqa: E402
+from system import BUILD, CHIMERA, HANG, QUIET, RTPUS, TWO_RTPUS, System, await_that  # noqa: E402
 
 RUN = ("--for", "4 s", "--expect", "count >= 1", "--watch", "count", "--every", "50 ms")
 

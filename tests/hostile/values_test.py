@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values in descriptions and commands that no component can use: numbers that are not finite, texts with a zero byte."""
-import json
-import os
+"""Values that no component can use, in descriptions and commands: numbers that are not finite, texts with a byte 0."""
 import pathlib
 import stat
 import subprocess

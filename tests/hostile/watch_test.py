@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A process, a method or a constructor that hangs is reported, with what was under way, by a process that does not hang:
-the manager, an rtpu, a method, the opening of an object, the keeper. The systems of all tests run side by side."""
+"""A process, a method or a constructor that hangs is reported, with what was under way, by a process that does not
+hang: the manager, an rtpu, a method, the opening of an object, the keeper. The systems of all tests run at once."""
 import contextlib
 import ctypes
 import fcntl

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Descriptions that several scripts run: a switch, a slow one, a device for one user, a standby; each over two rtpus."""
+"""Descriptions that several scripts run over two rtpus: a switch, a slow one, a device for one user, a standby."""
 from system import RTPUS
 
 EXECUTIVE, THREADS = "policy: edf}", "policy: edf, executor: preemptive}"

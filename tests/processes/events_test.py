@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Events over real processes: a pipe rings a task behind a server, which rings a task of another rtpu, which rings a task
-of the first one. Each event is counted and answered by one job."""
+"""Events over real processes: a pipe rings a task behind a server, which rings a task of another rtpu, which rings a
+task of the first one. Each event is counted and answered by one job."""
 import os
 import pathlib
 import tempfile

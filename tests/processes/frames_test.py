@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Safe frames on real processes: a drive on a serial line goes on with the torque of the last frame. When the process of
-its task is killed the guard writes a safe frame; when the keeper is killed with it, too."""
+"""Safe frames on real processes: a drive on a serial line goes on with the torque of the last frame. When the process
+of its task is killed the guard writes a safe frame; when the keeper is killed with it, too."""
 import os
 import select
 import signal

@@ -34,7 +34,7 @@ class Naming(unittest.TestCase):
             run = subprocess.Popen([str(CHIMERA), "run", "other.yaml", "--priority", "0"], env=system.environment,
                                    cwd=folder, start_new_session=True, stdout=subprocess.DEVNULL)
             try:
-                await_that(lambda: "beside  ON " in self.chimera(system, "status", "--subsystem", "other")[1], "the start")
+                await_that(lambda: "beside  ON " in self.chimera(system, "status", "--subsystem", "other")[1], "it")
                 self.assertEqual(self.chimera(system, "off", "beside", folder=folder),
                                  (0, "[other] beside: ON -> OFF\n", ""))
                 self.assertEqual(self.chimera(system, "off", "beside"),

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Row 28: the kernel gives the number of a dead process to another one; a pidfd stays with its process. Where the kernel
-allows it (Linux 6.14) all of this runs where there are only 400 numbers, so that each is soon used again."""
+"""Row 28: the kernel gives the number of a dead process to another one; a pidfd stays with its process. Where the
+kernel allows it (Linux 6.14) all of this runs where there are only 400 numbers, so that each is soon used again."""
 import os
 import pathlib
 import re

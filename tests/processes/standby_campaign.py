@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One or two processes are killed, the second at any moment of the takeover from the first: one of primary and standby is
-ON. The campaign `process_standby`."""
+"""One or two processes are killed, the second at any moment of the takeover from the first: one of primary and standby
+is ON. The campaign `process_standby`."""
 import random
 import time
 import unittest

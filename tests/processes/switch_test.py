@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Switches over real processes, by executives and by preemptive rtpus: fast, slow, and of tasks with one device;
-and their receipts in the file. What is decided about a switch: tests/stepped."""
+"""Switches over real processes, by executives and by preemptive rtpus: fast, slow, and between two tasks with one
+device; and their receipts in the file. What is decided about a switch: tests/stepped."""
 import json
 import pathlib
 import signal

@@ -57,8 +57,8 @@ TEST(SteppedSameDevice, IsClosedBeforeItIsOpenedInASwitch) {
 }
 
 TEST(SteppedSameDevice, TheStartWaitsForADeviceThatIsNotReady) {
-  const std::string late = replaced(kDevice, "constants: {value: 1}", "constants: {value: 1, late: 20}");
-  SteppedSubsystem system(with_device(late + kSwitch));
+  SteppedSubsystem system(
+      with_device(replaced(kDevice, "constants: {value: 1}", "constants: {value: 1, late: 20}") + kSwitch));
   EXPECT_TRUE(system.until_started());
   EXPECT_EQ(system.on(), kWithHand);
 }
