@@ -19,7 +19,7 @@
 #   with fewer, a fifth faster.
 # chimera_script_test(NAME LABEL label [TREES tree...] [DEPENDS target...] COMMAND command...)
 #   A test that is a command. Exit 77 = skipped, the last line of its output is the reason.
-#   Labels: unit hostile process model firmware (debug), threads (tsan), symbol cost realtime (release).
+#   Labels: unit program (runs whole programs) hostile process model firmware (debug), threads (tsan), symbol cost realtime (release).
 #   TREES: debug (default) tsan release.
 
 find_package(Threads REQUIRED)
@@ -102,7 +102,7 @@ function(_chimera_test_properties name label)
     set_tests_properties(${name} PROPERTIES RUN_SERIAL TRUE)
   endif()
   # Those of 10 s and more begin first: the last one to begin is then a short one, and no CPU waits for it.
-  if(name MATCHES "^(hostile_(files|output|values|watch|questions|ends)|(cli|library|conformance|manager)_test)$|\
+  if(name MATCHES "^(hostile_(files|output|values|watch|questions|ends)|(cli|library|conformance|manager|stepped)_test)$|\
 ^(examples|readme|library_trials|compile_fail|applications|run_schema|run_by_processes|(cli|kill)_process_test)$|\
 ^processes_(requests|protocol|frames|attack|ending)$")
     set_tests_properties(${name} PROPERTIES COST 100)

@@ -77,7 +77,7 @@ class OutputIsNotControl(unittest.TestCase):
 
     def test_the_run_goes_on_when_standard_output_is_lost(self):
         reasons = {"full": "No space left on device", "closed": "Bad file descriptor", "broken": "Broken pipe",
-                   "stuck": "nobody reads"}
+                   "stuck": "no process reads it"}
         with concurrent.futures.ThreadPoolExecutor() as pool:
             runs = {kind: pool.submit(self.run_with, kind) for kind in reasons}
         for kind, run in runs.items():

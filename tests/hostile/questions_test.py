@@ -7,6 +7,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "processes"))
 from costly import LARGE_VALUES, Load, loops, request, worst, worst_of_values  # noqa: E402, I100
 from system import TWO_RTPUS, Client, System, await_that, duration  # noqa: E402
 

@@ -3,6 +3,7 @@
 import argparse
 import dataclasses
 import fnmatch
+import hashlib
 import json
 import os
 import platform
@@ -26,7 +27,7 @@ class Share:
 
 
 SHARES = (
-    Share("units", (("debug", "unit|hostile"), ("tsan", "threads"), ("release", "symbol|cost"))),
+    Share("units", (("debug", "unit|program|hostile"), ("tsan", "threads"), ("release", "symbol|cost"))),
     Share("processes", (("debug", "process"), ("release", "realtime"))),
     Share("firmware", (("debug", "firmware"),)),
     Share("models", (("debug", "model"),)),
@@ -37,6 +38,7 @@ TREES = ("debug", "tsan", "release")
 SCHEDULED = {"threads", "process", "hostile", "realtime"}
 MOST_TRIES = 3
 DURATIONS = common.BUILD / "durations.jsonl"
+PASSED_BEFORE = common.BUILD / "debug" / "passed.json"
 MAY_SKIP = common.ROOT / "tests" / "may_skip.txt"
 
 
@@ -54,7 +56,7 @@ def parse_arguments():
     group.add_argument("--only", metavar="SHARE", choices=names,
                        help="run one share; its trees are compiled first")
     group.add_argument("--quick", action="store_true",
-                       help="all day, after each edit: compile what the unit tests of the debug tree run, run these")
+                       help="all day, after each edit: compile the unit tests of the debug tree, run those that changed")
     group.add_argument("--stress", nargs="*", metavar="MINUTES|NAME",
                        help="instead: the campaigns of tests/stress.txt, each MINUTES long (default 10)")
     return parser.parse_args()
@@ -123,6 +125,45 @@ def tests_of(tree):
                              capture_output=True, text=True, check=True)
     for test in json.loads(listing.stdout)["tests"]:
         yield test["name"], next((p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"), [])
+
+
+def state_of(paths):
+    """What changes when one of these files does."""
+    found = {}
+    for path in paths:
+        try:
+            status = os.stat(path)
+            found[str(path)] = (status.st_mtime_ns, status.st_size)
+        except OSError:
+            found[str(path)] = None
+    return hashlib.sha256(repr(sorted(found.items())).encode()).hexdigest()
+
+
+def unchanged_tests(tree):
+    """State of each test program of the tree: its file, the components that tests load, the data that tests read. Those
+    whose state is the one with which they passed last. A test that is a script has no state: it runs each time."""
+    listed = subprocess.run(["git", "-c", "safe.directory=*", "ls-files", "-co", "--exclude-standard"], cwd=common.ROOT,
+                            capture_output=True, text=True, check=True).stdout.splitlines()
+    data = state_of([common.ROOT / name for name in listed if not name.endswith((".cc", ".h", ".py"))]
+                    + sorted((common.BUILD / tree / "components").glob("*.so")))
+    programs = {path.name: path for path in (common.BUILD / tree).rglob("*_test") if path.is_file()}
+    states = {name: data + state_of([path]) for name, path in programs.items()}
+    passed = json.loads(PASSED_BEFORE.read_text()) if PASSED_BEFORE.exists() else {}
+    return states, {name for name, state in states.items() if passed.get(name) == state}
+
+
+def run_changed(tree, labels):
+    """The cases of the tests that are not as they were when they passed last."""
+    states, unchanged = unchanged_tests(tree)
+    names = [name for name, its in tests_of(tree) if set(its) & set(labels.split("|")) and name not in unchanged]
+    skipped = sorted(name for name, its in tests_of(tree) if set(its) & set(labels.split("|")) and name in unchanged)
+    cases = ctest(tree, labels, max(2, os.cpu_count() or 2), names)
+    bad = {case.program for case in cases if case.outcome == FAILED}
+    passed = {name: states[name] for name in [*names, *skipped] if name in states and name not in bad}
+    PASSED_BEFORE.write_text(json.dumps(passed))
+    if skipped:
+        print(f"unchanged since they passed: {', '.join(skipped)}")
+    return cases
 
 
 def unlabelled(tree):
@@ -215,7 +256,7 @@ def run_tests(shares, quick=False):
     for share in shares:
         common.step(f"running {share.name}")
         start = time.monotonic()
-        found = run_share(share, trees)
+        found = run_changed(*QUICK.runs[0]) if quick else run_share(share, trees)
         timed(share.name, time.monotonic() - start, len(found))
         cases += found
     timed("total", time.monotonic() - begin)
