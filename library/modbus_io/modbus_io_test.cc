@@ -75,12 +75,12 @@ class Device {
   }
   void end() {
     if (process_ <= 0) return;
-    ::kill(process_, SIGKILL);  // the process is not reaped yet, so the number is still valid
+    ::kill(process_, SIGKILL);  // still ours: not reaped yet
     ::waitpid(process_, nullptr, 0);
     process_ = -1;
   }
   // Stops the device: it keeps its connections and does not answer.
-  void stop() { ::kill(process_, SIGSTOP); }  // the process is not reaped yet, so the number is still valid
+  void stop() { ::kill(process_, SIGSTOP); }  // still ours: not reaped yet
 
   Points* points;
 

@@ -28,7 +28,7 @@ class SteppedStandby : public ::testing::Test {
   static std::string with(const std::string& what, const std::string& instead) {
     return replaced(kStandby, what, instead);
   }
-  static void kill(SteppedSubsystem& system, const std::string& name) {
+  static void end(SteppedSubsystem& system, const std::string& name) {
     if (name == "manager") system.kill_manager();
     else system.die(name);
   }
@@ -175,9 +175,9 @@ TEST_F(SteppedStandby, ExactlyOneIsOnWhicheverTwoProcessesDie) {
         SteppedSubsystem system(kStandby);
         ASSERT_TRUE(system.until_started());
         ASSERT_TRUE(await_seen(system, 2));
-        kill(system, one);
+        end(system, one);
         system.run(microseconds(400) * steps);
-        kill(system, other);
+        end(system, other);
         system.run(milliseconds(10));
         if (one == "manager" || other == "manager") system.start_manager();
         const auto is_settled = [&] {

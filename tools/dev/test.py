@@ -56,7 +56,7 @@ def parse_arguments():
     group.add_argument("--only", metavar="SHARE", choices=names,
                        help="run one share; its trees are compiled first")
     group.add_argument("--quick", action="store_true",
-                       help="all day, after each edit: compile the unit tests of the debug tree, run those that changed")
+                       help="after each edit: compile the unit tests of the debug tree, run those that changed")
     group.add_argument("--stress", nargs="*", metavar="MINUTES|NAME",
                        help="instead: the campaigns of tests/stress.txt, each MINUTES long (default 10)")
     return parser.parse_args()
