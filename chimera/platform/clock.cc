@@ -28,4 +28,11 @@ std::int64_t wall_clock_shift() noexcept {
   return (wall.tv_sec - monotonic.tv_sec) * 1'000'000'000 + wall.tv_nsec - monotonic.tv_nsec;
 }
 
+Nanoseconds VirtualClock::now() noexcept { return now_; }
+
+WaitEnd VirtualClock::wait_until(Nanoseconds instant) noexcept {
+  if (instant > now_) now_ = instant;
+  return WaitEnd::kReached;
+}
+
 }  // namespace chimera
