@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// @NAME@: a driver of a device on a serial line, in lines of text. "S 1.500" goes out, "P 0.250" comes in. Change it
-// into what your device speaks.
+// @NAME@: drives a device on a serial line by lines of text. It sends "S 1.500" and receives "P 0.250". Replace these
+// lines by those of your device.
 #include <fcntl.h>
 #include <termios.h>
 #include <unistd.h>
@@ -18,15 +18,15 @@
 using namespace chimera;
 
 struct @TYPE@Component {
-  In<double>      speed{"speed", "m/s", doc = "what the device is told"};
-  Out<double>     position{"position", "m", initial = 0.0, doc = "what it said last"};
-  Out<bool>       connected{"connected", initial = false, doc = "it said something within the timeout"};
-  Out<bool>       idled{"idled", initial = false, safe_state, doc = "the flag is up and it was told to stop since"};
-  InConst<double> limit{"limit", "m/s", initial = 1.0, range(0, 100), doc = "speeds are held within +- limit"};
-  InConst<double> timeout{"timeout", "s", initial = 0.1, range(0.001, 60), doc = "silence after which it is lost"};
+  In<double>      speed{"speed", "m/s", doc = "speed to send"};
+  Out<double>     position{"position", "m", initial = 0.0, doc = "last position of the device"};
+  Out<bool>       connected{"connected", initial = false, doc = "the device sent a line within the timeout"};
+  Out<bool>       idled{"idled", initial = false, safe_state, doc = "the flag is up and the device was stopped since"};
+  InConst<double> limit{"limit", "m/s", initial = 1.0, range(0, 100), doc = "speeds are cut at +- limit"};
+  InConst<double> timeout{"timeout", "s", initial = 0.1, range(0.001, 60), doc = "silence that counts as a loss"};
   Resource        device{"device", doc = "serial device, such as /dev/ttyUSB0"};
 
-  // Opens the device, so that a wrong one is known before anything moves. May wait.
+  // Opens the device, so that a wrong path is refused before any motion. May wait.
   void init() {
     kill();
     file_ = ::open(device.c_str(), O_RDWR | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
@@ -36,17 +36,17 @@ struct @TYPE@Component {
     ::cfmakeraw(&mode);
     ::cfsetspeed(&mode, B115200);
     mode.c_cflag |= CLOCAL | CREAD;
-    mode.c_cc[VMIN] = 1;  // so that a read without bytes says so, and 0 is the end
+    mode.c_cc[VMIN] = 1;  // a read without bytes then fails with EAGAIN, and 0 means the end
     ::tcsetattr(file_, TCSANOW, &mode);
   }
   void on(Cycle c) {
-    ::tcflush(file_, TCIFLUSH);  // what came while nobody listened
+    ::tcflush(file_, TCIFLUSH);  // drops bytes from before `on`
     held_ = 0;
     heard_ = c.now();
     is_lost_ = false;
     *connected = *idled = false;
   }
-  // Two system calls, none of which waits. A device that is lost is told in `connected` first, then as a fault.
+  // Makes two system calls, and none waits. After a loss `connected` falls in this cycle; the next one is a fault.
   Outcome cycle(Cycle c) {
     if (is_lost_) return fault("the device is gone or silent: bring it back, then `clear` and `on`", errno_);
     const bool is_there = receive(c.now());
@@ -75,7 +75,7 @@ struct @TYPE@Component {
     return errno == EACCES ? ": add the user to the device's group (dialout) and log in again"
                            : ": plug the device in, or name another under `resources`";
   }
-  // NaN never reaches a device; what is too fast is held at the limit.
+  // Sends no NaN, and cuts the speed at the limit.
   bool send(double value) {
     if (std::isnan(value)) return false;
     char line[40];
@@ -84,7 +84,7 @@ struct @TYPE@Component {
     if (put < 0 && errno != EAGAIN) errno_ = errno;
     return put == size;
   }
-  // False: the device is gone. A line that is cut is kept for the next cycle, one that is wrong is passed over.
+  // Returns false if the device is gone. A cut line waits for the next cycle; a wrong line is skipped.
   bool receive(Nanoseconds now) {
     const ssize_t got = ::read(file_, text_ + held_, sizeof text_ - 1 - held_);
     if (got <= 0) {
@@ -101,7 +101,7 @@ struct @TYPE@Component {
     }
     held_ -= begin;
     std::memmove(text_, text_ + begin, held_);
-    if (held_ == sizeof text_ - 1) held_ = 0;  // no device of ours says such a line
+    if (held_ == sizeof text_ - 1) held_ = 0;  // the device sends no line of this length
     return true;
   }
   void take(const char* line, Nanoseconds now) {

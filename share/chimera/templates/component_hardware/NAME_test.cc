@@ -18,7 +18,7 @@ using namespace chimera;
 struct @TYPE@ : ::testing::Test {
   Rig rig{"@NAME@"};
   int device = -1;  // the other end
-  int line = -1;    // a second look at the component's end
+  int line = -1;    // another descriptor of the component's end
 
   @TYPE@() { plug(); }
   ~@TYPE@() override { unplug(); }
@@ -39,7 +39,7 @@ struct @TYPE@ : ::testing::Test {
     ASSERT_TRUE(made) << made.text;
     ASSERT_TRUE(rig.on());
   }
-  // Until the bytes lie at the component's end: the kernel takes its time.
+  // Waits until the bytes have arrived at the component's end, because the kernel delays them.
   void say(const char* text) {
     const int size = static_cast<int>(std::strlen(text));
     int before = 0, there = 0;
@@ -50,7 +50,7 @@ struct @TYPE@ : ::testing::Test {
       ASSERT_EQ(::ioctl(line, FIONREAD, &there), 0);
     }
   }
-  // `size` bytes, waited for; without a size whatever comes within 20 ms.
+  // Returns the bytes that the device received: waits for `size` bytes, or 20 ms without a size.
   std::string heard(std::size_t size = 0) {
     std::string all;
     pollfd ready{device, POLLIN, 0};
@@ -65,12 +65,12 @@ struct @TYPE@ : ::testing::Test {
   double position() { return rig.get<double>("position"); }
 };
 
-TEST_F(@TYPE@, TellsTheSpeedAndTakesThePosition) {
+TEST_F(@TYPE@, SendsSpeedAndReadsPosition) {
   start();
   rig.set("speed", 0.5);
   say("P 1.2");
   ASSERT_TRUE(rig.cycle());
-  EXPECT_EQ(position(), 0);  // the line is not whole
+  EXPECT_EQ(position(), 0);  // the line is not complete
   say("5\n");
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(position(), 1.25);
@@ -78,14 +78,14 @@ TEST_F(@TYPE@, TellsTheSpeedAndTakesThePosition) {
   EXPECT_EQ(heard(16), "S 0.500\nS 0.500\n");
 }
 
-TEST_F(@TYPE@, PassesOverNoise) {
+TEST_F(@TYPE@, SkipsNoise) {
   start();
   say("\xff\x01 P\nP x\nP nan\nP 2 \nP 3\n");
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(position(), 3);
 }
 
-TEST_F(@TYPE@, NeverTellsNanAndHoldsTheLimit) {
+TEST_F(@TYPE@, SendsNoNanAndCutsAtLimit) {
   start();
   rig.set("speed", std::nan(""));
   ASSERT_TRUE(rig.cycle());
@@ -101,7 +101,7 @@ TEST_F(@TYPE@, StopsTheDeviceAtOff) {
   EXPECT_EQ(heard(8), "S 0.000\n");
 }
 
-TEST_F(@TYPE@, IsToldToStopWhileTheFlagIsUpAndSaysSo) {
+TEST_F(@TYPE@, StopsDeviceWhileFlagIsUpAndReportsIt) {
   start();
   rig.set("speed", 1.0);
   say("P 1\n");
@@ -116,12 +116,12 @@ TEST_F(@TYPE@, IsToldToStopWhileTheFlagIsUpAndSaysSo) {
   EXPECT_EQ(heard(24), "S 1.000\nS 0.000\nS 1.000\n");
 }
 
-TEST_F(@TYPE@, ALostDeviceIsAFaultAndComesBackByClear) {
+TEST_F(@TYPE@, FaultsForLostDeviceUntilClear) {
   start();
   say("P 1\n");
   ASSERT_TRUE(rig.cycle());
   unplug();
-  ASSERT_TRUE(rig.cycle());  // everybody hears it first
+  ASSERT_TRUE(rig.cycle());  // publishes the loss first
   EXPECT_FALSE(rig.get<bool>("connected"));
   EXPECT_EQ(rig.cycle().text, "the device is gone or silent: bring it back, then `clear` and `on`");
   EXPECT_FALSE(rig.clear());
@@ -133,7 +133,7 @@ TEST_F(@TYPE@, ALostDeviceIsAFaultAndComesBackByClear) {
   EXPECT_EQ(position(), 2);
 }
 
-TEST_F(@TYPE@, ASilentDeviceIsToldToStopAndIsAFault) {
+TEST_F(@TYPE@, StopsSilentDeviceAndFaults) {
   start();
   rig.set("speed", 1.0);
   ASSERT_TRUE(rig.cycle(milliseconds(101)));
