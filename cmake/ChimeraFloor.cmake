@@ -103,7 +103,7 @@ function(_chimera_test_properties name label)
     set_tests_properties(${name} PROPERTIES RUN_SERIAL TRUE)
   endif()
   # Those of 10 s and more begin first: the last one to begin is then a short one, and no CPU waits for it.
-  if(name MATCHES "^(hostile_(files|output|values|watch|questions|ends)|(cli|library|conformance|manager)_test|stepped_test)$|\
+  if(name MATCHES "^(hostile_(files|output|values|watch|questions|ends)|(cli|library|conformance|stepped)_test)$|\
 ^(examples|readme|library_trials|compile_fail|applications|run_schema|run_by_processes|(cli|kill)_process_test)$|\
 ^processes_(requests|protocol|frames|attack|ending)$")
     set_tests_properties(${name} PROPERTIES COST 100)
