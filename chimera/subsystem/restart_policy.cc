@@ -36,7 +36,7 @@ bool RestartPolicy::on_rtpu_down(const RtpuDown& down) {
     if (is_of(TaskId(t), down.rtpu)) was_on_[t] = ((goals[t] = goal_after(TaskId(t))) & kGoalOn) != 0;
   state_.observed.down(down.rtpu, down.incarnation);
   const bool is_known =
-      down.incarnation <= handled_[down.rtpu.index];  // an earlier manager handled this death
+      down.incarnation <= handled_[down.rtpu.index];  // an earlier manager handled this death and set the goals
   for (std::size_t t = 0; t < goals.size(); ++t)
     if (is_of(TaskId(t), down.rtpu)) state_.observed.want_back(TaskId(t), goals[t] != 0 && !is_known);
   if (is_known) {
