@@ -48,7 +48,7 @@ class CyclingThread {
   void start();
   /// True if all tasks are killed and no task cycles any more. Any thread.
   bool has_ended() const noexcept { return has_ended_; }
-  /// Context: setup; blocks until it has ended.
+  /// Context: setup; blocks until the thread has ended.
   void join() { thread_.join(); }
 
  private:

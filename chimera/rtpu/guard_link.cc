@@ -13,7 +13,7 @@ constexpr Nanoseconds kPatience = milliseconds(500);  // the guard has the highe
 
 void GuardLink::show(int segment, const BlockOwner& block) noexcept {
   block_ = block;
-  // if it cannot be sent, the rtpu runs as without a guard
+  // If the message cannot be sent, the rtpu runs as without a guard.
   (void)send({.kind = GuardMessage::Kind::kSegment}, segment);
 }
 

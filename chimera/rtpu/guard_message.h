@@ -21,13 +21,11 @@ struct GuardMessage {
     kUnit,     ///< keeper -> guard, with a pidfd: rtpu `index` lives in `incarnation`; a kLine follows
     kLine,     ///< keeper -> guard, with the guard's end of the channel to that rtpu
     kSegment,  ///< rtpu -> guard, with its memory
-    /// rtpu -> guard, with a descriptor: frame `frame` of `task` goes there; without one: the frame is not written
-    kFrame,
+    kFrame,    ///< rtpu -> guard, with a descriptor: frame `frame` of `task` goes there; without one: it goes nowhere
     kReady,    ///< guard -> keeper: it watches; `good` 1: with the requested rights
     kWritten,  ///< guard -> keeper: rtpu `index` is dead; `good` of its frames were written, `bad` failed
-    /// guard -> keeper: it ended rtpu `index` because `task` published nothing for too long; `good` 1: a standby takes
-    /// over
-    kSilent
+    kSilent    ///< guard -> keeper: it ended rtpu `index` because `task` published nothing for too long; `good` 1: a
+               ///< standby takes over
   };
 
   Kind kind = Kind::kUnit;

@@ -36,9 +36,8 @@ struct KeeperMessage {
   Kind kind = Kind::kSegment;
   std::uint32_t index = 0;        ///< the peer that the message is about
   std::uint32_t incarnation = 0;
-  /// kEnded: exit status or signal; kEnd: exit code; kHung: Life; kSilent: the task; kFramesWritten: number written;
-  /// kGuardState
-  std::int32_t code = 0;
+  std::int32_t code = 0;          ///< kEnded: exit status or signal; kEnd: exit code; kHung: Life; kSilent: the task;
+                                  ///< kFramesWritten: number written; kGuardState
   std::uint32_t by_signal = 0;    ///< kEnded
   std::uint32_t core_dumped = 0;  ///< kEnded
   std::int32_t pid = 0;           ///< kStarted: for people; kHung: pid of the debugger

@@ -151,7 +151,7 @@ Result<void> Rtpu::make_segment() {
   auto made = MemoryRegion::create("chimera-rtpu", peer_segment_bytes(table, n_tasks));
   if (!made) return made.error();
   segment_ = *std::move(made);
-  // a child of a component must not use the memory of this rtpu
+  // A child of a component must not use the memory of this rtpu.
   if (start_.parent != 0) (void)segment_.keep_from_children();
   if (auto owner = SegmentOwner::format(segment_.writable(), table); !owner) return owner.error();
   std::byte* at = segment_.writable().data() + block_offset(table);
@@ -217,7 +217,7 @@ int Rtpu::run() {
       is_giving_up_ = give_up(edge_->hanging().job(), edge_->hanging().age());
       end(true);
     }
-    // all tasks are killed but the one whose job hangs
+    // Now all tasks are killed except the one whose job hangs.
     if (is_giving_up_ && edge_->unit_end().is_over()) return kMethodHangs;
   }
   cycling_->join();
@@ -233,7 +233,7 @@ bool Rtpu::hangs() {
   const std::uint32_t acting = edge_->supervised().acting() != 0 ? edge_->supervised().acting() : serving;
   const bool is_same_task = TaskWord::found(running).task() == TaskWord::found(acting).task();
   if (hang_watch_->method_hangs(acting, edge_->supervised().progress(), now))
-    // `running` is `error`, called after the method in `acting`
+    // `running` is then `error`, called after the method in `acting`.
     return give_up(is_same_task ? running : acting, limit);
   if (loop_hangs()) return give_up(running, limit);
   const bool end_hangs = is_ending_ && hang_watch_->end_hangs(edge_->supervised().progress(), now);
@@ -341,7 +341,7 @@ int run_rtpu(const RtpuStart& start) {
   }
   const int code = rtpu.run();
   if (rtpu.is_without_keeper()) end_children_of_this_unit();
-  // of a process other than the keeper: the keeper then sees this signal as the cause
+  // A process other than the keeper sent SIGTERM. The keeper then sees this signal as the cause of the death.
   if (code == kTerminated) end_by_signal(SIGTERM);
   if (code == kMethodHangs) std::_Exit(kMethodHangs);  // threads still run component code, so no destructor may run
   return code;

@@ -125,7 +125,7 @@ void RtpuControl::turn_on(std::span<const Post> step, BoundarySignals& signals, 
   for (const Post& post : step) {
     const State after = tasks_.tasks()[post.task.index].state;
     const Refusal why = post.task == done.task ? done.why : Refusal::kNone;
-    // if false, all tasks of the step are OFF again
+    // If false, all tasks of the step are OFF again.
     const bool goes_on = done.is_accepted || done.why == Refusal::kNotYet;
     report(post, State::kOff, after, why, goes_on && after == State::kOn, now);
   }

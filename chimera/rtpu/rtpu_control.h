@@ -2,18 +2,18 @@
 // The control of an rtpu. At each cycle boundary it reads the input of other processes and publishes the changes of the
 // boundary. Its clock ends a wait when input arrives. docs/formats/processes.md.
 //
-//   inputs, in this order           each is looked at by one function of take()
-//     other processes               new segments, who lives, states and flags elsewhere; wishes of the manager
-//     methods that are over         init and kill, run by the service thread
-//     the end of the unit           from then on no signal is begun
-//     signals                       from tasks elsewhere and from the manager
+//   inputs, in this order           one function of take() reads each
+//     other processes               new segments, live peers, states and flags of peers, requests of the manager
+//     finished methods              init and kill, run by the service thread
+//     the end of the rtpu           from then on no signal begins
+//     signals                       from tasks of other rtpus and from the manager
 //   step                            one signal, or one transaction of several: BoundarySignals::signal()
 //   list of changes                 TaskSet::changes(): nothing below this class publishes anything
 //   publication                     publish(), in one place: after every step, because the next method may hang or end
-//                                   the process, and at the end of the edge
+//                                   the process, and at the end of the boundary
 //
-// A change at one instant (a switch) is one more input: a plan that take() looks at before the signals, whose steps are
-// carried out by BoundarySignals and published once, after the last of them.
+// A change at one instant (a switch) is one more input: a plan that take() reads before the signals. BoundarySignals
+// carries out its steps; they are published once, after the last step.
 #pragma once
 
 #include <atomic>

@@ -42,7 +42,7 @@ class UnitEnd {
   const Nanoseconds method_limit_;
   bool has_begun_ = false;
   std::size_t next_off_ = 0;  // in ApplicationSpec::end_order
-  Nanoseconds patience_;      // end of the wait for tasks of other rtpus and for late jobs
+  Nanoseconds patience_;      // end of the wait for tasks of others and for late jobs
   // The main thread calls tell(), boundaries read. Sequentially consistent: a reader that sees is_told_ also sees
   // is_alone_.
   std::atomic<bool> is_told_{false};
