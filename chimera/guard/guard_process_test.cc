@@ -94,7 +94,7 @@ struct GuardTest : ::testing::Test {
     app.link(2, 0, "b");
     make_image();
   }
-  /// `spare` takes over from `second` when that is silent for 40 ms.
+  /// `spare` takes over from `second` when `second` is silent for 40 ms.
   void make_image(std::vector<StandbySpec> standbys = {}) {
     ApplicationSpec spec = app.make();
     spec.standbys = standbys;

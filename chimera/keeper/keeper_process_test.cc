@@ -24,7 +24,7 @@ class KeeperProcess : public ::testing::Test, public testing::ChildFolder {
  protected:
   void TearDown() override {
     if (keeper_ > 0) {
-      ::kill(keeper_, SIGKILL);  // still ours
+      ::kill(keeper_, SIGKILL);  // not reaped yet: still its process id
       ::waitpid(keeper_, nullptr, 0);
     }
   }
@@ -181,7 +181,7 @@ TEST_F(KeeperProcess, SignalsEndEverythingWithTheCodeOfTheFace) {
     start(1);
     ASSERT_TRUE(wait_for("face begin"));
     ASSERT_TRUE(wait_for("1.1 peer 0 1"));
-    ::kill(keeper_, number);  // still ours
+    ::kill(keeper_, number);  // not reaped yet: still its process id
     EXPECT_EQ(code_of_keeper(), 5) << number;
     const std::string all = log();
     EXPECT_LT(all.find("face finishes"), all.find("0.1 finish"));
@@ -207,17 +207,17 @@ TEST_F(KeeperProcess, SomebodyElsesSignalIsNotTheFaces) {
   start(1);
   ASSERT_TRUE(wait_for("face begin"));
   ASSERT_TRUE(wait_for("1.1 peer 0 1"));
-  ::kill(keeper_, SIGUSR1);  // still ours
+  ::kill(keeper_, SIGUSR1);  // not reaped yet: still its process id
   order("1", "kill 0");
   EXPECT_TRUE(wait_for("1.1 ended 0 1 signal 9")) << "it still keeps";
-  ::kill(keeper_, SIGTERM);  // still ours
+  ::kill(keeper_, SIGTERM);  // not reaped yet: still its process id
   EXPECT_EQ(code_of_keeper(), 5);
 }
 
 TEST_F(KeeperProcess, EndsWithoutAFaceToo) {
   start(1, false);
   ASSERT_TRUE(wait_for("1.1 peer 0 1"));
-  ::kill(keeper_, SIGTERM);  // still ours
+  ::kill(keeper_, SIGTERM);  // not reaped yet: still its process id
   EXPECT_EQ(code_of_keeper(), 0);
   EXPECT_TRUE(nobody_is_left());
 }
@@ -231,7 +231,7 @@ TEST_F(KeeperProcess, WhoeverDoesNotFinishIsKilledAfterItsLimit) {
   order("2", "stubborn");
   ASSERT_TRUE(wait_for("0.1 is stubborn"));
   ASSERT_TRUE(wait_for("2.1 is stubborn"));
-  ::kill(keeper_, SIGINT);  // still ours
+  ::kill(keeper_, SIGINT);  // not reaped yet: still its process id
   EXPECT_EQ(code_of_keeper(), 1) << "nobody has judged the run";
   EXPECT_TRUE(nobody_is_left());
 }
@@ -266,7 +266,7 @@ TEST_F(KeeperProcess, NobodyIsLeftWhenTheKeeperItselfIsKilled) {
   ASSERT_TRUE(wait_for("face begin"));
   ASSERT_TRUE(wait_for("2.1 peer 1 1"));
   ASSERT_TRUE(wait_for("2.1 peer 0 1"));
-  ::kill(keeper_, SIGKILL);  // still ours
+  ::kill(keeper_, SIGKILL);  // not reaped yet: still its process id
   EXPECT_EQ(code_of_keeper(), 256 + SIGKILL);
   EXPECT_TRUE(nobody_is_left());
 }
@@ -276,7 +276,7 @@ TEST_F(KeeperProcess, AManagerThatDiesAgainAndAgainIsStartedMoreAndMoreSlowly) {
   start(1);
   ASSERT_TRUE(wait_for("1.6 begin"));  // pauses of 0, 10, 20, 40 and 80 ms
   EXPECT_TRUE(::kill(pid_of("0.1"), 0) == 0) << "the rtpu goes on";
-  ::kill(keeper_, SIGTERM);  // still ours
+  ::kill(keeper_, SIGTERM);  // not reaped yet: still its process id
   EXPECT_EQ(code_of_keeper(), 5);
 }
 

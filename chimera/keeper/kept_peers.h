@@ -51,7 +51,8 @@ class KeptPeers {
   /// Due again at orphans_due().
   void check_orphans(pid_t other);
   Nanoseconds orphans_due() const noexcept { return orphans_.due(); }
-  /// Sends SIGKILL to every child that is left and to its orphans, and waits for their ends.
+  /// Sends SIGKILL to every child that is left and to its orphans, and waits for their ends. Blocks for at most 1 s for
+  /// the peers, 6 s for the guard and 1 s for the orphans.
   void end_all();
 
   std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(peers_.size()); }

@@ -101,7 +101,8 @@ void Drill::judge(DrillPart& part) const {
   part.after = {slot.published_ns - present_->raised.count};
 }
 
-// Waits for the tasks first, then for the guard. True if the drill must go on.
+// Waits for the tasks first, then for the guard. True if the drill must go on. An rtpu that has died already is not
+// killed again.
 bool Drill::goes_on(Nanoseconds now) {
   DrillOutcome& outcome = present_->outcome;
   const bool is_over = now >= present_->until;

@@ -32,7 +32,7 @@ struct RtpuRecord {
   std::string hang;            ///< object or method that does not run or end: "log.init for 2.0 s"; "": none
   std::string ended_for;       ///< reason why this manager had it killed; "": it did not
   std::uint64_t resident_bytes = 0, first_resident_bytes = 0;  ///< now, and when it was ON; 0: unknown
-  std::string lost_rights;  ///< real-time rights that are not as granted any more
+  std::string lost_rights;  ///< the part of its real-time rights that is not as granted any more
 };
 
 /// ManagerLoop owns it. The other classes read it, and act through publish_operator(), raise_flag() and tap().

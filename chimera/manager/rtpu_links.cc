@@ -93,7 +93,7 @@ void RtpuLinks::ended(const KeeperMessage& message, Events& events) {
   record.incarnation = message.incarnation;
   record.restarts = message.incarnation - 1;
   const bool left_words = is_current(rtpu);
-  const bool is_known = message.incarnation <= world_.own.block().memory().handled[rtpu.index];  // to a predecessor
+  const bool is_known = message.incarnation <= world_.own.block().memory().handled[rtpu.index];  // by a predecessor
   if (left_words) take_posts(rtpu, events);
   if (left_words || !is_known) {
     abort_open_plan_of(world_, rtpu);

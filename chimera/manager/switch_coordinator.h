@@ -43,8 +43,8 @@ struct ForeseenSwitch {
   Nanoseconds needed;     ///< idle time that the `off` of late_off needs
 };
 
-/// Status word of a task of a dead rtpu, as if the rtpu had lived to make a change that was committed. So the tasks
-/// that come back are those of the set after the switch. Context: setup.
+/// Status word of a task of a dead rtpu. If a change was committed without the rtpu, the word is as if the rtpu had
+/// made it. So the tasks that come back are those of the set after the switch. Context: setup.
 TaskStatus last_status(const ManagerState& world, TaskId task);
 /// Aborts an open plan in which the dead rtpu takes part. Call it before last_status(): otherwise the plan might be
 /// committed after the last states were read. Context: setup; lock-free.

@@ -415,7 +415,7 @@ TEST_F(SwitchCoordinatorTest, APartThatDoesNotFitTheApplicationIsLeftOut) {
   std::memset(part(0).said, 'x', sizeof part(0).said);
   part(0).n_tasks = part(0).n_variables = UINT32_MAX;
   part(0).task = TaskId(77u);
-  // a task of the other rtpu
+  // A task of the other rtpu.
   part(1).tasks[0] = {fake.task("sensor"), TaskMove::kStays, Nanoseconds{-1}, Nanoseconds{-1}, 0};
   part(1).n_tasks = 1;
   over(0, NoSwitch::kOnFailed);

@@ -20,7 +20,7 @@ class TapFeedTest : public ::testing::Test {
   void pump(TapFeed& feed) {
     feed.pump([this](Json message) { messages_.push_back(std::move(message)); });
   }
-  /// Pumps as often as a whole ring and one that nearly stands still need.
+  /// Pumps often enough for one whole ring and for another that hardly changes.
   void pump_a_ring(TapFeed& feed) {
     for (std::size_t taken = 0; taken < 2 * kTapRecords; taken += 4096) pump(feed);
   }

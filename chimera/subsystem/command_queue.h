@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands of clients other than `on`: each is judged as one step, sent at once, and answered when all reports are in.
+// Commands of clients other than `on`. Each is judged as one step, sent, and answered when all reports are in.
 //
 //   stage of a task of a command:
 //     kOpen --judged, signal sent-----------------> kSent --reported--> kOver

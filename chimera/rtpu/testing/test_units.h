@@ -19,7 +19,7 @@
 
 namespace chimera::testing {
 
-/// init and kill run at once, in ask(); or when the test says so.
+/// Only notes in ask() that init or kill must run. The test runs them later, for example in Unit::serve().
 class HandService final : public Service {
  public:
   void ask(TaskId task) noexcept override { asked.push_back(task); }
