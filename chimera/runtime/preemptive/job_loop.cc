@@ -29,7 +29,7 @@ JobLoop::JobLoop(TaskSet& set, Releases& releases, ReadyJobs& ready, JobChecks& 
 void JobLoop::run(JobThread& me, std::atomic<std::size_t>& n_attached) {
   ready_.attach_thread();
   me.attach();
-  n_attached.fetch_add(1, std::memory_order_release);  // pairs with the load of whoever starts the threads
+  n_attached.fetch_add(1, std::memory_order_release);  // pairs with the load of the thread that starts these
   processor_.enter();
   for (;;) {
     const std::uint32_t heard = me.heard();  // before the look at everything: no ring is lost
@@ -44,7 +44,7 @@ void JobLoop::run(JobThread& me, std::atomic<std::size_t>& n_attached) {
   processor_.leave();
 }
 
-// Leaves the section meanwhile.
+// Waits outside the section.
 void JobLoop::wait(JobThread& me, std::uint32_t heard, Nanoseconds until) noexcept {
   const int descriptor = listens(me) ? me.task.descriptor : -1;
   processor_.leave();
@@ -64,7 +64,7 @@ void JobLoop::accept_event(JobThread& me, Nanoseconds now) noexcept {
   me.next_release = job.grant(now).may_run ? now : job.next_change(now);
 }
 
-// No event has come, and one that does may be taken at once: the descriptor stays readable meanwhile.
+// True if no event has come, and one that comes may be accepted at once. The descriptor stays readable until then.
 bool JobLoop::listens(const JobThread& me) const noexcept {
   if (!me.sporadic || !me.is_on || me.is_held || processor_.is_paused()) return false;
   return me.task.descriptor >= 0 && !me.sporadic->job().has_event() && me.task.events == 0;

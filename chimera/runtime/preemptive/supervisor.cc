@@ -37,7 +37,7 @@ void Supervisor::quit() noexcept {
 
 void Supervisor::run(std::atomic<std::size_t>& n_attached) noexcept {
   ready_.attach_thread();
-  n_attached.fetch_add(1, std::memory_order_release);  // pairs with the load of whoever starts the threads
+  n_attached.fetch_add(1, std::memory_order_release);  // pairs with the load of the thread that starts these
   for (bool is_over = false; !is_over;) {
     checks_.wait();
     processor_.enter();
@@ -116,7 +116,7 @@ void Supervisor::follow_release(JobThread& job, Nanoseconds now) noexcept {
 void Supervisor::check_begun(JobThread& job, Nanoseconds now) noexcept {
   const TaskSpec& s = job.spec;
   charge(job, now);
-  if (!job.phase.is_running()) return;  // its thread is gone, or it has ended meanwhile
+  if (!job.phase.is_running()) return;  // its thread is gone, or it has just ended
   const bool is_late = now >= job.job.deadline;
   if (is_late) report_late(job, true);
   if (is_late && s.on_miss == OnMiss::kDemote) processor_.demote(job, now);
@@ -127,7 +127,7 @@ void Supervisor::check_begun(JobThread& job, Nanoseconds now) noexcept {
   checks_.set(job, next);
 }
 
-// Where the most urgent job has not begun yet, no other job of the list has run since the last look.
+// If the most urgent job has not begun yet, no other job of the list has run since the last check.
 void Supervisor::check_running(Nanoseconds now) noexcept {
   JobThread* const top = ready_.most_urgent();
   if (top != nullptr && top->phase.is_running()) charge(*top, now);
@@ -185,7 +185,7 @@ void Supervisor::give_up(JobThread& job, Nanoseconds used, Nanoseconds now) noex
   processor_.edge_bell().ring();
 }
 
-// The thread ended in the body: nobody else says that the job is over, and its task has no thread any more.
+// The thread ended in the body, so the supervisor reports the end of the job. Its task has no thread any more.
 void Supervisor::reap(JobThread& job, Nanoseconds now) noexcept {
   job.phase.lose_thread();
   checks_.clear(job);
