@@ -61,7 +61,7 @@ struct RtpuSpec {
 
 /// The standby takes over the outputs of the primary when that fails. Both have the same outputs.
 struct StandbySpec {
-  TaskId primary;  ///< of no standby a primary itself
+  TaskId primary;  ///< not a standby itself
   TaskId standby;  ///< of one primary
   Nanoseconds stale_after{};  ///< above 0: a primary on another rtpu whose outputs are older is killed; kStalePeriods
   bool hot = false;           ///< it cycles while the primary is ON, unread; without resources and out-consts

@@ -97,7 +97,7 @@ Answer publish(Task& task, Method method, std::uint64_t valid, Nanoseconds now) 
 
 namespace {
 
-// Says meanwhile which method it is. Relaxed, pairs with nothing: it is told, and not acted upon.
+// Shows the method while it runs. Relaxed, pairs with nothing: it is only reported.
 Answer call_beside_cycle(Task& task, Method method, Nanoseconds at) noexcept {
   std::atomic_ref(task.job_method).store(method, std::memory_order_relaxed);
   const Answer answer = call_method(task, method, at);

@@ -169,7 +169,7 @@ SignalReport TaskLife::warm_up(TaskId id, Nanoseconds now) {
   return report;
 }
 
-// Whoever reads its variables reads them from its group now.
+// Readers of the task's variables now read them from its group.
 SignalReport TaskLife::show(Task& task) {
   task.is_unread = false;
   set_.sources().take_outputs_of(task);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The change of one context at the instant T of a switch: states of tasks, what they read, and who is released, as one
-// step for whoever looks from outside. A job that was released before T ends with what it read and wrote before.
+// The change of one context at the instant T of a switch: states of tasks, their inputs, and releases. Other contexts
+// see one step. A job that was released before T ends with its old inputs and outputs.
 #pragma once
 
 #include "chimera/runtime/context_tap.h"

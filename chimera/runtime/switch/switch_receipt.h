@@ -61,7 +61,7 @@ struct VariablePart {
 /// The end of a switch.
 enum class SwitchEnd : std::uint8_t {
   kDone,
-  kAborted,      ///< begun, and undone: whoever was ON was not touched
+  kAborted,      ///< begun and undone: tasks that were ON were not touched
   kRefused,      ///< nothing was begun
   kNothingToDo,  ///< the requested set was in force
 };

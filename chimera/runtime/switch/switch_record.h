@@ -71,7 +71,6 @@ class StartDelays {
   /// A window of the task begins. Returns the longest start delay of the run up to now; -1: it had no cycle.
   Nanoseconds begin(const Task& task) noexcept;
   /// The longest start delay since the last look(); -1: there was no cycle.
-  /// Records the part of the tasks of its own context. Context of everything not marked: cycle boundary; no allocation.
   Nanoseconds look(const Task& task) noexcept;
 
  private:
@@ -79,7 +78,7 @@ class StartDelays {
   std::span<Spread> seen_;  // by task: its start_delay at the last look
 };
 
-/// Of tasks of its own context. Context of everything not marked: cycle boundary; no allocation.
+/// Records the part of the tasks of its own context. Context of everything not marked: cycle boundary; no allocation.
 class SwitchRecord {
  public:
   explicit SwitchRecord(TaskSet& set) noexcept : set_(set), steps_(set) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the contexts of the other real-time units, and passes signals between them.
+// Reads the contexts of the other rtpus, and passes signals between them.
 #include "chimera/runtime/virtual/virtual_peers.h"
 
 #include <algorithm>

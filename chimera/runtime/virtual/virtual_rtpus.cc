@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Advances the processors of several real-time units on one clock, instant by instant.
+// Advances the processors of several rtpus on one clock, instant by instant.
 #include "chimera/runtime/virtual/virtual_rtpus.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::atomic<bool> kNoStop{false};
 constexpr std::size_t kMostRefused = 1024;
-// Tasks of several units may send each other signals for ever: after so many passes releases have their turn.
+// Tasks of several rtpus may send each other signals for ever: releases have their turn after kMostEdges passes.
 constexpr int kMostEdges = 16;
 
 std::vector<Silence> silences_of(const ApplicationSpec& spec) {
