@@ -42,7 +42,7 @@ class BoundaryListener {
   /// Jobs here used `used` of the time that the kernel looks back to, about all it lets real-time threads have: one of
   /// the task went on below all others. Context: cycle boundary.
   virtual void gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept = 0;
-  /// The task went ON in place of `from`, `after` this time since this context found the loss. Context: cycle boundary.
+  /// The task went ON in place of `from`; `after`: time since this context found the loss. Context: cycle boundary.
   virtual void took_over(TaskId /*task*/, TaskId /*from*/, Nanoseconds /*after*/, Nanoseconds /*now*/) noexcept {}
   /// A job of the task is over, or its state changed, and its numbers may be shown. Context: cycle boundary.
   virtual void show(const Task& task) noexcept = 0;

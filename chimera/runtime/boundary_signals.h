@@ -41,7 +41,8 @@ class BoundarySignals {
                   Switching& switching) noexcept
       : set_(set), script_(options.script), tap_(tap), settlement_(settlement), threads_(threads),
         switching_(switching), guest_(options.guest) {}
-  /// From now on, `switches` orders the switches; it outlives this. Without it, another process does. Context: setup.
+  /// From now on, `switches` orders the switches; it outlives this. Without it, they are ordered elsewhere. Context:
+  /// setup.
   void order_by(LocalSwitches& switches) noexcept { orders_ = &switches; }
 
   /// The script counts from `origin`.

@@ -26,7 +26,7 @@ struct ContextPlace {
   std::atomic<std::uint32_t>* running = &running_untold;
   std::atomic<std::uint32_t>* serving = &running_untold;
   bool preemptive = false;  ///< tasks preempt each other: each reads through copies of its own
-  /// Shows which method is called at a cycle boundary; `running` still shows the job that it interrupted.
+  /// Shows which method is called at a cycle boundary. `running` shows only jobs.
   std::atomic<std::uint32_t>* at_edge = &running_untold;
   /// Shows for which task a state is constructed, by show_making().
   std::atomic<std::uint32_t>* making = &running_untold;

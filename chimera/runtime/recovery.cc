@@ -126,7 +126,7 @@ bool Recovery::give_up_resource(std::size_t group, TaskId to, Nanoseconds now) n
   return true;
 }
 
-// False: the task is not OFF, and a bell rings at the end of `init` or of a rival; or it is ruled out.
+// False: the task is not OFF yet, and this context learns of the end of `init` or of a rival; or it is ruled out.
 bool Recovery::create(std::size_t group, Task& task, Nanoseconds now) noexcept {
   TaskSet& set = parts_.set;
   TaskId& created = takeovers_[group].created;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The common half of all executors of one context: when what is due, and the order in which the parts act.
 //
-//   edge: inputs of the listener, script acts, signals -> tasks join and leave the queue    BoundarySignals, Members
+//   edge: inputs of listener, script acts, signals    -> tasks join and leave the queue     BoundarySignals, Members
 //   release_due: releases                             -> ready queue; what is dropped is counted
 //   may_start: last chance to say no                  -> begin: inputs and body
 //                                                     -> end: failures, publication, profile JobCycle, MissPolicy
@@ -69,8 +69,8 @@ class Releases {
     return set_.sent().has_pending() || signals_.next_act() <= now || (guest_ != nullptr && guest_->is_due(now));
   }
   /// Carries out the acts and signals that are due. A signal for a task with an unfinished job waits for its end.
-  /// `puts_off`: no job is ever under way at a cycle boundary. A signal that only waits for the end of jobs is then
-  /// put off until no job waits, or the next release is due.
+  /// `puts_off`: no job is ever under way at a cycle boundary. A cycle boundary that is due only for the end of jobs
+  /// is put off until no job waits, or the next release is due.
   void take_edge(Nanoseconds now, bool puts_off = false) noexcept;
   /// The next instant at which a cycle boundary or a release may be due.
   Nanoseconds next_event() const noexcept { return std::min(queue_.next_release(), next_edge()); }

@@ -20,8 +20,8 @@ struct ConstantPort {
   std::byte* local = nullptr;
 };
 
-/// Owns the data that a Task points at, all of it taken from given memory. Copyable before construct(). Context: setup
-/// and cycle boundary.
+/// Manages the data that a Task points at, all of it taken from given memory. Copyable before construct(). Context:
+/// setup and cycle boundary.
 class TaskMemory {
  public:
   /// Plans the memory for `spec`. Refuses a specification that does not fit the component's declaration
@@ -38,7 +38,7 @@ class TaskMemory {
   /// Leaves task.group published with the initial values (never-written fill where there are none).
   Result<void> construct(Task& task, Nanoseconds now);
   void destroy(Task& task) noexcept;
-  /// As destroy, but never frees the state: a hanging method may still use it.
+  /// As destroy, but never frees the state: a call of the background that hangs may still use it.
   void abandon(Task& task);
 
   /// Copies constants in; false with `why` when one has no value. Sets extents that constants fix.

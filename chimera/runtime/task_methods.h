@@ -19,8 +19,8 @@ namespace chimera {
 struct MethodRunner {
   JobClock* clock = nullptr;    ///< as methods see it; null: methods are not timed
   JobThreads* threads = nullptr;  ///< calls methods at cycle boundaries; null: the caller does
-  /// Runs the background of components in its threads. Null: only kill runs it before it begins (and executors of
-  /// virtual time do).
+  /// Runs the background of components in its threads. Null: it runs once, before kill (and executors of virtual
+  /// time run it).
   BackgroundThreads* writer = nullptr;
 };
 

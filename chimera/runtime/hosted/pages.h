@@ -47,7 +47,7 @@ struct KeeperPage {
   std::uint32_t n_rtpus = 0;
   std::atomic<std::uint32_t> ending{0};
   std::atomic<std::uint32_t> alive[kMaxPeers];  ///< incarnation of the peer that lives; 0: none
-  // The process that prints the run, face_page.h: for processes that cannot see its page.
+  // Facts about the process that prints the run, face_page.h: for processes that cannot see its page.
   std::atomic<std::uint32_t> face_deaths{0};
   std::atomic<std::int32_t> face_signal{0};
   std::atomic<std::int32_t> lost_output{0};

@@ -85,7 +85,7 @@ class BlockView {
   const BlockHead& head() const noexcept;
   /// In the manager's block: the status that the manager saw last, for its successor.
   TaskStatus status(TaskId task) const noexcept;
-  /// True if another process has overwritten the status.
+  /// True if the status is no valid word: something other than the owner has overwritten it.
   bool is_status_lost(TaskId task) const noexcept;
   /// Copied word by word: two numbers may be a cycle apart.
   Profile profile(TaskId task) const noexcept;

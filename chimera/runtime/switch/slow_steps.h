@@ -137,7 +137,7 @@ class SlowSteps {
   Nanoseconds wake_ = kNever;
   Nanoseconds waits_since_ = kNever;  // for a gap
   Nanoseconds again_at_ = kNever;     // instant of the next call of a device that is not ready
-  Nanoseconds back_until_ = kNever;   // limit of this waiting on the way back
+  Nanoseconds back_until_ = kNever;   // end of the waits for a device on the way back
   bool was_idle_ = false;             // the processor, since the leaving tasks are OFF
 };
 

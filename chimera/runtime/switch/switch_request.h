@@ -37,8 +37,8 @@ struct SwitchRequest {
 class AskedTasks {
  public:
   virtual ~AskedTasks() = default;
-  /// Writes the tasks that are to be ON after the lists are applied to `on`. False: they are no legal set, and nothing is
-  /// switched. `now` is on the executor's clock. Context: cycle boundary; may allocate.
+  /// Writes the tasks that are to be ON after the lists are applied to `on`. False: they are no legal set, and nothing
+  /// is switched. `now` is on the executor's clock. Context: cycle boundary; may allocate.
   virtual bool find(const SwitchRequest& request, const TaskBits& on, Nanoseconds now, TaskBits& target) = 0;
 };
 

@@ -90,8 +90,8 @@ constexpr std::uint64_t wish_dealt_with(std::uint32_t incarnation, std::uint16_t
   return std::uint64_t{incarnation} << 32 | number;
 }
 
-/// True if a request is new. A request that changes nothing is dropped, unless it replaces a different one that has not
-/// been dealt with yet.
+/// True if a request is new. The last request stands: one that changes nothing is dropped, unless it replaces a
+/// different one that has not been dealt with yet.
 constexpr bool is_new_wish(bool is_for_the_same, bool changes_nothing, bool is_last_open) noexcept {
   return is_last_open ? !is_for_the_same : !changes_nothing;
 }
