@@ -13,7 +13,7 @@ namespace chimera {
 class BackgroundThreads {
  public:
   /// From now on `background` is called with `instance`, until it answers with a fault. False when the system gives no
-  /// thread. `tag` is the TaskWord of who runs there.
+  /// thread. `tag` is the TaskWord of the task that runs there.
   [[nodiscard]] virtual bool add(void* instance, chimera_background background, std::uint32_t tag) = 0;
 
   enum class End {

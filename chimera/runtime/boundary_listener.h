@@ -22,7 +22,8 @@ class BoundaryListener {
     return bell_->load(std::memory_order_relaxed) != heard_ || now >= due_;
   }
   Nanoseconds next_due() const noexcept { return due_; }
-  /// Count of rings up to now. The next take() deals with all of them. Context: cycle boundary; wait-free.
+  /// Count of rings at the last take(). A wait that starts from it misses no later ring. Context: cycle boundary;
+  /// wait-free.
   std::uint32_t heard() const noexcept { return heard_; }
 
   /// Deals with the inputs that are due: what comes from other processes. Signals are carried out by `signals`; what

@@ -34,7 +34,7 @@ class ContextConstants final : public MadeConstants {
   bool collect(TaskId task, FixedString<160>& why) noexcept;
   /// True if the last collect() brought a new value.
   bool has_new() const noexcept { return has_new_; }
-  /// A constant that the task was initialised with has another value by now. Requires: it was constructed.
+  /// True if a constant that the task was initialised with has a new value. Requires: it was constructed.
   bool uses_changed(TaskId task) noexcept;
   /// Some constant has several producers.
   bool has_choice() const noexcept { return has_choice_; }

@@ -34,8 +34,8 @@ enum class EventKind : std::uint8_t {
                ///< if a task did. Invalid `from`: for that time no task here had the processor
   kHang,       ///< a job of the task does not end: it was released `detail` ns ago; 0: its thread is gone. The rtpu
                ///< ends
-  kGaveWay,    ///< a job of the task goes on below all others: jobs of the rtpu used `detail` ns lately, nearly all
-               ///< that the kernel lets real-time threads have
+  kGaveWay,    ///< a job of the task goes on below all others: jobs of the rtpu used `detail` ns of the last window,
+               ///< nearly all that the kernel grants real-time threads
   kBlocked,    ///< the task missed its deadline with a job that waits in a system call, having used `detail` ns
   kNote,       ///< the task left a note; its text stands in the task's fault group
   kTakeover,   ///< the task went ON in place of `from`, `detail` ns after this rtpu found that one lost

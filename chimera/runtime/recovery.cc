@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns standbys ON and restarts tasks at edges.
+// Turns standbys ON and restarts tasks at cycle boundaries.
 #include "chimera/runtime/recovery.h"
 
 #include <algorithm>
@@ -49,7 +49,7 @@ void Recovery::prepare(SwitchPeers* peers) {
   }
 }
 
-// A task that may not be touched yet is looked at again with the next edge.
+// A task that may not be touched yet is checked again at the next cycle boundary.
 void Recovery::act(Nanoseconds now) noexcept {
   Standbys& standbys = parts_.set.standbys();
   if (restarts_.empty() && standbys.n_groups() == 0) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds the common half of an executor and takes the edges of its context.
+// Builds the common half of an executor and handles the cycle boundaries of its context.
 #include "chimera/runtime/releases.h"
 
 #include "chimera/base/assert.h"

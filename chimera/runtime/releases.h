@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The common half of all executors of one context: when what is due, and the order in which the parts act.
+// The common half of all executors of one context: the instants at which work is due, and the order of its parts.
 //
 //   edge: inputs of listener, script acts, signals    -> tasks join and leave the queue     BoundarySignals, Members
 //   release_due: releases                             -> ready queue; what is dropped is counted
@@ -57,7 +57,7 @@ class Releases {
   bool must_look(Nanoseconds now) const noexcept {
     return now >= calm_until_ || stop_requested() || (guest_ != nullptr && guest_->is_due(now));
   }
-  /// Everything that is due by now was looked at; the run ends at `until`.
+  /// Everything that is due has been checked. The run ends at `until`.
   void rest(Nanoseconds until) noexcept {
     const bool is_calm = !set_.sent().has_pending() && !settlement_.task_stopped();
     calm_until_ = is_calm ? std::min({queue_.next_release(), signals_.next_act(), until}) : kAtOnce;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Follows who is ON in each group of a primary and its standbys, and who takes over.
+// Follows the task that is ON in each group of a primary and its standbys, and the task that takes over.
 #include "chimera/runtime/standbys.h"
 
 #include <algorithm>

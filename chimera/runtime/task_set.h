@@ -46,7 +46,7 @@ class TaskSet {
   SentSignals& sent() noexcept { return sent_; }
   /// The illegal-configuration flag.
   IllegalFlag& flag() noexcept { return flag_; }
-  /// Which task stands in for which, and who is to take over.
+  /// Tasks that stand in for others, and the task that is to take over.
   Standbys& standbys() noexcept { return standbys_; }
   /// How methods are called.
   TaskMethods& methods() noexcept { return methods_; }

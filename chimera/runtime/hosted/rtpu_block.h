@@ -50,7 +50,7 @@ struct alignas(64) BlockHead {
   std::atomic<std::uint32_t> attended{0};    ///< rounds of its main thread: one every 50 ms, or it hangs
   std::atomic<std::int64_t> hung_limit{0};   ///< nanoseconds for which that method was waited for
   char grant[432] = {};                      ///< one line about real-time rights, zero-terminated
-  std::atomic<std::uint32_t> at_edge{0};     ///< as `running`, for a method that is called at an edge; 0: none
+  std::atomic<std::uint32_t> at_edge{0};     ///< as `running`, for a method called at a cycle boundary; 0: none
   std::atomic<std::uint32_t> background{0};  ///< as `running`: the background that is under way longest; 0: none
   std::atomic<std::uint32_t> jobs{0};        ///< cycles of the task in `running` that ended, as the main thread saw
   SwitchProgress switching;                  ///< how far this rtpu has come with a switch

@@ -85,7 +85,7 @@ void JobLoop::run_job(JobThread& me, Nanoseconds now) noexcept {
     end(me, now);
     return;
   }
-  processor_.enter();  // at the ceiling: who cancelled the job has raised this thread
+  processor_.enter();  // at the ceiling: the canceller of the job has raised this thread
   me.phase.acknowledge_cancel();
 }
 
@@ -177,8 +177,8 @@ void JobLoop::end(JobThread& me, Nanoseconds now) noexcept {
   if (ready_.size() == 0) checks_.put_off(now);
   me.is_shown = false;
   if (me.sporadic || now - me.shown_at >= kShowGap) show(me, now);  // another event may never come
-  if (me.task.state != State::kOn) me.is_on = false;  // the edge will say so too
-  if (me.is_awaited) me.is_held = true;  // until the edge has looked: the next job may be due already
+  if (me.task.state != State::kOn) me.is_on = false;  // the cycle boundary will set it, too
+  if (me.is_awaited) me.is_held = true;  // until the cycle boundary has checked: the next job may be due already
   const bool leaves_something = releases_.settlement().is_unsettled(me.id) || !me.task.pending.empty();
   if (me.is_awaited || leaves_something || processor_.is_paused()) processor_.edge_bell().ring();
   me.is_awaited = false;

@@ -105,7 +105,7 @@ RunEnd PreemptiveExecutor::run(Nanoseconds duration) noexcept {
   }
 }
 
-// Returns the instant of the edge, in the section. Every job that is late then and has begun has been looked up, once.
+// Returns the instant of the cycle boundary, in the section. Every begun job that is late then has been looked up once.
 // To look one up takes some microseconds outside the section, in which more jobs may be late.
 Nanoseconds PreemptiveExecutor::enter_with_look_ups() noexcept {
   processor_.enter();

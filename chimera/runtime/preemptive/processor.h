@@ -60,9 +60,9 @@ class Processor {
   bool is_paused() const noexcept { return is_paused_; }
   void pause() noexcept { is_paused_ = true; }
   void go_on() noexcept { is_paused_ = false; }
-  /// Where run() sleeps, and an edge is asked for. Context: any; wait-free.
+  /// The bell on which run() sleeps: a ring asks for a cycle boundary. Context: any; wait-free.
   Doorbell edge_bell() const noexcept { return Doorbell(*bell_); }
-  /// Written by those who count. Section and levels are in seen() alone.
+  /// Written by the parts that count. Section and levels are in seen() alone.
   ProcessorCounts& counts() noexcept { return counts_; }
   /// Context: between runs.
   ProcessorCounts seen() const noexcept;

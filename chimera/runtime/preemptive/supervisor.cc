@@ -175,7 +175,7 @@ bool Supervisor::sleeps_for_good(const JobThread& job, Nanoseconds used, Nanosec
   return last.slept > std::max(kSleepOfAHangingJob, period * kPeriodsOfAHangingJob);
 }
 
-// The other jobs keep their deadlines; the owner of the context ends it, for nothing else ends the job.
+// The other jobs keep their deadlines. The owner of the context ends the context, because nothing else ends the job.
 void Supervisor::give_up(JobThread& job, Nanoseconds used, Nanoseconds now) noexcept {
   Seen& of_job = seen(job);
   if (of_job.is_given_up) return;

@@ -10,7 +10,7 @@ void SlowPlanner::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   spec_ = &spec;
   rivals_.prepare(spec, memory);
   users_.prepare(spec, memory);
-  steps_ = memory.take<SlowStep>(5 * spec.tasks.size());  // who arrives has four at most, a rival that leaves two
+  steps_ = memory.take<SlowStep>(5 * spec.tasks.size());  // an arriving task has at most four, a leaving rival two
 }
 
 void SlowPlanner::add(SlowAct act, std::span<const TaskId> tasks) noexcept {

@@ -174,7 +174,7 @@ void SlowSwitch::hold_flag(Nanoseconds now) noexcept {
   peers_->show();
 }
 
-// The last values of who leaves were kept before they went.
+// The last values of leaving tasks were kept before they went.
 void SlowSwitch::conclude(SwitchEnd end, Nanoseconds now) noexcept {
   end_ = end;
   parts_.set.constants().put_in_force(end == SwitchEnd::kDone ? order_.constants_after() : order_.constants);

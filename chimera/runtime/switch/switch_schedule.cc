@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes the tasks of a switch to the analysis of transitions and reads from it who would lose a promise.
+// Passes the tasks of a switch to the analysis of transitions, and reads which task would lose a guarantee.
 #include "chimera/runtime/switch/switch_schedule.h"
 
 #include <algorithm>

@@ -182,7 +182,7 @@ void Preemptive::expire(TaskId task, Nanoseconds deadline) noexcept {
   end(a, deadline);
 }
 
-// What is over at this instant has ended by now: these need more.
+// Jobs that are over at this instant have ended already: these need more time.
 void Preemptive::demote_due(Nanoseconds now) noexcept {
   if (const TaskId task = processor_.running(); task.is_valid() && budget_left(task) == Nanoseconds{}) {
     (void)releases_.misses().report_overrun(task, releases_.task(task).call.cycle, processor_.job().used, now);
@@ -210,7 +210,7 @@ void Preemptive::run_edge(Nanoseconds& now) noexcept {
   clock_.set(now);
   releases_.take_edge(now);
   if (clock_.spent() == Nanoseconds{}) return;
-  processor_.record_slice();  // methods at an edge hold the processor
+  processor_.record_slice();  // methods at a cycle boundary hold the processor
   now += clock_.spent();
   processor_.resume(now);
 }

@@ -204,7 +204,7 @@ void VirtualRtpus::stop_units() noexcept {
   }
 }
 
-// In the order of the script: before an act for another unit the edge with those for the last one is taken.
+// In the order of the script: before an act for another rtpu, the cycle boundary of the last rtpu carries out its acts.
 void VirtualRtpus::take_acts() noexcept {
   Unit* last = nullptr;
   while (const ScriptAct* next = script_.take(now_ - origin_)) act(*next, last);
