@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads for what components do beside their cycles, as the calls of methods see them. On a machine without threads
-// there are none (null), and a background runs before kill alone.
+// Interface to the threads that run the background of components. On a machine without threads it is null, and a
+// background runs before kill only.
 #pragma once
 
 #include <cstdint>

@@ -23,7 +23,7 @@ void note_fault(Task& task, Method method, Nanoseconds at) noexcept {
   std::memcpy(task.faults.off_text, task.faults.last.text, CHIMERA_FAULT_TEXT);
 }
 
-// What the method said of its fault becomes the task's last one.
+// The method's report of its fault becomes the last fault of the task.
 void take_fault(Task& task, Method method, Nanoseconds at) noexcept {
   task.said.text[CHIMERA_FAULT_TEXT - 1] = '\0';
   task.faults.last = task.said;

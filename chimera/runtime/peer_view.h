@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tasks of one context know of the rest of the application: the other rtpus and the operator. A context
-// without others has none. docs/formats/processes.md.
+// The view that the tasks of one context have of the rest of the application: the other rtpus and the operator. A
+// context without others has none. docs/formats/processes.md.
 #pragma once
 
 #include <cstddef>

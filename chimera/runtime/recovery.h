@@ -64,7 +64,7 @@ class Recovery {
     Nanoseconds again_at;  // when to call a standby again whose device was not ready
   };
 
-  /// One that cycles beside the task that is ON.
+  /// A standby that cycles beside the task that is ON.
   struct HotStandby {
     TaskId task;
     Nanoseconds again_at;  // when to call its `on` again, which was not ready

@@ -40,9 +40,9 @@ std::size_t kept_of_unscripted(const ApplicationSpec& spec) noexcept;
 /// allocation, no system call.
 class Releases {
  public:
-  /// `clock` is what methods see, and is made the clock of the set. Requires: no task of this context with the reaction
-  /// switch where there are other contexts without switch_peers, nor demote unless that can be done. Everything given
-  /// outlives this. Context: setup.
+  /// `clock` is the one that methods see, and becomes the clock of the set. Requires: no task of this context with the
+  /// reaction switch where there are other contexts without switch_peers, nor demote unless that can be done.
+  /// Everything given outlives this. Context: setup.
   Releases(TaskSet& set, JobClock& clock, const RunOptions& options);
   Releases(const Releases&) = delete;
   Releases& operator=(const Releases&) = delete;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deals with what jobs left for others to see.
+// Handles the results of jobs that others must see.
 #include "chimera/runtime/settlement.h"
 
 #include <utility>

@@ -74,7 +74,7 @@ struct Counts {
   std::size_t variables = 0, constants = 0;
 };
 
-// What a PortSpec and a GivenSpec have in common.
+// The fields that PortSpec and GivenSpec share.
 template <class Archive, class Item>
 void value_fields(Archive& archive, Item& item, const Counts& counts) {
   archive.number(item.type);

@@ -89,7 +89,7 @@ void JobLoop::run_job(JobThread& me, Nanoseconds now) noexcept {
   me.phase.acknowledge_cancel();
 }
 
-// Takes the newest release that has come; what came before it is dropped. False: nothing may begin.
+// Takes the newest release that has come, and drops those before it. False: no job may begin.
 bool JobLoop::accept_release(JobThread& me, Nanoseconds now) noexcept {
   const TaskSpec& s = me.spec;
   if (me.sporadic) {  // nothing is due at an instant but the server

@@ -34,7 +34,7 @@ class JobThread {
   /// Context: setup; blocks until the thread has ended.
   void join() { thread_.join(); }
   pid_t thread() const noexcept { return thread_id_; }
-  /// Ends what the thread waits for. Context: any.
+  /// Ends the wait of the thread. Context: any.
   void wake() noexcept;
   /// Returns a count of rings. If it is read before the check for work, a wait with it loses no wake(). Context: the
   /// thread itself.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The run of a preemptive context, edge by edge: signals, posts of others, what jobs left behind. Everything in the
-// section but the methods, which run at the label of their task.
+// Runs a preemptive context, one cycle boundary after the other: signals, posts of others, results of jobs. All of it
+// runs in the section except the methods, which run at the label of their task.
 #include "chimera/runtime/preemptive/preemptive_executor.h"
 
 #include <algorithm>

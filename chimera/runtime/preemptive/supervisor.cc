@@ -148,7 +148,7 @@ void Supervisor::charge(JobThread& job, Nanoseconds now) noexcept {
   processor_.dispatch(now);
 }
 
-// Seen while the job still runs: what can be done at once is done at once; the rest at its end.
+// The overrun was seen while the job still runs. Some reactions act at once, the others at its end.
 void Supervisor::overrun(JobThread& job, Nanoseconds now) noexcept {
   if (!releases_.misses().report_overrun(job.id, job.cycle, job.used(), now)) return;
   const OnMiss reaction = job.spec.on_overrun;
@@ -212,7 +212,7 @@ void Supervisor::watch_released(JobThread& job, Nanoseconds now) noexcept {
   checks_.watch(job, check, ready_.size());
 }
 
-// A job that is ready, runs or is halted: what its server has says where the job belongs, and until when.
+// For a job that is ready, runs or is halted. The capacity of its server decides its place, and until when.
 void Supervisor::follow_server(JobThread& job, Nanoseconds now) noexcept {
   SporadicThread& server = *job.sporadic;
   server.charge(job.thread(), job.is_demoted);
@@ -234,8 +234,8 @@ void Supervisor::follow_server(JobThread& job, Nanoseconds now) noexcept {
   checks_.set(job, processor_.next_server_check(job, now));
 }
 
-// Less important tasks may use what the others do not need. Only where the others alone use too much one of them is
-// demoted, the least urgent first.
+// Less important tasks may use the time that the others do not need. One of the others is demoted only if they alone
+// use too much, the least urgent first.
 void Supervisor::keep_share(Nanoseconds now, const JobThread* own) noexcept {
   if (!share_.is_limited() || ready_.size() == 0) return;
   const Nanoseconds left = share_.left(now);

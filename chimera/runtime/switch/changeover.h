@@ -28,10 +28,10 @@ class Changeover {
   /// Applies the instant `at` of the change to releases. A job that was released before `at` keeps the old bindings. If
   /// its task has been released again by `now`, the old job is dropped: it would run after `at` with the old bindings.
   void change_releases(Nanoseconds at, Nanoseconds now) noexcept;
-  /// From now on what other contexts change of the tasks of the plan changes nothing here: `before` are ON. No task of
+  /// From now on changes of other contexts to the tasks of the plan have no effect here: `before` are ON. No task of
   /// this context takes a release at `at` or later before its change.
   void hold(const SwitchPlan& plan, const TaskBits& before, Nanoseconds at) noexcept;
-  /// The change, at `at`. Requires: hold(); what is released before `at` has been released, nothing later has.
+  /// The change, at `at`. Requires: hold(); all releases before `at` have been taken, and no later one.
   void make(const SwitchPlan& plan, const TaskBits& after, Nanoseconds at) noexcept;
   /// Lets tasks change whose jobs released before `at` have ended since. True: all have changed.
   bool follow(const SwitchPlan& plan, Nanoseconds at) noexcept;

@@ -88,8 +88,8 @@ bool SlowSteps::waits_for_gap(const Task& task, Method method, Nanoseconds now) 
   return false;
 }
 
-// No job of a leaving task can delay another one any more, directly or by others: the processor of this context was
-// idle.
+// Waits until the processor of this context was idle once: then no job of a leaving task can delay another job,
+// directly or through others.
 bool SlowSteps::waits_for_idle(Nanoseconds now) noexcept {
   if ((order_->slow & kSlowForDeadlines) == 0 || was_idle_) return false;
   for (const Task& each : parts_.set.tasks()) {
@@ -129,7 +129,7 @@ StepEnd SlowSteps::turn_off(Task& task, Nanoseconds now) noexcept {
   return task.state == State::kOff ? StepEnd::kDone : fail(NoSwitch::kStepFailed, task);
 }
 
-// Spawns it, or kills it. What a task makes at init counts by the configuration after.
+// Spawns or kills the task. The new configuration decides which constants, made at init, are in force.
 StepEnd SlowSteps::create(Task& task, Signal signal, Nanoseconds now) noexcept {
   const Method method = signal == Signal::kSpawn ? Method::kInit : Method::kKill;
   const bool is_here = !is_under_way(task.id) && !parts_.set.slow().takes(method);

@@ -138,7 +138,7 @@ struct SwitchProgress {
 /// context moved the word, which each does a bounded number of times for a plan.
 class SwitchAgreement {
  public:
-  /// `origin`: what instants count from. The page outlives this.
+  /// Instants count from `origin`. The page outlives this.
   SwitchAgreement(SwitchPage& page, Nanoseconds origin) noexcept : page_(&page), origin_(origin) {}
 
   PlanWord plan() const noexcept { return PlanWord::of(page_->plan.load(std::memory_order_acquire)); }

@@ -84,7 +84,7 @@ class SwitchOrders : private NeededGaps {
   /// Looks, and makes the plan and finds the way that leads to these tasks.
   PlanAnswer judge(const TaskBits& target) noexcept;
 
-  // What was found last.
+  // Results of the last look() or judge().
   bool is_on(TaskId task) const noexcept { return standing_[task.index].state == State::kOn; }
   TaskBits on() const noexcept { return tasks_on(standing_); }
   std::uint32_t set_in_force() const noexcept { return planner_.set_in_force(standing_); }

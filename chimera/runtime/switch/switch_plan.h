@@ -29,8 +29,8 @@ struct Handover {
 /// Lists point into the SwitchPlanner that made the plan.
 struct SwitchPlan {
   std::uint32_t number = 0;
-  std::uint32_t before = kNoSet;       ///< in ApplicationSpec::sets; kNoSet: what is ON is none of them
-  std::uint32_t after = kNoSet;        ///< in ApplicationSpec::sets; kNoSet: what is to be ON is none of them
+  std::uint32_t before = kNoSet;       ///< in ApplicationSpec::sets; kNoSet: the ON tasks are none of them
+  std::uint32_t after = kNoSet;        ///< in ApplicationSpec::sets; kNoSet: the target is none of them
   std::span<const TaskId> arriving;    ///< in data-flow order, producers first
   std::span<const TaskId> leaving;     ///< against the data flow
   std::span<const TaskId> staying;     ///< in data-flow order

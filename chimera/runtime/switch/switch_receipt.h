@@ -53,9 +53,9 @@ struct ValueStep {
 /// One variable that got another producer.
 struct VariablePart {
   Handover handover;
-  ValueStep step_of_on;    ///< from the last value of the producer before to what `on` of the one after wrote
-  ValueStep step_of_cycle; ///< to what the first cycle of the one after wrote
-  ValueStep usual;         ///< the largest between two publications in a row of the producer before, until the change
+  ValueStep step_of_on;    ///< from the last value of the old producer to the value that `on` of the new one wrote
+  ValueStep step_of_cycle; ///< as step_of_on, to the value of the first cycle of the new producer
+  ValueStep usual;         ///< the largest between two publications in a row of the old producer, until the change
 };
 
 /// The end of a switch.

@@ -97,7 +97,7 @@ Nanoseconds Preemptive::next_event(Nanoseconds now) noexcept {
   return std::min(next, releases_.origin() + options_.quantum * (since / options_.quantum + 1));
 }
 
-// What only tasks with the reactions abort and demote and those behind servers have.
+// The next instant that only tasks with the reactions abort and demote, and tasks behind servers, have.
 Nanoseconds Preemptive::next_exception(Nanoseconds now) noexcept {
   return std::min({next_deadline(), next_demotion(now), sporadic_.next_change(now)});
 }

@@ -111,7 +111,7 @@ Result<void> VirtualRtpus::start() {
   return {};
 }
 
-// What methods spend counts one after the other, on whichever rtpu they run.
+// The times of methods add up, one after the other, even if they run on different rtpus.
 SignalReport VirtualRtpus::signal(TaskId task, Signal signal) {
   Unit& unit = unit_of(task);
   unit.clock.set(now_);
@@ -190,7 +190,7 @@ RunEnd VirtualRtpus::run(Nanoseconds duration) noexcept {
   return end;
 }
 
-// It has something to take in, and can.
+// True if the rtpu has new input and is free to handle it.
 bool VirtualRtpus::is_due(const Unit& unit) const noexcept {
   return !unit.is_dead && unit.control.is_due(now_) && !unit.processor->is_occupied(now_);
 }
