@@ -120,7 +120,7 @@ class GroupReader {
   static bool was_whole(const std::byte* base, std::uint64_t& n) noexcept {
     shared_copy::acquire_fence();  // pairs with the fence at the end of publish()
     const std::uint64_t m = shared_copy::word(base).load(std::memory_order_acquire);  // acquire: for the next try
-    const bool is_whole = m - n <= kSlots - 2;  // n + kSlots is begun once the counter says n + kSlots - 1
+    const bool is_whole = m - n <= kSlots - 2;  // n + kSlots begins when the counter is n + kSlots - 1
     n = m;
     return is_whole;
   }

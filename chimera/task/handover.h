@@ -19,7 +19,7 @@
 #define CHIMERA_HANDOVER_PERIODS 2
 #define CHIMERA_HANDOVER_LEAST_NS 10000000
 
-/* The inherited value of the out-var `port` at the present `on`; NULL: no task published it. Context: any; wait-free. */
+/* The inherited value of the out-var `port` at the present `on`; NULL: none was published. Context: any; wait-free. */
 static inline const chimera_inherited* chimera_inherited_of(const chimera_port* port) {
   return (const chimera_inherited*)(const void*)port->slot;
 }
