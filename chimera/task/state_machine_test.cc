@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of state_machine.cc against a second one, written as the stories that the papers and
-// docs/decisions/0002-state-machine.md tell: who signals what in which state, which methods run with which
-// transfers and answers, and where the task ends.
+// The table of state_machine.cc against a second one, a list of scenarios of the papers and of state_machine.h: a
+// signal in a state, the methods with their transfers and answers, and the last state.
 #include "chimera/task/state_machine.h"
 
 #include <gtest/gtest.h>
