@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The questions that wait for the analyst, and the analyst: a process of its own, so that no act waits for an analysis
-// and none is lost with one. docs/decisions/0029-acts-before-questions.md.
+// and none is lost with one. docs/formats/control.md, "Limits".
 #pragma once
 
 #include <deque>
