@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The check for our own mistakes: always armed, names the place, ends the program.
-// Bad input is answered by Result (base/result.h); a late or broken world by counted state.
+// CHIMERA_ASSERT checks for mistakes of the framework. It is always armed, names the place and ends the program.
+// A Result (base/result.h) answers bad input. Counters record late jobs and broken devices.
 #pragma once
 
 namespace chimera {

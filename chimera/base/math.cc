@@ -45,7 +45,7 @@ struct Reduced {
   Pair rest;
 };
 
-constexpr double kReductionLimit = 1e6;  // times pi/2 the quadrant stays below 2^20: products with it are exact
+constexpr double kReductionLimit = 1e6;  // times pi/2; the quadrant stays below 2^20: products with it are exact
 
 Reduced reduce(double x) noexcept {
   if (fabs(x) <= kPiHi / 4) return {0, {x, 0}};
@@ -67,7 +67,7 @@ double kernel_sin(Pair x) noexcept {
   return x.hi + (cube * polynomial(kSin, z) + (x.lo - 0.5 * z * x.lo));
 }
 
-// cos(hi + lo) = 1 - z/2 + z^2 P(z) - hi*lo; what the rounding of 1 - z/2 lost is put back.
+// cos(hi + lo) = 1 - z/2 + z^2 P(z) - hi*lo. The sum adds back the rounding error of 1 - z/2.
 double kernel_cos(Pair x) noexcept {
   const double z = x.hi * x.hi;
   const double half = 0.5 * z;
@@ -93,7 +93,7 @@ Pair atan_of_unit(double x) noexcept {
 // (asin(x) - x) / x for |x| <= 1/2, z = x^2.
 double asin_rest(double z) noexcept { return z * polynomial(kAsin, z); }
 
-// The square root of z with the part that rounding lost, to be used where 2 * sqrt is subtracted from an angle.
+// The square root of z with its rounding error. The callers subtract 2 * sqrt from an angle, so the error counts.
 Pair sqrt_pair(double z) noexcept {
   if (z == 0) return {0, 0};
   const double s = sqrt(z);
@@ -233,7 +233,7 @@ double log(double x) noexcept {
     x *= 0x1p54;
     k = -54;
   }
-  // x = 2^k m with m in [sqrt(1/2), sqrt(2)): the high word of sqrt(1/2) is taken off before the exponent is read.
+  // x = 2^k m with m in [sqrt(1/2), sqrt(2)). Subtracts the high word of sqrt(1/2) before it reads the exponent.
   constexpr std::uint64_t kRootHalf = 0x3fe6a09e667f3bcd;
   const auto exponent = static_cast<std::int64_t>(bits(x) - kRootHalf) >> 52;
   k += static_cast<int>(exponent);

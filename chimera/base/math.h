@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elementary functions for components. Built from IEEE additions, multiplications, divisions and square roots in a
-// fixed order, so that a host and a microcontroller agree to the bit, which two C libraries do not.
+// Elementary functions for components. They use IEEE additions, multiplications, divisions and square roots in a fixed
+// order. So a host and a microcontroller give the same bits, which two C libraries do not.
 //
-// Errors are the largest seen against a reference of higher precision, in units in the last place; math_test.cc
-// holds them. All functions: Context: any; wait-free; no errno, no exception flags promised. NaN in, NaN out.
+// Errors are the largest found against a reference of higher precision, in units in the last place; math_test.cc checks
+// them. All functions: Context: any; wait-free; no errno, no promise about exception flags. NaN in, NaN out.
 #pragma once
 
 #include <bit>
@@ -47,7 +47,7 @@ double hypot(double x, double y) noexcept;
 /// At most 2100 steps.
 double fmod(double x, double y) noexcept;
 
-// In the header: a cycle asks them of every element.
+// Defined in the header, because cycles call these functions for each element.
 inline constexpr std::uint64_t kSignBit = std::uint64_t{1} << 63;
 inline constexpr std::uint64_t kInfinityBits = std::uint64_t{0x7ff} << 52;
 

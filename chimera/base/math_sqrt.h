@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The square root, correctly rounded: by the processor's instruction where there is one, else bit by bit. Both give
-// the same bits, because there is only one correctly rounded result.
+// The square root, correctly rounded. Uses the instruction of the processor if it has one, and computes bit by bit
+// otherwise. Both give the same bits, because only one correctly rounded result exists.
 #pragma once
 
 #include <bit>

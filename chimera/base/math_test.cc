@@ -26,7 +26,7 @@ class Points {
   std::uint64_t next() { return state_ = state_ * 6364136223846793005u + 1442695040888963407u; }
   double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }
   double between(double lo, double hi) { return lo + (hi - lo) * unit(); }
-  // Evenly over the exponents: as many points near 1e-300 as near 1.
+  // Spreads points evenly over the exponents: as many near 1e-300 as near 1.
   double any_magnitude(double lo, double hi) {
     const double x = std::exp2(between(std::log2(lo), std::log2(hi)));
     return next() >> 63 ? -x : x;
@@ -229,7 +229,7 @@ TEST(Math, RemainderAndHypotAtTheEdges) {
   EXPECT_EQ(math::hypot(kTiny, 0), kTiny);
 }
 
-// A change of a single bit of any result is a change of behaviour on every machine: recorded runs no longer repeat.
+// If one bit of a result changes, the behaviour changes on every machine: recorded runs no longer repeat.
 TEST(Math, EveryBitIsAsRecorded) {
   Points points;
   std::uint64_t hash = 0xcbf29ce484222325u;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text of an error put together in place, without heap or <cstdio>: Message() << "found " << 3 << ", expected 4".
+// Builds the text of an error in place, without heap or <cstdio>: Message() << "found " << 3 << ", expected 4".
 #pragma once
 
 #include <concepts>
@@ -11,7 +11,7 @@
 
 namespace chimera {
 
-/// At most 400 bytes; what does not fit is cut. Context: any; wait-free.
+/// At most 400 bytes; a longer text is cut. Context: any; wait-free.
 class Message {
  public:
   Message() noexcept = default;
@@ -27,7 +27,7 @@ class Message {
     requires(!std::same_as<Number, bool> && !std::same_as<Number, char>)
   Message& operator<<(Number number) noexcept {
     const bool negative = number < 0;
-    // Negated as unsigned: the most negative number has no positive twin.
+    // Negates as unsigned, because the most negative number has no positive counterpart.
     auto rest = static_cast<std::uint64_t>(number);
     if (negative) rest = 0 - rest;
     char digits[20];
@@ -41,7 +41,7 @@ class Message {
 
   std::string_view view() const noexcept { return {bytes_, size_}; }
   bool empty() const noexcept { return size_ == 0; }
-  /// The error that says this.
+  /// An error with this text.
   Error error(ErrorCode code, std::string_view where = {}) const noexcept {
     Error e;
     e.code = code;

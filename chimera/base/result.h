@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Errors as values: what somebody gave us was wrong, and we say what and where.
+// Errors as values: an Error says which input was wrong, and where.
 // (std::expected is C++23; the member names here are its own.)
 #pragma once
 
@@ -16,19 +16,18 @@ enum class ErrorCode : unsigned char {
   kNotFound,     // a name or file that does not exist
   kRefused,      // a legal request that the present state, rights or capacity do not allow
   kUnsupported,  // a mechanism that this build does not have
-  kSystem,       // the operating system said no
+  kSystem,       // a failed call of the operating system
 };
 
-/// What went wrong. `message` says what was found and what was expected, `where` the place
-/// ("arm.yaml:12:8", "/path/file.so"), empty when there is none. Trivially copyable: no heap.
+/// An error. `message` says what was found and what was expected. `where` names the place ("arm.yaml:12:8",
+/// "/path/file.so"), or is empty. Trivially copyable: no heap.
 struct Error {
   ErrorCode code = ErrorCode::kBadInput;
   FixedString<400> message;
   FixedString<200> where;
 };
 
-/// A T or an Error. Reading the half that is not there is a bug of the caller (CHIMERA_ASSERT).
-/// Context: setup.
+/// A T or an Error. If the caller reads the half that is absent, the program ends (CHIMERA_ASSERT). Context: setup.
 template <class T>
 class [[nodiscard]] Result {
  public:

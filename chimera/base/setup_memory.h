@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where setup takes its memory from. What is taken stays until the whole of it is given back: from a heap
-// (runtime/hosted/heap_memory.h), or, on a machine without one, from bytes that the image reserves (GivenMemory).
+// The source of the memory that setup uses. Memory is returned only all together. It comes from a heap
+// (runtime/hosted/heap_memory.h), or, on a machine without a heap, from bytes that the image reserves (GivenMemory).
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ namespace chimera {
 /// Context of everything: setup.
 class SetupMemory {
  public:
-  /// `n` values of T, as T() makes them. Nobody destroys them.
+  /// `n` values of T, constructed by T(). Their destructors never run.
   template <class T>
   std::span<T> take(std::size_t n) {
     static_assert(std::is_trivially_destructible_v<T>);
@@ -28,14 +28,15 @@ class SetupMemory {
   }
   /// `size` zeroed bytes; `alignment` is a power of two.
   virtual std::span<std::byte> take_bytes(std::size_t size, std::size_t alignment) = 0;
-  /// A thread that hangs may be in what was taken: none of it is ever given back.
+  /// Never frees this memory, because a thread that hangs may still use it.
   virtual void keep_for_ever() noexcept = 0;
 
  protected:
   ~SetupMemory() = default;
 };
 
-/// Memory from given bytes, which outlive what is taken. Requires: there are enough; used() says how many that is.
+/// Memory from given bytes, which must outlive all values in it. Requires: enough bytes; used() returns the number
+/// needed.
 class GivenMemory final : public SetupMemory {
  public:
   explicit GivenMemory(std::span<std::byte> bytes) noexcept : bytes_(bytes) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes descriptors as JSON and reads them back, refusing everything that a component could not have declared.
+// Writes descriptors as JSON and reads them. Refuses every file that no component could have declared.
 #include "chimera/catalogue/descriptor_json.h"
 
 #include <cmath>
@@ -26,7 +26,7 @@ std::string_view name_of_method(std::uint32_t i) { return method_name(static_cas
 std::string_view name_of_kind(std::uint32_t i) { return kind_name(i); }
 std::string_view name_of_type(std::uint32_t i) { return type_name(i); }
 
-/// The place of the cursor's word in `all`.
+/// The index in `all` of the word at the cursor.
 std::uint32_t word_at(const JsonCursor& at, std::string_view what, const std::vector<std::string>& all) {
   const std::string word = at.text();
   for (std::uint32_t i = 0; i < all.size(); ++i) {
@@ -128,7 +128,7 @@ PortDescriptor read_port_frame(const JsonCursor& at) {
   return port;
 }
 
-/// Initial values are laid out by the port's sizes, so these are proved first by complete().
+/// complete() must check the sizes of a port first, because they give the layout of its initial values.
 void prove_sizes(const JsonCursor& at, const PortDescriptor& port) {
   Descriptor alone{.name = "c", .doc = {}, .source = {}, .default_rate_hz = 0, .methods = {}, .ports = {port}};
   alone.methods[CHIMERA_CYCLE] = true;

@@ -14,13 +14,13 @@ namespace chimera {
 inline constexpr std::size_t kMaxDescriptorBytes = 256 * 1024;
 inline constexpr std::size_t kMaxDescriptorNesting = 32;
 
-/// The descriptor in `text`, complete()d. Strict: refuses, with the JSON path of the place, an unknown, missing or
-/// repeated key, a value of a wrong type, text above the limits, and whatever describe() would refuse.
-/// Context: setup; bounded time and memory.
+/// Parses `text` and calls complete(). Strict: refuses an unknown, missing or repeated key, a value of a wrong type,
+/// and text above the limits. Also refuses all that describe() would refuse. The message has the JSON path of the
+/// place. Context: setup; bounded time and memory.
 Result<Descriptor> parse_descriptor(std::string_view text);
 
-/// The file's text: two spaces of indentation, a fixed order of keys, an end of line. Reading it back gives an equal
-/// descriptor, to the last bit of every number. Context: setup.
+/// The text of the file: two spaces of indentation, a fixed order of keys, an end of line. parse_descriptor() returns
+/// an equal descriptor, to the last bit of every number. Context: setup.
 std::string to_json(const Descriptor& descriptor);
 
 /// Reads and parses the file; Error::where is the path. Context: setup; may block.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a descriptor file: refused or read, never a crash; and what was read is written and read back equal.
+// Reads any bytes as a descriptor file: no crash, and a descriptor that was read stays equal when written and read
+// again.
 #include <cstddef>
 #include <cstdint>
 
@@ -9,7 +10,7 @@
 namespace {
 
 #ifdef CHIMERA_PLANTED_DEFECT
-/// A defect to prove that the fuzzer finds one: beyond the end for a refusal of more than 200 bytes.
+/// A planted defect, to prove that the fuzzer finds one: a read beyond the end for a refusal of more than 200 bytes.
 void planted(const chimera::Error& refusal) {
   volatile char copy[201] = {};
   copy[refusal.message.view().size()] = 1;

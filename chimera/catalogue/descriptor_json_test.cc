@@ -16,7 +16,7 @@ std::vector<std::byte> bytes(std::initializer_list<T> values) {
   return out;
 }
 
-/// One port of every kind of content.
+/// A descriptor with one port for every kind of content.
 Descriptor rich() {
   Descriptor d;
   d.name = "rich";

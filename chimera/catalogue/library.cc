@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the folders of components and answers questions about what they hold.
+// Reads the folders of components and finds components in them.
 #include "chimera/catalogue/library.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ Error unit_fault(const std::string& place, const Error& error, const std::string
   return {ErrorCode::kBadInput, std::string_view(text), std::string_view(file)};
 }
 
-/// The first unit of `descriptor` that is none.
+/// Refuses the first unit of `descriptor` that is unknown.
 Result<void> check_units(const LibraryEntry& entry, const UnitSystem& units) {
   for (const PortDescriptor& port : entry.descriptor.ports) {
     const std::string place = "component " + entry.descriptor.name + ": port " + port.name;
@@ -46,7 +46,7 @@ Library Library::make(std::span<const std::string> folders, UnitSystem units) {
       std::error_code unknown;
       return std::filesystem::equivalent(*folder, other, unknown);
     };
-    if (std::none_of(folders.begin(), folder, is_same)) library.read_folder(*folder);  // CHIMERA_PATH may name it again
+    if (std::none_of(folders.begin(), folder, is_same)) library.read_folder(*folder);  // CHIMERA_PATH may repeat it
   }
   for (std::string& folder : component_folders({}))
     if (!std::filesystem::is_directory(folder)) library.missing_folders_.push_back(std::move(folder));
@@ -75,7 +75,7 @@ void Library::read_folder(const std::string& folder) {
   const auto names = read_ordinary(folder + "/buildable.txt", kMostBuildableBytes);
   std::istringstream buildable(names ? *names : std::string());
   for (std::string name; std::getline(buildable, name);) buildable_.push_back(name);
-  std::sort(files.begin(), files.end());  // the order of a folder is chance; faults must not be
+  std::sort(files.begin(), files.end());  // a folder has no fixed order; the order of faults must be fixed
   for (const std::string& file : files) read_file(file);
 }
 
@@ -104,7 +104,7 @@ void Library::add(LibraryEntry entry) {
       std::lower_bound(entries_.begin(), entries_.end(), entry.descriptor.name,
                        [](const LibraryEntry& e, const std::string& name) { return e.descriptor.name < name; });
   if (place != entries_.end() && place->descriptor.name == entry.descriptor.name) {
-    std::error_code unknown;  // a link to the same file hides nothing
+    std::error_code unknown;  // a link to the same file is not hidden
     if (!std::filesystem::equivalent(place->descriptor_file, entry.descriptor_file, unknown))
       hidden_.push_back({entry.descriptor.name, entry.descriptor_file});
     return;

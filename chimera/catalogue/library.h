@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The components that are installed: their descriptors, found along CHIMERA_PATH and then in the install prefix.
+// The installed components: their descriptors, found along CHIMERA_PATH and then in the install prefix.
 #pragma once
 
 #include <span>
@@ -13,45 +13,45 @@
 
 namespace chimera {
 
-/// A component as found. The shared object stands beside the descriptor: NAME.so.
+/// A component in the library. The shared object NAME.so lies beside the descriptor.
 struct LibraryEntry {
   Descriptor descriptor;
   std::string descriptor_file;
   std::string object_file;
 };
 
-/// A component that was passed over, because an earlier folder has one of its name.
+/// A component that is hidden, because an earlier folder has one of its name.
 struct HiddenComponent {
   std::string name, file;  ///< of its descriptor
 };
 
-/// Context: setup; may block. Immutable after make().
+/// The components of all folders. Context: setup; may block. Immutable after make().
 class Library {
  public:
-  /// Reads every NAME.component.json of `folders`, in order; of one name the first found counts. A folder that is
-  /// named twice is read once, one that does not exist is passed over. What cannot be read, or has a unit unknown to
-  /// `units`, goes to faults(). A file `buildable.txt` in a folder names, one a line, what its build tree can build.
+  /// Reads every NAME.component.json of `folders`, in order; for each name the first file counts. A repeated folder is
+  /// read once; a missing folder is skipped. Files that cannot be read, or have a unit unknown to `units`, go to
+  /// faults(). A file `buildable.txt` in a folder lists, one per line, the components that its build tree can build.
   static Library make(std::span<const std::string> folders, UnitSystem units);
 
   /// A library of the given descriptors, for tests and tools that have no files.
   static Library of(std::vector<Descriptor> descriptors, UnitSystem units);
-  /// A library of descriptors with the names of their files, as another process found them.
+  /// A library of descriptors with the names of their files, from another process.
   static Library of_entries(std::vector<LibraryEntry> entries, UnitSystem units);
 
-  /// By name, in alphabetical order.
+  /// All components in alphabetical order of their names.
   std::span<const LibraryEntry> entries() const noexcept { return entries_; }
-  /// The component of that name, or nullptr.
+  /// The component with that name, or nullptr.
   const LibraryEntry* find(std::string_view name) const noexcept;
-  /// True when the source of that component belongs to a build tree among the folders, and was not built there.
+  /// True if a build tree among the folders has the source of that component, but has not built it.
   bool is_unbuilt(std::string_view name) const noexcept;
   std::size_t n_unbuilt() const noexcept;
   /// The installed name nearest to `name`, or "".
   std::string nearest_name(std::string_view name) const;
-  /// What could not be read; `where` is the file.
+  /// Files that could not be read; `where` is the file.
   std::span<const Error> faults() const noexcept { return faults_; }
-  /// Folders that CHIMERA_PATH names and that do not exist: whoever misses a component wants to know.
+  /// Folders of CHIMERA_PATH that do not exist: a possible reason for a missing component.
   std::span<const std::string> missing_folders() const noexcept { return missing_folders_; }
-  /// What find() does not find because something else of that name stands before it.
+  /// Components that find() does not return, because an earlier folder has one of the same name.
   std::span<const HiddenComponent> hidden() const noexcept { return hidden_; }
   const UnitSystem& units() const noexcept { return units_; }
 
@@ -69,7 +69,7 @@ class Library {
   std::vector<HiddenComponent> hidden_;
 };
 
-/// The folders of CHIMERA_PATH (colons between them; empty parts are passed over), then `installed`.
+/// The folders of CHIMERA_PATH (separated by colons; empty parts are skipped), then `installed`.
 std::vector<std::string> component_folders(std::span<const std::string> installed);
 
 }  // namespace chimera

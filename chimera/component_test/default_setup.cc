@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A description for a component of which nothing is known but its descriptor.
+// Makes a description for a component from its descriptor alone.
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -20,7 +20,7 @@ std::string number_text(double value) {
   return text;
 }
 
-// The unit with 1 for its unit variables (single capitals U X Y Z); "1" when no unit is left.
+// The unit with 1 for its unit variables (single capitals U X Y Z); "1" if no unit remains.
 std::string plain_unit(std::string unit) {
   const auto is_letter = [&unit](std::size_t at) {
     return at < unit.size() && std::isalpha(static_cast<unsigned char>(unit[at])) != 0;
@@ -96,7 +96,7 @@ std::string repeated(const std::string& text, std::uint32_t n) {
   return "[" + list + "]";
 }
 
-// One value fills what constants fix; an extent that is a variable is taken from a list.
+// One value fills an extent that a constant fixes; a list sets the length of an extent variable.
 std::string value_text_of(const Descriptor& component, const PortDescriptor& port) {
   std::string text = element_text(component, port);
   const bool is_open = std::ranges::any_of(port.extents, [&](const Extent& extent) {

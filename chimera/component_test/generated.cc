@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Generated and spoilt rows. All arithmetic by base/math.h, so that a seed means the same bytes on every machine.
+// Generated and spoilt rows. base/math.h does all arithmetic, so that a seed gives the same bytes on every machine.
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -13,14 +13,14 @@ namespace chimera::component_test {
 namespace {
 
 constexpr double kTwoPi = 6.283185307179586;
-constexpr std::size_t kHold = 20;  // cycles that a step or an end of the range stands
+constexpr std::size_t kHold = 20;  // cycles that a step or an end of the range lasts
 constexpr std::size_t kParts = 5;  // waves, steps, noise, ends, waves
 
 double uniform(std::uint64_t seed, std::uint64_t channel, std::uint64_t n) {
   return static_cast<double>(mixed(seed, channel, n) >> 11) * 0x1p-53;
 }
 
-// In [0, 1]: where in its range the channel stands in cycle i of n.
+// The place of the channel in its range at cycle i of n, from 0 to 1.
 double place(std::uint64_t seed, std::size_t channel, std::size_t i, std::size_t n) {
   const std::size_t length = n / kParts + 1, part = i / length;
   const std::uint64_t held = 1'000'000 + i / kHold;

@@ -22,7 +22,7 @@ const ConfiguredPort* reader_of(const Configuration& configuration, std::string_
 
 bool is_number(std::uint32_t type) { return type <= CHIMERA_FLOAT64; }
 
-// Generated values lie in the declared range, cut to something finite; without one about the value of the setup.
+// Generated values lie in the declared range, cut to finite limits; without a range, around the value of the setup.
 void set_limits(InputChannel& channel, const PortDescriptor& port) {
   const double spread = std::max(std::abs(channel.base), 0.5);
   const bool has_low = port.has_range && std::isfinite(port.min), has_high = port.has_range && std::isfinite(port.max);

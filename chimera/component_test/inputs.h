@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a component under trial reads: a row of values for each cycle, recorded or generated.
+// The inputs of a component under trial: a row of values for each cycle, recorded or generated.
 // The rules are in docs/formats/component-test.md.
 #pragma once
 
@@ -20,40 +20,40 @@ inline constexpr std::size_t kMaxRecordingBytes = 16u * 1024 * 1024;
 inline constexpr std::size_t kMaxRows = 100'000;
 inline constexpr std::size_t kMaxColumns = 256;
 
-/// One number of an in-var.
+/// A number of an in-var.
 struct InputChannel {
-  std::string name;        ///< as a recording calls it: "q_ref[2]"
-  std::string port_name;   ///< the name by the port, of a repeated port: "in[0][2]"
+  std::string name;        ///< its name in a recording: "q_ref[2]"
+  std::string port_name;   ///< name by the port, for a repeated port: "in[0][2]"
   std::string unit;        ///< of its values
   std::size_t offset = 0;  ///< in the row
   std::uint32_t type = CHIMERA_FLOAT64;
   double base = 0;           ///< value in the setup
-  double low = 0, high = 0;  ///< generated values lie between
+  double low = 0, high = 0;  ///< limits of generated values
   double declared_high = 0;  ///< end of the declared range; infinity: none
 };
 
-/// Where the values of a row stand: those of operator variable o at offsets[o]. Context: setup.
+/// The layout of a row: the values of operator variable o begin at offsets[o]. Context: setup.
 struct InputForm {
   static InputForm of(const Configuration& configuration, const Descriptor& component);
 
   std::vector<std::size_t> offsets;  ///< by operator variable
   std::vector<InputChannel> channels;
-  std::vector<std::size_t> quaternions;  ///< offsets of four numbers that stay a unit quaternion
+  std::vector<std::size_t> quaternions;  ///< offsets of four numbers that form a unit quaternion
   std::vector<std::byte> base;           ///< the row of the setup
 
   std::size_t bytes() const noexcept { return base.size(); }
   double get(const InputChannel& channel, std::span<const std::byte> row) const noexcept;
-  /// Rounded for whole numbers; a truth value is true above 0.5.
+  /// Writes `value`: rounded for whole numbers; a truth value is true above 0.5.
   void put(const InputChannel& channel, double value, std::span<std::byte> row) const noexcept;
 };
 
-/// Context: setup.
+/// Rows of inputs. Context: setup.
 class Inputs {
  public:
-  /// `rows` rows that look random and depend on `seed` and the form alone, to the bit.
+  /// `rows` pseudo-random rows that depend only on `seed` and the form, to the bit.
   static Inputs generated(const InputForm& form, std::uint64_t seed, std::size_t rows);
-  /// The rows of a recording, taken at each `period`; at least `least` (the last one stands). `file` names it in
-  /// messages, `names` stand for in[0], in[1], ... of its first line.
+  /// The rows of a recording, sampled at each `period`; at least `least` rows (the last one repeats). `file` names it
+  /// in messages; `names` replace in[0], in[1], ... of its first line.
   static Result<Inputs> recorded(const InputForm& form, std::string_view text, const std::string& file,
                                  std::span<const std::string> names, Nanoseconds period, std::size_t least);
 
@@ -70,10 +70,10 @@ class Inputs {
   bool are_recorded_ = false;
 };
 
-/// Puts bad values of kind `kind` < kBadInputs into every number of `row`: NaN, infinity, -infinity, beyond the
-/// declared range, the least whole numbers. False when no number takes such values. Context: setup.
+/// Writes bad values of kind `kind` < kBadInputs into every number of `row`: NaN, infinity, -infinity, beyond the
+/// declared range, the least whole numbers. False if no number accepts such values. Context: setup.
 bool spoil(const InputForm& form, std::size_t kind, std::span<std::byte> row) noexcept;
-/// What spoil() puts there, for people: "NaN".
+/// The name of the values that spoil() writes: "NaN".
 const char* spoilt_name(std::size_t kind) noexcept;
 
 }  // namespace chimera::component_test

@@ -75,10 +75,10 @@ TEST(Recorded, HoldsEachRowUntilTheNext) {
   };
   EXPECT_EQ(value(2, 2), 5);
   EXPECT_EQ(value(2, 1), 0.5);
-  EXPECT_EQ(value(3, 2), 5);  // an empty field keeps the value before
+  EXPECT_EQ(value(3, 2), 5);  // an empty field keeps the previous value
   EXPECT_EQ(value(3, 1), 0.75);
   EXPECT_EQ(value(4, 2), 6);
-  EXPECT_EQ(value(4, 0), 1);  // no column: as in the setup, the middle of the range
+  EXPECT_EQ(value(4, 0), 1);  // no column: the value of the setup, the middle of the range
   EXPECT_EQ(read("t,v\n0,1\n", {}, 20)->rows(), 20u);
   const auto with_units = read("t(s),v(m/s),q[0](rad)\n0,7,0.5\n");
   ASSERT_TRUE(with_units) << with_units.error().message.c_str();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts allocations and time around each method of a component, and answers with faults on demand.
+// Counts allocations and time around each method of a component, and returns faults on demand.
 #include "chimera/component_test/instrumented_component.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace chimera::component_test {
 namespace {
 
-InstrumentedComponent* present = nullptr;  // a method of the C interface knows nothing but its component's state
+InstrumentedComponent* present = nullptr;  // a method of the C interface gets only the state of its component
 
 template <std::uint32_t kMethod>
 std::int32_t through_shim(void* state, const chimera_call* call) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A component with a counter before and behind each of its methods, and faults on demand: to the framework it is the
-// component itself. One at a time in a process.
+// A component with a counter around each of its methods, and with faults on demand. The framework treats it as the
+// component itself. Only one may exist in a process.
 #pragma once
 
 #include "chimera/component_test/record.h"
@@ -9,10 +9,10 @@
 
 namespace chimera::component_test {
 
-/// Context: setup; the methods of component(): those of the component.
+/// Context: setup; the methods of component(): as those of the component.
 class InstrumentedComponent {
  public:
-  /// `real` and `record` outlive it.
+  /// `real` and `record` must outlive it.
   InstrumentedComponent(const chimera_component& real, Record& record);
   InstrumentedComponent(const InstrumentedComponent&) = delete;
   InstrumentedComponent& operator=(const InstrumentedComponent&) = delete;
@@ -20,11 +20,11 @@ class InstrumentedComponent {
 
   const chimera_component& component() const noexcept { return wrapped_; }
   bool has(std::uint32_t method) const noexcept { return real_.methods[method] != nullptr; }
-  /// The next call of `method` answers with a fault, after it has run.
+  /// The next call of `method` runs and then returns a fault.
   void fail_next(std::uint32_t method) noexcept { fails_[method] = true; }
-  /// True when that call was made since.
+  /// True if that call has happened.
   bool has_failed(std::uint32_t method) const noexcept { return !fails_[method]; }
-  /// Time that the method cycle took when it was called last, with that of measuring.
+  /// The time of the last call of the method cycle, including the cost of measuring.
   Nanoseconds cycle_time() const noexcept { return cycle_time_; }
 
   std::int32_t call(std::uint32_t method, void* state, const chimera_call* call) noexcept;

@@ -19,7 +19,7 @@ std::string times(std::uint64_t n, const char* one, const char* many) {
 }
 std::string quoted(const char* text) { return std::string("\"") + text + "\""; }
 
-// Mean of the middle half: as sure of itself as the median, and finer than the clock's steps.
+// Mean of the middle half: as robust as the median, and finer than the steps of the clock.
 double middle_mean(std::vector<std::int64_t> times) {
   if (times.empty()) return 0;
   std::ranges::sort(times);
@@ -52,7 +52,7 @@ struct Judge {
     return static_cast<std::size_t>(std::ranges::count_if(trial.counted.rows(), is_completed));
   }
 
-  /// False: the test ended before this that there is anything to judge.
+  /// False: the test ended too early to be judged.
   bool start() {
     const Record& record = trial.counted.record();
     if (record.refusal[0] != '\0') return fails("start", record.refusal), false;
@@ -115,7 +115,7 @@ struct Judge {
     const Record& record = trial.counted.record();
     if (!record.is_traced) return not_judged("system calls", "this machine lets no process trace its child");
     std::string text;
-    // A switch of configurations runs on and off beside the cycles of others.
+    // A switch of configurations runs on and off beside the cycles of other tasks.
     for (const std::uint32_t m : {CHIMERA_CYCLE, CHIMERA_SYNC, CHIMERA_ON, CHIMERA_OFF}) {
       const MethodRecord& method = record.methods[m];
       if (method.system_calls == 0) continue;
@@ -147,7 +147,7 @@ struct Judge {
     ok("repeatable", "the same inputs gave the same outputs twice, to the bit");
   }
 
-  /// False: the scenario broke off in `stage`, and that is what is to be said under `name`.
+  /// False: the scenario ended in `stage`; the judgement `name` says so.
   bool reached(const char* name, Stage stage) {
     const Record& record = trial.troubled.record();
     if (record.stage > stage) return true;

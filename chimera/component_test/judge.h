@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was found out about a component, judged: one line for each judgement.
+// The judgements on a component: one line each.
 #pragma once
 
 #include <string>
@@ -17,23 +17,23 @@ struct JudgedProperty {
   std::string text;  ///< one sentence without a full stop
 };
 
-/// Measured, not judged.
+/// A measurement without a judgement.
 struct Measured {
   std::size_t cycles = 0;
   double typical_ns = 0;      ///< mean of the middle half: finer than the clock
-  std::int64_t worst_ns = 0;  ///< of the least of three of each cycle
+  std::int64_t worst_ns = 0;  ///< of the least of three times of each cycle
 };
 
 struct TrialReport {
   std::string component;
-  std::string inputs;  ///< where they came from
+  std::string inputs;  ///< the source of the inputs
   std::vector<JudgedProperty> judgements;
   Measured measured;
 
   bool passes() const noexcept;
 };
 
-/// What the judgements need to know beside the trial.
+/// Data for the judgements beside the trial.
 struct Circumstances {
   const Descriptor& component;
   const Configuration& configuration;
@@ -41,10 +41,10 @@ struct Circumstances {
   bool has_partner = false;
 };
 
-/// Judges everything; each judgement appears once, in a fixed order. Context: setup.
+/// Makes all judgements; each appears once, in a fixed order. Context: setup.
 TrialReport judge(const Trial& trial, const Circumstances& about);
 
-/// "signal 11 (Segmentation fault) in cycle 17"; "" when the scenario came to its end. Context: setup.
+/// "signal 11 (Segmentation fault) in cycle 17"; "" if the scenario reached its end. Context: setup.
 std::string how_it_ended(const PlayEnd& end, const Record& record);
 
 }  // namespace chimera::component_test

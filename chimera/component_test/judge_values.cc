@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks each published value of a run for being written, finite and within the range of its port.
+// Checks that each published value of a run is written, finite and within the range of its port.
 #include "chimera/component_test/judge_values.h"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Are published values sound: written, finite, within what the port declares?
+// Checks published values: written, finite, and within the range of the port.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,9 @@
 
 namespace chimera::component_test {
 
-/// The first unsound value of a row in words ("y[1] is NaN", "tau is 210, outside -200 to 200"); nothing when all are
-/// sound. `counts` are the elements of each out-var in use, `outputs` their values as output_places() packs them,
-/// `valid` their bits. Context: setup.
+/// Describes the first bad value of a row ("y[1] is NaN", "tau is 210, outside -200 to 200"); nothing if all are good.
+/// `counts` are the elements of each out-var in use, `outputs` their values in the layout of output_places(), `valid`
+/// their bits. Context: setup.
 std::optional<std::string> first_unsound(const Configuration& configuration, const Descriptor& component,
                                          std::span<const std::uint32_t> counts, std::span<const std::byte> outputs,
                                          std::uint64_t valid, bool with_ranges);

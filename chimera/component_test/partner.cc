@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Starts the program at the other end of a device by a shell that gives it a pipe for its first line.
+// Starts the program at the other end of a device, with a shell that connects a pipe for its first line.
 #include "chimera/component_test/partner.h"
 
 #include <csignal>
@@ -14,11 +14,11 @@ constexpr std::int64_t kEnd = 2'000'000'000;  // ns between SIGTERM and SIGKILL
 
 }  // namespace
 
-// The program's first line comes through a pipe that a shell makes its standard output.
+// A shell makes a pipe the standard output of the program; its first line arrives there.
 Result<Partner> Partner::start(const std::string& program, Nanoseconds patience) {
   auto pipe = Pipe::open();
   if (!pipe) return Message(pipe.error().message.view()).error(ErrorCode::kSystem, program);
-  // In its folder lie components, and one in Python must not take select.so for its module.
+  // The folder of the program contains components. Without this, a Python program could import select.so as a module.
   constexpr const char* kScript =
       "cd \"$(dirname \"$1\")\" && PYTHONSAFEPATH=1 && export PYTHONSAFEPATH && exec \"$1\" >&3 3>&- </dev/null";
   const char* words[] = {"sh", "-c", kScript, "sh", program.c_str()};

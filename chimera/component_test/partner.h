@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program at the other end of a component's device, for the time of a trial (docs/formats/component-test.md).
+// The program at the other end of the device of a component, during a trial (docs/formats/component-test.md).
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace chimera::component_test {
 
-/// Context: setup; may block. Movable; ends the program with it.
+/// The running program; the destructor ends it. Context: setup; may block. Movable.
 class Partner {
  public:
-  /// Starts `program` and waits for the line that it says first, at most `patience`. Refuses when there is none.
+  /// Starts `program` and waits at most `patience` for its first line. Refuses if none comes.
   static Result<Partner> start(const std::string& program, Nanoseconds patience);
   Partner(Partner&&) noexcept = default;
   Partner& operator=(Partner&&) = delete;

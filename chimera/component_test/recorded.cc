@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording as csv_log writes it, read strictly.
+// Strictly reads a recording in the form of csv_log.
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -30,7 +30,7 @@ struct RecordingPlace {
   }
 };
 
-// "in[1][2]" becomes "NAME[2]" when names[1] is NAME.
+// "in[1][2]" becomes "NAME[2]" if names[1] is NAME.
 std::string renamed(std::string_view word, std::span<const std::string> names) {
   if (names.empty() || !word.starts_with("in[")) return std::string(word);
   std::size_t number = 0;
@@ -40,7 +40,7 @@ std::string renamed(std::string_view word, std::span<const std::string> names) {
   return names[number] + std::string(end + 1, word.data() + word.size());
 }
 
-/// "q[0](rad)": a name and, where it says so, a unit.
+/// "q[0](rad)": a name and an optional unit.
 struct Heading {
   std::string_view name, unit;
 };
@@ -89,7 +89,7 @@ Result<std::optional<double>> read_number(std::string_view field, const Recordin
   return std::optional(value);
 }
 
-/// The rows of the file as they stand, with their times.
+/// Reads the rows of the file unchanged, with their times.
 struct RecordingReader {
   const InputForm& form;
   std::vector<const InputChannel*> columns;

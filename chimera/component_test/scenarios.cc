@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Goes through the rows, faults and bad inputs of a test run inside of the child.
+// Runs the rows, faults and bad inputs of a test inside the child.
 #include "chimera/component_test/scenarios.h"
 
 #include <algorithm>
@@ -14,10 +14,10 @@
 namespace chimera::component_test {
 namespace {
 
-constexpr int kTries = 8;  // signals that a task may need to come back
+constexpr int kTries = 8;  // signals that a task may need to return to ON
 constexpr std::size_t kBadRows = 5;
 constexpr std::size_t kGoodRows = 100;
-constexpr std::size_t kLastRows = 10;  // of them, which must be finite
+constexpr std::size_t kLastRows = 10;  // of the rows; these must be finite
 
 void refuse(Record& record, const char* text) { std::snprintf(record.refusal, sizeof record.refusal, "%s", text); }
 
@@ -34,7 +34,7 @@ std::unique_ptr<SingleTask> begin(const Scenario& scenario) {
   return *std::move(task);
 }
 
-/// Brings the task ON from whatever state it is in, by the mildest means; how it went.
+/// Brings the task from any state to ON, with as few signals as possible; returns the way.
 Return revive(SingleTask& task, Trouble* trouble) {
   Return how = Return::kAtOnce;
   const auto at_least = [&how](Return means) { how = std::max(how, means); };
@@ -84,7 +84,7 @@ void run_rows(const Scenario& scenario, SingleTask& task) {
   }
 }
 
-/// Plays troubles on one task, again and again.
+/// Disturbs one task again and again.
 class Troubles {
  public:
   Troubles(const Scenario& scenario, std::span<const RowRecord> good, SingleTask& task)
@@ -138,7 +138,7 @@ class Troubles {
   }
 
  private:
-  /// Cycles with rows that were accepted before; the number of cycles completed.
+  /// Cycles with rows that were accepted before; returns the number of completed cycles.
   std::size_t run_good(std::size_t n, Trouble* trouble = nullptr) {
     std::size_t completed = 0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -151,7 +151,7 @@ class Troubles {
     }
     return completed;
   }
-  /// Where the outputs that are a safe state lie.
+  /// The places of the outputs that are a safe state.
   std::vector<std::size_t> safe_places() const {
     std::vector<std::size_t> places;
     std::size_t payload = 0;
@@ -167,7 +167,7 @@ class Troubles {
                           false);
   }
 
-  // What leads to the method, with the task ON.
+  // Makes the framework call the method, with the task ON.
   void provoke(std::uint32_t method) {
     switch (method) {
       case CHIMERA_INIT:

@@ -22,7 +22,7 @@ const DraftAlias* find_alias(const DraftTask& task, std::string_view port) {
   return found == task.alias.end() ? nullptr : &*found;
 }
 
-/// Adds to `draft` what it does not say, from `plain`, the description that is made up.
+/// Adds the missing parts of `draft` from `plain`, the generated description.
 struct Filler {
   Draft& draft;
   const Draft& plain;
@@ -74,7 +74,7 @@ Verdict refuse(const std::string& file, Place at, const std::string& message, co
   return verdict;
 }
 
-// Nobody reads the outputs, so what is open in them may be settled by nothing but us.
+// No task reads the outputs, so this function settles their open units, extents and types.
 Verdict judge_alone(const Draft& draft, const LibraryEntry& component, const UnitSystem& units) {
   Verdict verdict = verify(draft, Library::of_entries({component}, units));
   const bool is_open = verdict.report.has("unit-unsolved") || verdict.report.has("extent-unsolved") ||

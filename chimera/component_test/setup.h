@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a component under trial is given: the description with this one task, from NAME.test.yaml and, where that says
-// nothing, made up (docs/formats/component-test.md).
+// The setup of a component under trial: a description with this one task, from NAME.test.yaml. The missing parts are
+// generated (docs/formats/component-test.md).
 #pragma once
 
 #include <string>
@@ -12,20 +12,20 @@
 namespace chimera::component_test {
 
 struct Setup {
-  std::string file;          ///< of the description; empty: none, everything is made up
-  std::string folder;        ///< that relative paths of resources start from; empty: the present one
-  std::string partner_text;  ///< stands for {partner} in resources
+  std::string file;          ///< of the description; empty: none, all parts are generated
+  std::string folder;        ///< base of relative paths of resources; empty: the present folder
+  std::string partner_text;  ///< replaces {partner} in resources
 };
 
-/// The description of a task of `component` alone, judged by every rule of legality with `units`. Refuses in the
-/// report: what the rules refuse, and a description with other tasks. Context: setup; may block.
+/// Verifies the description of a task of `component` alone with `units`. Refuses, in the report, breaches of the rules
+/// and a description with other tasks. Context: setup; may block.
 Verdict arrange(const Setup& setup, const LibraryEntry& component, const UnitSystem& units);
 
-/// The component with everything settled that is open in its out-vars: unit 1, one element, float64. For one whose
-/// outputs nobody reads, so that nothing settles them. Context: setup.
+/// The component with all open properties of its out-vars settled: unit 1, one element, float64. For a component whose
+/// outputs no task reads, so that no reader settles them. Context: setup.
 Descriptor settled(const Descriptor& component);
 
-/// The description that is made up for a component of which nothing is known but its descriptor. Context: setup.
+/// The generated description for a component, from its descriptor alone. Context: setup.
 std::string default_setup(const Descriptor& component);
 
 }  // namespace chimera::component_test

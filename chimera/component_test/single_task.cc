@@ -62,7 +62,7 @@ RowRecord SingleTask::cycle() noexcept {
   row.time_ns = component_->cycle_time().count;
   if (task.profile.rejected != rejected && record_.unsafe++ == 0)
     std::memcpy(record_.unsafe_text, fault_text(), sizeof record_.unsafe_text);
-  task.outbox.clear();  // there is nobody else
+  task.outbox.clear();  // no other task exists
   if (task.background != nullptr && body.answer != Answer::kNoEvent) run_background(task, Method::kCycle, now_);
   set_->on_set_changed();
   return row;

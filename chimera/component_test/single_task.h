@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One task alone under the framework, in virtual time, with everything in our hands: its inputs, its releases, its
-// signals. In the child only.
+// One task alone under the framework, in virtual time. The test controls its inputs, its releases and its signals. Only
+// for the child.
 #pragma once
 
 #include <memory>
@@ -20,28 +20,28 @@ namespace chimera::component_test {
 /// Context: setup.
 class SingleTask {
  public:
-  /// Opens the object and makes the task, in NOT-CREATED. Everything given outlives it. Refuses as SharedObject and
-  /// TaskSet do.
+  /// Opens the object and makes the task, in NOT-CREATED. All arguments must outlive it. Refuses like SharedObject and
+  /// TaskSet.
   static Result<std::unique_ptr<SingleTask>> create(const LibraryEntry& entry, const Configuration& configuration,
                                                     const InputForm& form, Record& record);
 
   State state() const noexcept { return task().state; }
   const Task& task() const noexcept { return set_->tasks()[0]; }
   InstrumentedComponent& component() noexcept { return *component_; }
-  /// The last fault in words.
+  /// The text of the last fault.
   const char* fault_text() const noexcept { return task().faults.last.text; }
 
   /// Publishes a row of inputs.
   void feed(std::span<const std::byte> row) noexcept;
-  /// Carries out a signal; the state afterwards.
+  /// Sends a signal; returns the state afterwards.
   State signal(Signal signal);
-  /// The illegal-configuration flag, for the cycles from here on.
+  /// Sets the illegal-configuration flag for the following cycles.
   void raise_flag(bool is_up) noexcept { set_->flag().raise(is_up); }
-  /// Releases the task once, a period after the last time: its cycle and what it does beside. Requires: ON.
+  /// Releases the task once, a period after the last release, and runs its cycle and background. Requires: ON.
   RowRecord cycle() noexcept;
-  /// The outputs as they are published, packed as output_places() says.
+  /// Copies the published outputs, in the layout of output_places().
   void copy_outputs(std::span<std::byte> to) const noexcept;
-  /// Elements of each output in use.
+  /// Copies the number of elements in use of each output.
   void copy_counts(std::span<std::uint32_t> to) const noexcept;
 
  private:

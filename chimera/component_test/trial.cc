@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a component in forked children: counted under trace, timed three times, and with faults and bad inputs.
+// Runs a component in forked children: once under trace, three times timed, and once with faults and bad inputs.
 #include "chimera/component_test/trial.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace chimera::component_test {
 namespace {
 
-/// Counts the system calls of watched methods, and sees when nothing goes on any more.
+/// Counts the system calls of watched methods, and detects a child that makes no progress.
 class Watcher final : public ChildWatcher {
  public:
   Watcher(Record& record, Nanoseconds patience) : record_(record), patience_(patience) {}
@@ -43,12 +43,12 @@ class Watcher final : public ChildWatcher {
   Nanoseconds since_;
 };
 
-/// By the child.
+/// Runs in the child.
 int live(const std::function<void()>& scenario, Record& record, bool traced) {
   record.is_traced = traced && let_parent_trace();
   try {
     scenario();
-  } catch (const std::exception& fault) {  // of our own: those of a component end in its face
+  } catch (const std::exception& fault) {  // of the framework: the C++ interface catches those of a component
     std::snprintf(record.refusal, sizeof record.refusal, "%s", fault.what());
     return 1;
   }
@@ -92,7 +92,7 @@ Result<Trial> run_trial(const LibraryEntry& entry, const Configuration& configur
   auto end = run([&] { run_inputs(scenario_of(trial.counted)); }, trial.counted.record(), options, true);
   if (!end) return end.error();
   trial.counted_end = *end;
-  if (end->has_hung && trial.counted.record().stage < Stage::kRows) return trial;  // so would the other scenarios
+  if (end->has_hung && trial.counted.record().stage < Stage::kRows) return trial;  // the other scenarios would hang too
   end = run([&] { run_inputs(scenario_of(trial.timed)); }, trial.timed.record(), options, false);
   if (!end) return end.error();
   trial.timed_end = *end;

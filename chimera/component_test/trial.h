@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// One component alone: run again and again, each time in a process of its own, so that its crash is a line of the
-// report.
+// Runs one component alone, several times, each time in its own process, so that a crash becomes a line of the report.
 //
-//   counted    all rows; what its methods ask of the heap and, traced, of the system
-//   timed      the same rows again, untraced, three times; the same outputs are expected. The least time of each cycle
-//              counts: what the machine did meanwhile is not the component's
+//   counted    all rows; counts the calls of its methods to the heap and, traced, to the system
+//   timed      the same rows again, untraced, three times; the outputs must be the same. The least time of each cycle
+//              counts, which excludes other work of the machine
 //   troubled   a fault in each method, bad inputs, spawn and kill again
 #pragma once
 
@@ -20,35 +19,35 @@
 
 namespace chimera::component_test {
 
-/// How a scenario ended.
+/// The end of a scenario.
 struct PlayEnd {
   ProcessEnd process;
-  bool has_hung = false;  ///< nothing happened for TrialOptions::patience
+  bool has_hung = false;  ///< no progress for TrialOptions::patience
 
   bool is_clean() const noexcept { return !has_hung && !process.by_signal && process.code == 0; }
 };
 
 struct TrialOptions {
   Nanoseconds patience = seconds(10);  ///< a method that takes longer hangs
-  std::string folder;                  ///< that relative paths of resources start from; empty: the present one
+  std::string folder;                  ///< base of relative paths of resources; empty: the present folder
 };
 
-/// Everything that was found out about a component.
+/// All results about a component.
 struct Trial {
   Trial(std::size_t rows, std::size_t payload) : counted(rows, payload), timed(rows, payload), troubled(1, payload) {}
 
   SharedRecord counted, timed, troubled;
-  std::vector<std::int64_t> times_ns;  ///< of every completed cycle of all timed plays but the first tenth of each
+  std::vector<std::int64_t> times_ns;  ///< of all completed cycles of all timed runs, without the first tenth of each
   PlayEnd counted_end, timed_end, troubled_end;
 };
 
-/// Runs the component of `entry` as `configuration` says. Refuses when the system gives no process. Call it with one
-/// thread. Context: setup; may block.
+/// Runs the component of `entry` in `configuration`. Refuses if the system cannot start a process. Requires: the caller
+/// has one thread. Context: setup; may block.
 Result<Trial> run_trial(const LibraryEntry& entry, const Configuration& configuration, const InputForm& form,
                         const Inputs& inputs, const TrialOptions& options);
 
-/// The descriptor of the one component that a shared object offers, asked in a process of its own. Refuses, as
-/// SharedObject and describe() do, what is no component, and one that dies of it. Context: setup; may block.
+/// The descriptor of the only component of a shared object, read in its own process. Refuses like SharedObject and
+/// describe(), and refuses an object that kills the process. Context: setup; may block.
 Result<std::string> descriptor_text(const std::string& object_file, const TrialOptions& options);
 
 }  // namespace chimera::component_test

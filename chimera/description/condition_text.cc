@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cuts the text of a condition into a variable, an element of it, a comparison and a value.
+// Splits the text of a condition into a variable, an element, a comparison and a value.
 #include "chimera/description/condition_text.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kForm = "a comparison, as 'speed < 0.1 rad/s'";
 
-// The longer signs first: "<=" begins with "<".
+// The longer signs come first, because "<=" begins with "<".
 constexpr Relation kOrder[] = {Relation::kAtMost,  Relation::kAtLeast, Relation::kEqual,
                                  Relation::kUnequal, Relation::kLess,    Relation::kMore};
 
@@ -23,7 +23,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// "q[2]": takes "[2]" off. False: what stands in brackets is no number.
+// "q[2]": removes "[2]". False if the brackets hold no number.
 bool take_element(std::string_view& name, std::optional<std::uint32_t>& element) {
   if (!name.ends_with(']')) return true;
   const std::size_t open = name.find('[');

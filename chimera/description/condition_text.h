@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The text of a condition, `speed < 0.1 rad/s` or `q[2] >= -1`: which number of which variable is compared with what.
+// The text of a condition, `speed < 0.1 rad/s` or `q[2] >= -1`: a number of a variable, a comparison and a value.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace chimera {
 
-/// As written; whether there is such a variable is not known yet.
+/// A condition as written; its variable is not checked yet.
 struct DraftCondition {
   Word variable;
   std::optional<std::uint32_t> element;  ///< of `[i]`
@@ -20,7 +20,7 @@ struct DraftCondition {
   Node value;  ///< a scalar
 };
 
-/// Adds one fault to `report` when it answers nullopt. `what` names the value in messages. Context: setup.
+/// Returns nullopt after adding one fault to `report`. `what` names the value in messages. Context: setup.
 std::optional<DraftCondition> read_condition(const Node& node, const std::string& what, Report& report);
 
 }  // namespace chimera

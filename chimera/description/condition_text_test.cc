@@ -14,7 +14,7 @@ Node scalar(std::string text) {
   return node;
 }
 
-/// "speed < 0.1 rad/s" in pieces, "speed|-|<|0.1 rad/s"; what is wrong with it otherwise.
+/// "speed < 0.1 rad/s" in pieces, "speed|-|<|0.1 rad/s"; otherwise the text of the fault.
 std::string read(const std::string& text) {
   Report report("demo.yaml");
   const auto condition = read_condition(scalar(text), "'safe_when'", report);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a criticality is written.
+// The words for a criticality.
 #pragma once
 
 #include <array>
@@ -8,10 +8,10 @@
 
 namespace chimera {
 
-/// By TaskSpec::criticality.
+/// Index: TaskSpec::criticality.
 inline constexpr std::array<std::string_view, 3> kCriticalities = {"low", "medium", "high"};
 
-/// The word of `criticality`; those above the highest count as the highest. Context: any.
+/// The word of `criticality`; values above the highest count as the highest. Context: any.
 constexpr const char* criticality_name(std::uint32_t criticality) noexcept {
   return kCriticalities[criticality < kCriticalities.size() ? criticality : kCriticalities.size() - 1].data();
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a description into a draft: the keys of each task, each by a function of its own, and the top level.
+// Reads a description into a draft: one function for each key of a task, and one for the top level.
 #include "chimera/description/draft.h"
 
 #include <array>
@@ -24,7 +24,7 @@ constexpr std::array<std::string_view, 2> kIsolations = {"shared", "process"};
 constexpr std::array<std::string_view, 1> kSwitchKeys = {"switch"};
 constexpr std::array<std::string_view, 2> kTruths = {"false", "true"};
 
-/// A map name -> anything, as pairs; keys have to be names.
+/// A map from names to any values, as pairs; keys must be names.
 std::vector<NamedNode> read_named(const Node& node, const std::string& what, Report& report) {
   std::vector<NamedNode> out;
   if (!expect(node, Node::Kind::kMap, what, report, true)) return out;
@@ -35,7 +35,7 @@ std::vector<NamedNode> read_named(const Node& node, const std::string& what, Rep
 
 using Read = void (*)(const Node&, const std::string& what, DraftTask&, Report&);
 
-/// `{switch: CONFIGURATION}`; nullopt when the node is something else.
+/// `{switch: CONFIGURATION}`; nullopt if the node has another form.
 std::optional<Word> read_switch(const Node& node, const std::string& what, Report& report) {
   refuse_unknown_keys(node, kSwitchKeys, what, report);
   const Node* to = node.find("switch");
@@ -76,7 +76,7 @@ std::optional<DraftReaction> reaction(const Node& node, const std::string& what,
   return out;
 }
 
-/// `{restart: N, within: T, then: REACTION}`; nullopt, with a fault, when something is wrong with it.
+/// `{restart: N, within: T, then: REACTION}`; nullopt, with a fault, if it is wrong.
 std::optional<DraftOnFault> read_restart(const Node& node, const std::string& what, Report& report) {
   DraftOnFault out{.kind = OnFault::kRestart, .configuration = {}, .at = node.at, .restart = {}};
   refuse_unknown_keys(node, kRestartKeys, what, report);
@@ -288,7 +288,7 @@ constexpr std::array<Read, kTaskKeys.size()> kReaders = {
     read_number<&DraftTask::safe_after, 1'000'000>,
 };
 
-/// Reads `name: node` of `tasks`; what cannot be read is left out and stands in `report`.
+/// Reads `name: node` of `tasks`. Parts that cannot be read are omitted, with a fault in `report`.
 DraftTask read_task(const Word& name, const Node& node, Report& report) {
   DraftTask task;
   task.name = task.component = name;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A description as read: every key typed, every value with its place, nothing yet believed.
-// docs/formats/description.md lists the keys; verify() (verify/verify.h) is the only reader of a Draft.
+// A description after reading: every key has a type, every value has its place, and no rule is checked yet.
+// docs/formats/description.md lists the keys; only verify() (verify/verify.h) reads a Draft.
 #pragma once
 
 #include <cstddef>
@@ -21,9 +21,9 @@
 
 namespace chimera {
 
-inline constexpr std::size_t kMaxTasks = 256;  ///< of a description; what is beyond is told and left out
+inline constexpr std::size_t kMaxTasks = 256;  ///< of a description; the reader reports more and omits them
 
-/// A value and where it was written.
+/// A value and its place in the file.
 template <class T>
 struct Located {
   T value{};
@@ -86,7 +86,7 @@ struct DraftStandby {
 
 struct DraftTask {
   Word name;
-  Word component;  ///< `at` is the name's when the key was left out
+  Word component;  ///< `at` is the place of the name if the key is missing
   std::optional<Word> rtpu;
   std::optional<Located<Rate>> rate;
   std::optional<Located<Nanoseconds>> deadline, offset, budget, min_time, stale_after;
@@ -100,7 +100,7 @@ struct DraftTask {
   std::optional<DraftStandby> standby_for;
   std::optional<Located<std::uint64_t>> stack_bytes;
   std::optional<Located<bool>> own_process;
-  bool is_partial = false;  ///< some key could not be read: say nothing about what the task lacks
+  bool is_partial = false;  ///< some key could not be read: report nothing as missing in this task
 };
 
 struct DraftRtpu {
@@ -125,21 +125,21 @@ struct Draft {
   std::vector<NamedNode> operators;
   std::vector<DraftSet> configurations;  ///< empty: none declared
   std::optional<Word> start;
-  bool is_partial = false;  ///< something outside the tasks could not be read
+  bool is_partial = false;  ///< some part outside the tasks could not be read
 };
 
-/// A draft, when the text can be read at all, and what is wrong with the text. A draft with faults in its report
-/// holds what could be read; verify it all the same, so that one report has everything.
+/// A draft, if the text can be read at all, and the faults of the text. A draft with faults holds the readable parts;
+/// verify it all the same, so that one report has all faults.
 struct ReadDescription {
   std::optional<Draft> draft;
   Report report;
-  std::string text;  ///< as it was read; empty when it could not be
+  std::string text;  ///< the text read; empty if it could not be read
 };
 
-/// Reads `text`, naming it `file` in messages. Context: setup.
+/// Reads `text`; messages call it `file`. Context: setup.
 ReadDescription read_description(std::string_view text, std::string_view file);
 
-/// Reads the file at `path`; one above the size limit is refused without being read. Context: setup; may block.
+/// Reads the file at `path`; refuses a file above the size limit without reading it. Context: setup; may block.
 ReadDescription read_description_file(const std::string& path);
 
 }  // namespace chimera

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the text becomes. Wrong texts and their messages are in tests/verify/faulty.
+// Correct texts and their drafts. Wrong texts and their messages are in tests/verify/faulty.
 #include "chimera/description/draft.h"
 
 #include <gtest/gtest.h>

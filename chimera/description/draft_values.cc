@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads names, texts, whole numbers, times and values, with the fault for each kind of mistake.
+// Reads names, texts, whole numbers, times and values, with a fault for each kind of mistake.
 #include "chimera/description/draft_values.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ void add(Report& report, std::string_view rule, const Node& node, std::string me
               .remedy = std::move(remedy)});
 }
 
-/// A whole decimal number without sign; nullopt for anything else and for one above 2^64 - 1.
+/// A whole decimal number without sign; nullopt for any other text and for a number above 2^64 - 1.
 std::optional<std::uint64_t> whole(std::string_view text) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -42,7 +42,7 @@ std::string list(const Names& names) {
   return out.empty() ? "none" : out;
 }
 
-/// A scalar that is not in quotes, for numbers.
+/// Accepts a scalar without quotes, for numbers.
 bool expect_plain(const Node& node, const char* expected, const std::string& what, Report& report) {
   if (node.is_scalar() && !node.quoted) return true;
   add(report, "value-kind", node, what + " is " + written(node) + "; expected " + expected, expected, {},

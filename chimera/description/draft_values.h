@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From one written value to one typed value, or one fault that says what was found and what would be accepted.
-// `what` names the value in messages: "'rate' of task 'pid'".
+// Turns one written value into one typed value, or into one fault: the text found and the form expected. `what` names
+// the value in messages: "'rate' of task 'pid'".
 #pragma once
 
 #include <cstdint>
@@ -22,9 +22,9 @@ bool is_name(std::string_view text) noexcept;
 /// "nothing", "a list", "a map", "'1 kHz'": for messages. Context: setup.
 std::string written(const Node& node);
 
-/// Each of these adds one fault to `report` when it answers nullopt. Context: setup.
+/// Each of these functions returns nullopt after adding one fault to `report`. Context: setup.
 std::optional<Word> read_name(const Node& node, const std::string& what, Report& report);
-/// A key or a list item that has to be a name.
+/// Checks that a key or a list item is a name.
 bool check_name(const Word& word, const std::string& what, Report& report);
 /// Any scalar, as text.
 std::optional<Word> read_text(const Node& node, const std::string& what, Report& report);
@@ -37,16 +37,16 @@ std::optional<Located<std::uint64_t>> read_bytes(const Node& node, std::uint64_t
 /// One of `words`, as its index.
 std::optional<Located<std::size_t>> read_choice(const Node& node, std::span<const std::string_view> words,
                                                 const std::string& what, Report& report);
-/// False, with a fault, when `node` is neither of `kind` nor (where an empty one will do) nothing.
+/// False, with a fault, if `node` is not of `kind`. With `may_be_nothing`, an empty node is legal too.
 bool expect(const Node& node, Node::Kind kind, const std::string& what, Report& report, bool may_be_nothing = false);
-/// One fault for each key that is none of `keys`.
+/// One fault for each key that is not in `keys`.
 void refuse_unknown_keys(const Node& map, std::span<const std::string_view> keys, const std::string& what,
                          Report& report);
 
 /// "'a', 'b', 'c'". Context: setup.
 std::string listed(std::span<const std::string_view> names);
 std::string listed(std::span<const std::string> names);
-/// The name most like `word`, empty when none is close. Context: setup.
+/// The name most like `word`; empty if none is close. Context: setup.
 std::string closest(std::string_view word, std::span<const std::string_view> names);
 
 }  // namespace chimera

@@ -23,10 +23,10 @@ inline constexpr std::array<std::string_view, 2> kTolerateKeys = {"misses", "of"
 
 inline constexpr std::array<std::string_view, 3> kServerKeys = {"kind", "capacity", "period"};
 
-/// Of `standby_for` that is more than a name.
+/// Keys of a `standby_for` with a map.
 inline constexpr std::array<std::string_view, 3> kStandbyKeys = {"task", "stale_after", "hot"};
 
-/// Of a configuration that is more than a list of tasks.
+/// Keys of a configuration with a map.
 inline constexpr std::array<std::string_view, 2> kSetKeys = {"tasks", "safe_when"};
 
 }  // namespace chimera

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A value of a description as it was written, with the place of every part.
+// A value of a description as written, with the place of every part.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace chimera {
 
-/// A word of the text and where it stands.
+/// A word of the text and its place.
 struct Word {
   std::string text;
   Place at;
@@ -19,7 +19,7 @@ struct Word {
   bool empty() const noexcept { return text.empty(); }
 };
 
-/// A scalar, a list or a map, as written. Nothing is interpreted: `1 kHz` is a scalar with this text.
+/// A scalar, a list or a map, as written and not interpreted: `1 kHz` is a scalar with this text.
 struct Node {
   enum class Kind : std::uint8_t { kNone, kScalar, kList, kMap };
 
@@ -33,7 +33,7 @@ struct Node {
   bool is_scalar() const noexcept { return kind == Kind::kScalar; }
   bool is_list() const noexcept { return kind == Kind::kList; }
   bool is_map() const noexcept { return kind == Kind::kMap; }
-  /// Nothing was written (`key:` alone).
+  /// True for an empty value (`key:` alone).
   bool is_none() const noexcept { return kind == Kind::kNone; }
   /// The item under `key`, or nullptr.
   const Node* find(std::string_view key) const noexcept {

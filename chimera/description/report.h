@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is wrong with a description: all faults of one reading, each with its place and its remedy.
-// Rendered as docs/formats/description.md says ("Faults").
+// All faults of a description from one reading, each with its place and its remedy. docs/formats/description.md,
+// "Faults", defines the output.
 #pragma once
 
 #include <cstddef>
@@ -22,19 +22,19 @@ struct Place {
 
 enum class Severity : std::uint8_t { kError, kWarning };
 
-/// One breach of one rule.
+/// A breach of a rule.
 struct Fault {
   std::string_view rule;  ///< one of kRules (description/rule_ids.h); points at static text
   Place at;
   std::string message;   ///< what was found and what was expected, in one sentence
   std::string found;     ///< the offending words as written; may be empty
-  std::string expected;  ///< what would be accepted; may be empty
+  std::string expected;  ///< the accepted values; may be empty
   std::string nearest;   ///< the right name nearest to `found`; may be empty
-  std::string remedy;    ///< what to do, in one line; empty: made from `nearest`, if there is one
+  std::string remedy;    ///< the action to take, in one line; empty: made from `nearest`, if there is one
   Severity severity = Severity::kError;
 };
 
-/// The message with what to do behind it, in one line. Context: setup.
+/// The message followed by the remedy, in one line. Context: setup.
 std::string sentence(const Fault& fault);
 
 /// Every fault of one description. Context: setup; may block.
@@ -42,26 +42,27 @@ class Report {
  public:
   explicit Report(std::string file = {}) : file_(std::move(file)) {}
 
-  /// Keeps `fault`; one equal in place, rule and message is kept once. At most kMaxFaults are kept, the rest counted.
+  /// Adds `fault`; faults equal in place, rule and message are kept once. At most kMaxFaults are kept; more are only
+  /// counted.
   void add(Fault fault);
-  /// Something to know that is no breach of a rule; the same sentence is kept once.
+  /// Adds information that is no breach of a rule; a repeated sentence is kept once.
   void note(std::string text);
-  /// Takes over all faults and notes of `other`.
+  /// Adds all faults and notes of `other`.
   void add_all(const Report& other);
-  /// Brings the faults into the order of their places.
+  /// Sorts the faults by place.
   void sort();
 
   const std::string& file() const noexcept { return file_; }
   std::span<const Fault> faults() const noexcept { return faults_; }
   std::span<const std::string> notes() const noexcept { return notes_; }
-  /// No error; warnings do not count.
+  /// True if it has no error; warnings do not count.
   bool is_legal() const noexcept { return errors_ == 0; }
   std::size_t errors() const noexcept { return errors_; }
   std::size_t warnings() const noexcept { return warnings_; }
   bool has(std::string_view rule) const noexcept;
 
-  /// One `file:line:column: error: message [rule]` line per fault, each followed by its remedy line, if any;
-  /// then `file: note: text` lines.
+  /// One `file:line:column: error: message [rule]` line per fault, then its remedy line, if it has one; after all
+  /// faults, `file: note: text` lines.
   std::string text() const;
   /// One JSON object, without a line end.
   std::string json() const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every legality rule by name. Report::add accepts no other, and tests/verify/coverage.py asks for a faulty
-// description for each: a rule without an example cannot be added.
+// The names of all legality rules. Report::add accepts no other. tests/verify/coverage.py demands a faulty description
+// for each, so no rule lacks an example.
 #pragma once
 
 #include <array>
@@ -100,9 +100,9 @@ inline constexpr std::array<std::string_view, 82> kRules = {
     "unused",
     "standby-same-rtpu",
     "resource-twice",
-    // what run does not have yet
+    // not supported by run
     "not-built",
-    // what run does not begin
+    // refused at the start of run
     "unschedulable",
 };
 

@@ -43,7 +43,7 @@ void add_bad_byte(unsigned char byte, bool is_binary, Place at, Report& report) 
                                   : "save the file as plain UTF-8 text"});
 }
 
-/// A line that is indented with a tab before anything but a comment.
+/// True if a tab indents the line before any text other than a comment.
 bool has_tab_indent(std::string_view line, std::size_t& column) {
   const std::size_t first = line.find_first_not_of(" \t\r");
   if (first == std::string_view::npos || line[first] == '#') return false;
@@ -104,7 +104,7 @@ std::size_t count_entries(std::string_view text) {
 }  // namespace
 
 bool check_text_limits(std::string_view text, Report& report) {
-  if (text.size() > kMaxTextBytes && has_zero(text)) return check_bytes(text, report);  // no text at all
+  if (text.size() > kMaxTextBytes && has_zero(text)) return check_bytes(text, report);  // not a text at all
   if (text.size() > kMaxTextBytes) {
     report.add({.rule = "text-size",
                 .at = {},

@@ -8,12 +8,11 @@
 
 namespace chimera {
 
-/// What to do about a byte 0, which YAML can write as "\0": whoever takes the text would see it end there.
+/// The remedy for a byte 0, which YAML can write as "\0": a reader of the text would stop at it.
 inline constexpr const char* kNoZero = "leave it out: no file, device or name has one";
 
-/// Adds to `report` every breach of the limits of the text. False when the parser must not see it.
-/// What it counts is counted wherever it stands, in quotes and comments too, so nothing can hide from it.
-/// Context: setup; O(size), no memory.
+/// Adds every breach of the limits to `report`. False if the parser must not read the text. It counts everywhere, even
+/// in quotes and comments, so that no text evades a limit. Context: setup; O(size), no memory.
 bool check_text_limits(std::string_view text, Report& report);
 
 }  // namespace chimera

@@ -31,12 +31,12 @@ struct Bracket {
   Place at;
 };
 
-/// Walks through the text and follows its brackets; quoted texts and comments are passed over.
+/// Reads the text and matches its brackets; skips quoted texts and comments.
 class Brackets {
  public:
   explicit Brackets(std::string_view text) : text_(text) {}
 
-  /// The bracket that is wrong, or nothing.
+  /// The fault of a wrong bracket, or nothing.
   std::optional<Fault> find() {
     for (; i_ < text_.size(); step()) {
       const char c = text_[i_];
@@ -87,7 +87,7 @@ class Brackets {
   std::vector<Bracket> open_;
 };
 
-/// The line and where its first word begins: behind the indentation and the '-' of a list.
+/// A line and the column of its first word, behind the indentation and the '-' of a list.
 struct IndentedLine {
   std::string_view text;
   std::size_t first;
@@ -104,7 +104,7 @@ std::vector<IndentedLine> lines_to(std::string_view text, std::uint32_t last) {
   return lines;
 }
 
-/// `kp:0.2`: a word, and the ':' without its space.
+/// `kp:0.2`: a word and a ':' without its space.
 std::optional<Fault> glued_key(const IndentedLine& line, std::uint32_t number) {
   const std::size_t colon = line.text.find(':', line.first);
   if (colon == std::string_view::npos || colon + 1 >= line.text.size()) return std::nullopt;
@@ -115,7 +115,7 @@ std::optional<Fault> glued_key(const IndentedLine& line, std::uint32_t number) {
                "write '" + std::string(key) + ": " + std::string(line.text.substr(colon + 1, 40)) + "'");
 }
 
-/// A line that is deeper than the one before, which has its value already.
+/// True for a line that is deeper than the line before, which already has its value.
 bool is_deeper_below_a_value(const std::vector<IndentedLine>& lines, std::uint32_t at) {
   if (at < 2 || at > lines.size()) return false;
   const std::string_view before = lines[at - 2].text.substr(0, lines[at - 2].text.find_last_not_of(" \r") + 1);
@@ -126,7 +126,7 @@ bool is_deeper_below_a_value(const std::vector<IndentedLine>& lines, std::uint32
 
 Fault yaml_fault(std::string_view text, Place at, std::string_view reason) {
   const std::vector<IndentedLine> lines = lines_to(text, at.line);
-  for (std::size_t i = lines.size(); i > 0; --i)  // the nearest before the place where the parser gave up
+  for (std::size_t i = lines.size(); i > 0; --i)  // the nearest line before the place where the parser stopped
     if (auto glued = glued_key(lines[i - 1], static_cast<std::uint32_t>(i))) return *std::move(glued);
   if (auto bracket = Brackets(text).find()) return *std::move(bracket);
   return fault(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is wrong with a text that is no YAML: the parser says where it gave up, which is behind the mistake.
+// Finds the mistake in a text that is no YAML. The parser only reports where it stopped, which is behind the mistake.
 #pragma once
 
 #include <string_view>
@@ -8,8 +8,8 @@
 
 namespace chimera {
 
-/// The fault of `text`, at which the parser gave up at `at` saying `reason`: the place of the mistake where it can be
-/// found (a bracket that nobody closes, a ':' without a space), else `at`, and what to do. Context: setup.
+/// The fault of `text`, if the parser stopped at `at` with `reason`. Its place is the mistake, if it can be found (an
+/// open bracket, a ':' without a space); otherwise `at`. It has a remedy. Context: setup.
 Fault yaml_fault(std::string_view text, Place at, std::string_view reason);
 
 }  // namespace chimera

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// yaml-cpp reports events and we build the tree: its own tree would keep a key twice in silence, drop anchors
-// before anyone sees them, and cost ten times the memory.
+// Builds the tree from the events of yaml-cpp. The tree of yaml-cpp would keep a repeated key without an error, drop
+// anchors before any check, and need ten times the memory.
 #include "chimera/description/yaml_reader.h"
 
 #include <yaml-cpp/eventhandler.h>
@@ -100,7 +100,7 @@ class TreeBuilder : public YAML::EventHandler {
     return mark.line == line_ && at < text_.size() ? text_[at] : ' ';
   }
 
-  /// The node where the next event belongs: the value of the pending key, the next item, or the root.
+  /// The node for the next event: the value of the pending key, the next item, or the root.
   Node& begin(Node::Kind kind, const YAML::Mark& mark) {
     if (depth_ == kMaxNesting) {
       refuse("text-nesting", mark, "more than " + std::to_string(kMaxNesting) + " levels of nesting",
@@ -110,7 +110,7 @@ class TreeBuilder : public YAML::EventHandler {
     Node& node = slot();
     if (&node == &key_ && kind != Node::Kind::kScalar) refuse_key(mark);
     node.kind = kind;
-    // What is not there has no place of its own; the parser notices at the next word, lines below.
+    // A missing value has no place of its own; the parser reports the next word, possibly lines below.
     node.at = place(mark);
     const bool has_key = depth_ > 0 && open_[depth_ - 1]->is_map() && &node != &key_;
     if (kind == Node::Kind::kNone && has_key && node.at.line > open_[depth_ - 1]->keys.back().at.line)
@@ -154,7 +154,7 @@ class TreeBuilder : public YAML::EventHandler {
   int line_ = 0;
 };
 
-/// Refuses whatever follows the first document.
+/// Refuses any text after the first document.
 class NoMore : public TreeBuilder {
  public:
   NoMore(std::string_view text, Report& report) : TreeBuilder(text, report), report_(report) {}
@@ -173,7 +173,7 @@ class NoMore : public TreeBuilder {
   Report& report_;
 };
 
-/// Takes every key out that stands twice in its map; the first one stays.
+/// Removes repeated keys of each map; the first one stays.
 void refuse_duplicates(Node& node, Report& report) {
   std::unordered_map<std::string_view, Place> first;
   std::vector<std::size_t> kept;
@@ -206,11 +206,11 @@ void refuse_duplicates(Node& node, Report& report) {
   for (Node& item : node.items) refuse_duplicates(item, report);
 }
 
-/// A stream over the text itself: yaml-cpp wants one, and a copy would double the memory.
+/// A stream over the text itself, because yaml-cpp needs a stream and a copy would double the memory.
 class TextBuffer : public std::streambuf {
  public:
   explicit TextBuffer(std::string_view text) {
-    char* begin = const_cast<char*>(text.data());  // only ever read
+    char* begin = const_cast<char*>(text.data());  // only read
     setg(begin, begin, begin + text.size());
   }
 };

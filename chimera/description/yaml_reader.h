@@ -16,9 +16,9 @@ inline constexpr std::size_t kMaxNesting = 32;
 inline constexpr std::size_t kMaxEntries = 32768;
 inline constexpr std::size_t kMaxValueBytes = 1024;
 
-/// The tree of the only document of `text`. Breaches are added to `report`; nullopt when no tree can be had.
-/// A tree may come together with faults (a key twice): go on, so that one report has them all.
-/// Time and memory are bounded by the limits above. Context: setup.
+/// The tree of the only document in `text`. Adds breaches to `report`; nullopt if no tree can be built. A tree may come
+/// with faults (a repeated key): continue, so that one report has all of them. Time and memory are bounded by the
+/// limits above. Context: setup.
 std::optional<Node> read_yaml(std::string_view text, Report& report);
 
 }  // namespace chimera

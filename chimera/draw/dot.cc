@@ -29,7 +29,7 @@ std::string label(const Box& box) {
 bool is_output(PortKind kind) { return kind == PortKind::kOut || kind == PortKind::kOutConst; }
 bool is_constant(PortKind kind) { return kind == PortKind::kInConst || kind == PortKind::kOutConst; }
 
-/// Both ends of one variable, as node names.
+/// The producers and readers of one variable, as node names.
 struct VariableLine {
   std::vector<std::string> from, to;
   bool is_constant = false;
@@ -55,7 +55,7 @@ void append_line(std::string& out, const std::string& variable, const VariableLi
     out += "  " + line.from[0] + " -> " + line.to[0] + " [label=" + quoted(variable) + style + "];\n";
     return;
   }
-  // A dot where the line fans out, or an open end where nobody writes or reads.
+  // A dot where the line branches, or an open end if the variable has no writer or no reader.
   out += "  " + name + " [shape=point, xlabel=" + quoted(variable) + "];\n";
   for (const std::string& from : line.from) out += "  " + from + " -> " + name + " [arrowhead=none" + style + "];\n";
   for (const std::string& to : line.to) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws a schedule as an SVG chart: a row a task, with marks for releases and deadlines.
+// Draws a schedule as an SVG chart: a row for each task, with marks for releases and deadlines.
 #include "chimera/draw/gantt.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNames = 190, kWidth = 720, kRow = 30, kBar = 16, kHead = 58, kFoot = 40, kMargin = 20;
 constexpr double kLeft = kMargin + kNames;
-constexpr double kLeastApart = 6;        // releases closer together are not drawn
+constexpr double kLeastApart = 6;        // closer releases are not drawn
 constexpr std::size_t kMostLetters = 24;  // of a name
 
 template <class... Values>
@@ -27,7 +27,7 @@ std::string label(double x, double y, const std::string& text, const char* style
   return format("<text x=\"%.1f\" y=\"%.1f\" %s>", x, y, style) + escaped(text) + "</text>\n";
 }
 
-/// The whole name is what a viewer shows when it is pointed at.
+/// A viewer shows the whole name when the pointer is on it.
 std::string name_label(double x, double y, const std::string& name) {
   constexpr const char* kStyle = "font-size=\"13\"";
   if (name.size() <= kMostLetters) return label(x, y, name, kStyle);

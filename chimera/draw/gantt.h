@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who holds a processor when, a row for each task: releases and deadlines stand out.
+// Shows which task holds a processor at each time: a row for each task, with releases and deadlines.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ struct GanttRow {
   std::string name;
   std::string note;  ///< beside the name, smaller; may be empty
   Nanoseconds period, deadline;  ///< released at 0 and every period, due `deadline` later
-  bool is_late = false;          ///< drawn in the colour of trouble
+  bool is_late = false;          ///< drawn in the colour of faults
   std::vector<std::pair<Nanoseconds, Nanoseconds>> runs;  ///< from, to
 };
 

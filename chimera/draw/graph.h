@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture of an application the papers' way: rounded boxes, inputs left, outputs right, constants on top,
-// resources below, dots where one line fans out (1994 paper, figures 2 to 4).
+// A picture of an application in the style of the papers: rounded boxes, inputs left, outputs right, constants on top,
+// resources below, dots where a line branches (1994 paper, figures 2 to 4).
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,17 @@ namespace chimera::draw {
 
 enum class PortKind : std::uint8_t { kIn, kOut, kInConst, kOutConst, kResource };
 
-/// A port of a box. Ports with the same `variable` are joined by a line, from the outputs to the inputs.
+/// A port of a box. A line joins ports with the same `variable`, from the outputs to the inputs.
 struct Port {
   PortKind kind = PortKind::kIn;
   std::string name;
-  std::string variable;  ///< a resource: what it stands for; empty: joined to nothing
+  std::string variable;  ///< of a resource: its text; empty: not linked
 };
 
 /// A task.
 struct Box {
   std::string name;
-  std::string component;  ///< left out of the picture when it is the name
+  std::string component;  ///< omitted from the picture if equal to the name
   std::string rate;       ///< as text, "1 kHz"; may be empty
   std::string state;      ///< "ON"; may be empty
   std::vector<Port> ports;
@@ -30,12 +30,12 @@ struct Box {
 struct Graph {
   std::string title;
   std::vector<Box> boxes;
-  std::vector<std::string> given;  ///< variables that no box makes: the operator or the file does
+  std::vector<std::string> given;  ///< variables without a box that produces them: from the operator or the file
 };
 
 /// The graph for Graphviz. Context: setup.
 std::string dot(const Graph& graph);
-/// A whole SVG document, laid out here: layers by data flow, lines that go back run below. Context: setup.
+/// A whole SVG document with its layout: layers by data flow; lines that go back run below. Context: setup.
 std::string svg(const Graph& graph);
 /// Lines of at most 100 columns for a terminal. Context: setup.
 std::string text(const Graph& graph);

@@ -46,7 +46,7 @@ TEST(Graph, ALoopWithoutSourceStillHasColumns) {
   EXPECT_EQ(columns_of(loop), (std::vector<std::size_t>{0, 1}));
 }
 
-/// What every picture keeps, whatever it shows.
+/// Checks properties of every picture.
 void expect_sound(const Graph& graph) {
   const Layout layout = lay_out(graph);
   std::set<int> tracks;

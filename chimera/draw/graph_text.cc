@@ -10,7 +10,7 @@ namespace chimera::draw {
 namespace {
 
 constexpr std::size_t kSide = 32;   // columns left of a box
-constexpr std::size_t kInner = 24;  // inside it
+constexpr std::size_t kInner = 24;  // columns inside a box
 constexpr std::size_t kRight = 34;
 
 std::string cut(const std::string& text, std::size_t columns) {

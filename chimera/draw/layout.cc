@@ -24,11 +24,11 @@ bool feeds(const Box& from, const Box& to) {
   return false;
 }
 
-/// Forward edges: those of a depth-first walk that do not lead back to a box still being walked.
+/// Forward links: those of a depth-first walk that do not lead back to a box on the present path.
 std::vector<std::vector<std::size_t>> forward_edges(const Graph& graph) {
   const std::size_t n = graph.boxes.size();
   std::vector<std::vector<std::size_t>> forward(n);
-  std::vector<int> seen(n, 0);  // 0 not yet, 1 being walked, 2 done
+  std::vector<int> seen(n, 0);  // 0 not visited, 1 on the path, 2 done
   const std::function<void(std::size_t)> walk = [&](std::size_t i) {
     seen[i] = 1;
     for (std::size_t k = 0; k < n; ++k) {
@@ -38,7 +38,7 @@ std::vector<std::vector<std::size_t>> forward_edges(const Graph& graph) {
     }
     seen[i] = 2;
   };
-  // Boxes that nobody feeds come first, so that a loop behind them is cut where they enter it.
+  // Boxes without inputs from other boxes come first, so that a loop behind them is cut at its entry.
   for (const bool sources : {true, false}) {
     for (std::size_t i = 0; i < n; ++i) {
       const bool is_fed = std::any_of(graph.boxes.begin(), graph.boxes.end(), [&](const Box& b) {
@@ -76,7 +76,7 @@ Placed measure(const Graph& graph, std::size_t index) {
 
 int labels_height(std::size_t count) { return count == 0 ? 0 : static_cast<int>(count) * kStep + 16; }
 
-/// Boxes of one column, from the top, rows on the grid that all columns share.
+/// Stacks the boxes of one column, from the top, on the row grid that all columns share.
 int stack(std::vector<Placed*>& column, const Graph& graph, int top) {
   int y = top;
   for (Placed* placed : column) {
@@ -89,7 +89,7 @@ int stack(std::vector<Placed*>& column, const Graph& graph, int top) {
   return y;
 }
 
-/// Orders a column by the mean height of what feeds its boxes.
+/// Orders a column by the mean height of the boxes that feed it.
 void order(std::vector<Placed*>& column, const Layout& layout, const Graph& graph) {
   const auto pull = [&](const Placed* placed) {
     int sum = 0, count = 0;

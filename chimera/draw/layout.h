@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where everything of a picture goes: boxes in columns by data flow, one vertical track per line between columns,
-// one horizontal lane below all boxes per line that goes back or over a column. Lengths in pixels.
+// Computes the places in a picture. Boxes form columns by data flow, with one vertical track per line between columns.
+// Each line that goes back or over a column has a horizontal lane below all boxes. Lengths in pixels.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ namespace chimera::draw {
 inline constexpr int kRow = 22;       ///< distance of ports of one side
 inline constexpr int kStep = 14;      ///< distance of tracks, lanes and staggered labels
 inline constexpr int kLetter = 7;     ///< width reserved for a letter
-inline constexpr int kStub = 16;      ///< a line that leads nowhere else
+inline constexpr int kStub = 16;      ///< length of a line without a target
 
 inline int width_of(const std::string& text) { return static_cast<int>(text.size()) * kLetter; }
 
@@ -43,13 +43,14 @@ struct Layout {
   int width = 0, height = 0;
 };
 
-/// The layers of `graph`: a box stands right of all that feed it, but for lines that close a loop. Context: setup.
+/// The layers of `graph`: a box lies right of all boxes that feed it, except over lines that close a loop. Context:
+/// setup.
 std::vector<std::size_t> columns_of(const Graph& graph);
 
-/// Context: setup. The graph must outlive the layout.
+/// Computes a layout. Requires: the graph outlives it. Context: setup.
 Layout lay_out(const Graph& graph);
 
-/// The lines of text inside a box: name, component where it differs, rate and state.
+/// The lines of text inside a box: name, component if it differs, rate and state.
 std::vector<std::string> head_of(const Box& box);
 
 }  // namespace chimera::draw

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kWidth = 960, kLeft = 78, kRight = 22, kTop = 58, kPanel = 210, kLegendRow = 20, kBetween = 16;
 constexpr double kInner = kWidth - kLeft - kRight;
-// Told apart by people with any colour vision (Okabe and Ito), yellow left out because it is faint on white.
+// Colours that people with any colour vision can distinguish (Okabe and Ito), without yellow, which is faint on white.
 constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"};
 constexpr const char* kDashes[] = {"", "7 3", "2 3"};  // from the eighth curve of a panel on
 
@@ -85,7 +85,7 @@ std::vector<Panel> panels_of(const Plot& plot) {
   return panels;
 }
 
-/// One picture being drawn.
+/// A picture under construction.
 class PlotPage {
  public:
   explicit PlotPage(const Plot& plot) : plot_(plot), panels_(panels_of(plot)) {
@@ -207,7 +207,7 @@ class PlotPage {
     rectangle(kLeft, panel.top, kInner, kPanel, "fill=\"none\" stroke=\"#667085\"");
   }
 
-  /// One curve as strokes; false when nothing of it is finite.
+  /// Draws one curve as strokes; false if it has no finite value.
   bool draw(const Panel& panel, const Curve& curve, std::size_t index) {
     std::string path;
     bool is_down = false, is_drawn = false;
@@ -222,7 +222,7 @@ class PlotPage {
       if (!std::isfinite(curve.points[i].value)) is_down = false, ++i;
       else i = column(panel, curve, i, to);
     }
-    // A lone point is a line of no length: with round ends it is a dot.
+    // A single point is a line of length 0; its round ends make it a dot.
     body_ += is_drawn ? "<path d=\"" + path.substr(1) + "\" stroke-linecap=\"round\" " + style(index) + "/>\n" : "";
     return is_drawn;
   }

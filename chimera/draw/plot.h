@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values over time or frequency as a picture: one panel for each unit (or more), one below the other over one axis,
-// a colour a channel.
+// Values over time or frequency as a picture: at least one panel for each unit, stacked over one axis, with a colour
+// for each channel.
 #pragma once
 
 #include <limits>
@@ -12,18 +12,18 @@ namespace chimera::draw {
 
 struct PlotPoint {
   double at = 0;     ///< s; over frequency Hz, above 0
-  double value = 0;  ///< in the unit of the curve; not finite: the line ends here and starts again behind it
+  double value = 0;  ///< in the unit of the curve; not finite: the line has a gap here
 };
 
 struct Curve {
   std::string name;
   std::string unit = "1";
   std::vector<PlotPoint> points;  ///< in order of time
-  int panel = 0;                  ///< curves of one unit stand in one panel where this is the same
+  int panel = 0;                  ///< curves of one unit with an equal number share a panel
   bool is_held = false;  ///< a value holds until the next one: drawn as steps, not as a line from one to the next
 };
 
-/// A time from which something is missing: hatched over the whole height, with its text.
+/// A time range with missing values: hatched over the whole height, with its text.
 struct PlotGap {
   double from = 0, to = 0;  ///< s
   std::string text;         ///< "12 rows of pid lost"
@@ -39,7 +39,7 @@ struct Plot {
   double level = std::numeric_limits<double>::quiet_NaN();
   std::string level_unit;
   bool is_over_frequency = false;  ///< `at` is a frequency: its axis is logarithmic
-  std::string across = {};         ///< what `at` is, when it is neither time nor frequency: "kp [N.m/rad]"
+  std::string across = {};         ///< name of `at`, if it is neither time nor frequency: "kp [N.m/rad]"
 };
 
 /// Marks of an axis: round numbers (1, 2, 5 times a power of ten) that lie within [low, high], about `wanted` of them,
@@ -49,8 +49,9 @@ std::vector<double> axis_marks(double low, double high, int wanted);
 /// Marks of a logarithmic axis: 1, 2 and 5 times the powers of ten within [low, high], 0 < low. Context: setup.
 std::vector<double> decade_marks(double low, double high);
 
-/// A whole SVG document. A curve with more points than the picture has columns shows the least and the greatest of each
-/// column, so that no peak is lost. Without any finite point the axes stand alone and say so. Context: setup.
+/// A whole SVG document. If a curve has more points than the picture has columns, each column shows its least and
+/// greatest value, so that no peak is lost. Without any finite point the picture has only axes and a note. Context:
+/// setup.
 std::string svg(const Plot& plot);
 
 }  // namespace chimera::draw

@@ -44,7 +44,7 @@ int Router::place_channel(std::size_t channel, int x) {
   x += std::max(labels, channel == 0 ? 0 : kStub);
   for (Line& line : lines_) {
     if (line.is_used() && line.from.box->column + 1 == channel) line.track = x += kStep;
-    // Far inputs of one line and one column share a track.
+    // Distant inputs of one line in one column share a track.
     int shared = 0;
     for (std::size_t i = 0; i < line.far.size(); ++i) {
       if (line.far[i].box->column != channel) continue;

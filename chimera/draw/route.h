@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines of a picture: each output has a vertical track in the channel right of its column; what it feeds in the
-// next column branches off there, what it feeds elsewhere is reached by a lane below all boxes.
+// The lines of a picture. Each output has a vertical track in the channel right of its column. Inputs in the next
+// column branch off there; all other inputs are reached by a lane below all boxes.
 #pragma once
 
 #include <cstddef>
@@ -10,16 +10,17 @@
 
 namespace chimera::draw {
 
-/// Context: setup. Channel c lies left of column c. Use: place_channel() for every channel in order, then draw().
+/// Routes lines. Channel c lies left of column c. Call place_channel() for every channel in order, then draw().
+/// Context: setup.
 class Router {
  public:
-  /// Finds the lines between the boxes of `layout`, whose columns and heights are settled.
+  /// Finds the lines between the boxes of `layout`; its columns and heights are final.
   Router(Layout& layout, std::size_t n_columns);
 
-  /// Puts the tracks of a channel that begins at `x`; gives where it ends.
+  /// Places the tracks of a channel that begins at `x`; returns its end.
   int place_channel(std::size_t channel, int x);
 
-  /// Adds all pieces to the layout, lanes from `bottom` on; gives the lowest y used.
+  /// Adds all pieces to the layout, lanes from `bottom` on; returns the lowest y used.
   int draw(int bottom);
 
  private:
@@ -27,13 +28,13 @@ class Router {
     const Placed* box = nullptr;
     std::size_t port = 0;
   };
-  /// One output and what it feeds.
+  /// One output and the inputs that it feeds.
   struct Line {
     Pin from;
     std::vector<Pin> near;        ///< inputs in the next column
     std::vector<Pin> far;         ///< all others
     int track = 0;                ///< x right of the output
-    std::vector<int> far_tracks;  ///< x left of each far input's column, as `far`
+    std::vector<int> far_tracks;  ///< x left of the column of each far input, ordered like `far`
     bool is_used() const noexcept { return !near.empty() || !far.empty(); }
   };
   void find_lines();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws a graph of tasks, laid out and routed, as an SVG picture.
+// Draws a graph of tasks as an SVG picture, after layout and routing.
 #include <algorithm>
 
 #include "chimera/draw/graph.h"
@@ -11,7 +11,7 @@ namespace {
 
 std::string n(int value) { return std::to_string(value); }
 
-/// One document being written.
+/// A document under construction.
 class SvgPage {
  public:
   void words(int x, int y, const std::string& what, const char* style, const char* anchor = "start") {
@@ -47,7 +47,7 @@ class SvgPage {
 constexpr const char* kArrow = " marker-end=\"url(#a)\"";
 constexpr const char* kBackArrow = " marker-start=\"url(#a)\"";
 
-/// The name of a port and, where it differs, what it is linked to.
+/// The name of a port and, if it differs, its link.
 std::string link_text(const Port& port, const char* between) {
   return port.variable.empty() || port.variable == port.name ? port.name : port.name + between + port.variable;
 }

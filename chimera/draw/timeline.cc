@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a schedule as a line of letters, one for each unit of time, with a legend.
+// Writes a schedule as a line of letters, one for each interval of time, with a legend.
 #include "chimera/draw/timeline.h"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ std::vector<std::pair<char, std::string>> legend_of(std::span<const std::string>
   return legend;
 }
 
-/// Execution time of each task in each unit that anybody ran in.
+/// Execution time of each task in each interval with a running task.
 using Shares = std::map<std::int64_t, std::map<std::uint32_t, std::int64_t>>;
 
 void add(Shares& shares, const TapRecord& record, Nanoseconds origin, Nanoseconds unit, Nanoseconds duration) {
@@ -79,7 +79,7 @@ std::string text(const Timeline& timeline) {
     std::snprintf(number, sizeof number, "%8zu  ", at);
     all += number + timeline.letters.substr(at, kLine) + "\n";
   }
-  std::size_t others = 0;  // for whom no letter is left
+  std::size_t others = 0;  // tasks without a letter
   for (const auto& [letter, name] : timeline.legend) {
     if (letter == '?' && others++ > 0) continue;
     all += std::string("          ") + letter + " = " + name + "\n";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state of one component at work: memory of its size and alignment, constructed and destroyed by the component.
+// Memory of the size and alignment of one component state. The component constructs and destroys the state.
 #pragma once
 
 #include <utility>
@@ -9,12 +9,12 @@
 
 namespace chimera {
 
-/// Owns one constructed state. Its address never changes: ports are bound into it. Movable as a handle.
+/// Owns one constructed state. Its address never changes, because ports are bound into it. Movable as a handle.
 class ComponentState {
  public:
-  /// Allocates state_size zeroed bytes and constructs. Refuses when the component's constructor fails (with its
-  /// text), when it was not described properly (a port outside the state, say), and when there is no memory.
-  /// Context: setup; may block.
+  /// Allocates state_size zeroed bytes and constructs the state. Refuses if the constructor of the component fails
+  /// (with its text), if the component is described wrongly (for example, a port outside the state), or if memory is
+  /// short. Context: setup; may block.
   static Result<ComponentState> make(const chimera_component& component);
 
   ComponentState(ComponentState&& other) noexcept

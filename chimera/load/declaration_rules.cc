@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules a declaration must keep, whether it came from an object or from a file. One function per rule.
+// The rules for a declaration, from an object or from a file. One function for each rule.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -10,7 +10,7 @@
 namespace chimera {
 namespace {
 
-/// "" when the rule is kept, else why not.
+/// "" if the declaration keeps the rule, otherwise the reason.
 using Verdict = std::string;
 
 bool is_type_name(std::string_view text) {
@@ -160,7 +160,7 @@ Verdict safety_rule(const PortDescriptor& port) {
   return {};
 }
 
-/// One plain value of an initial: no NaN, truth values 0 or 1, text that ends.
+/// A plain initial value: no NaN, truth values 0 or 1, and a text with its closing zero.
 Verdict value_rule(std::uint32_t type, const std::byte* at, std::uint32_t size, const PortDescriptor* ranged) {
   double number = 0;
   if (type == CHIMERA_BOOL && std::to_integer<unsigned>(*at) > 1) return "a bool that is neither 0 nor 1";
@@ -252,7 +252,7 @@ Verdict port_rules(const PortDescriptor& port) {
   return {};
 }
 
-/// An extent called like a port must be a constant whole number, and mean the same everywhere.
+/// An extent with the name of a port must be a constant whole number, with one meaning everywhere.
 Verdict extent_rule(const Descriptor& descriptor, const PortDescriptor& port, const Extent& extent) {
   if (extent.is_literal()) return {};
   const PortDescriptor* giver = descriptor.port(extent.symbol);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What describe() and complete() refuse, rule by rule.
+// The declarations that describe() and complete() refuse, rule by rule.
 #include <gtest/gtest.h>
 
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the pointers of a declaration to owned data. The rules themselves are in declaration_rules.cc.
+// Copies a declaration with pointers into owned data. The rules are in declaration_rules.cc.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -21,7 +21,7 @@ Error refused(const std::string& place, const std::string& why) {
 
 std::string text_of(const char* text) { return text == nullptr ? std::string() : std::string(text); }
 
-/// Copies `count` values of a plain type; strings end at their zero, so what follows it cannot differ.
+/// Copies `count` values of a plain type. Strings end at their zero, so bytes behind it cannot make copies differ.
 void copy_plain(std::byte* to, const std::byte* from, std::uint32_t type, std::uint32_t size, std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i, to += size, from += size) {
     const std::size_t used =
@@ -168,7 +168,7 @@ Result<void> check_version(const chimera_component& component) {
                                     ", and this chimera needs ABI " + std::to_string(CHIMERA_ABI_VERSION) +
                                     ": rebuild it");
   }
-  // One that ends before a member was built before there was one.
+  // A smaller struct_size is legal: an older object was built before the last members existed.
   if (component.struct_size != sizeof(chimera_component) &&
       component.struct_size != offsetof(chimera_component, host_size) &&
       component.struct_size != offsetof(chimera_component, n_choices) &&

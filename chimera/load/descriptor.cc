@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares two descriptors of one component and says where they differ.
+// Compares two descriptors of one component and names the difference.
 #include "chimera/load/descriptor.h"
 
 #include <algorithm>
@@ -32,8 +32,8 @@ std::string hex(const std::vector<std::byte>& bytes) {
   return text;
 }
 
-/// Everything that narrows the values. A port without the later of these says what it said before there were any, so
-/// that older fingerprints hold.
+/// All limits of the values, as text. A port without the newer limits gives the same text as before, so that older
+/// fingerprints stay equal.
 std::string range_text(const PortDescriptor& port) {
   std::string range = port.has_range ? "[" + number(port.min) + ", " + number(port.max) + "]" : "none";
   if (!port.at_least.empty()) range += ", at least " + port.at_least;
@@ -44,7 +44,7 @@ std::string range_text(const PortDescriptor& port) {
   return range;
 }
 
-/// What one side says of one thing, in the order in which differences are named.
+/// One property of a descriptor, as text. Properties are compared in this order.
 struct Saying {
   std::string_view what;
   std::string says;
@@ -156,7 +156,7 @@ Result<void> match(const Descriptor& file, const Descriptor& object) {
 }
 
 std::uint64_t fingerprint(const Descriptor& descriptor) {
-  // FNV-1a over the same sayings that match() compares, so the two cannot drift apart.
+  // FNV-1a over the texts that match() compares, so that fingerprint and match() always agree.
   std::uint64_t hash = 0xcbf29ce484222325u;
   const auto add = [&hash](std::string_view text) {
     for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;

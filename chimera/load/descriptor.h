@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a component says about itself, as plain owned data: the declaration of task/abi.h without its pointers.
-// Checking, browsing and drawing read descriptors and never run component code. The file form is
-// docs/formats/descriptor.md (catalogue/descriptor_json.h).
+// The description of a component as plain owned data: the declaration of task/abi.h without its pointers. Checking,
+// browsing and drawing read descriptors and never run component code. Files have the form of docs/formats/descriptor.md
+// (catalogue/descriptor_json.h).
 #pragma once
 
 #include <array>
@@ -46,11 +46,11 @@ struct PortDescriptor {
   bool has_range = false;
   double min = 0, max = 0;            ///< in `unit`; count when has_range
   std::string at_least{};             ///< in-const: the in-const that no element is below; "" for none
-  std::vector<std::string> one_of{};  ///< in-const of text: the words it may be; empty: any
+  std::vector<std::string> one_of{};  ///< in-const of text: the legal words; empty: any
   bool names_configuration = false;   ///< in-const of text: a configuration of the description, or empty
-  bool safe_state = false;            ///< out-var of bool: the device is as the flag asks; resource: it never moves
-  bool shared = false;                ///< resource: several tasks may have it open at one time
-  std::vector<Extent> extents{};      ///< `shape`, parsed
+  bool safe_state = false;            ///< out-var of bool: the device obeys the flag; resource: it never moves
+  bool shared = false;                ///< resource: several tasks may open it together
+  std::vector<Extent> extents{};      ///< the parsed `shape`
   std::vector<FieldDescriptor> fields{};
   std::vector<std::byte> initial{};    ///< whole elements, padding zero: none, 1 (for all) or max_count()
 
@@ -60,7 +60,7 @@ struct PortDescriptor {
   bool operator==(const PortDescriptor&) const = default;
 };
 
-/// One component. `valid(descriptor)` holds for every one that describe() or the file reader hands out.
+/// A component. `valid(descriptor)` holds for each descriptor from describe() or from the file reader.
 struct Descriptor {
   std::string name{};
   std::string doc{};
@@ -70,13 +70,13 @@ struct Descriptor {
   std::uint32_t state_size = 0;
   std::uint32_t state_align = 8;
   std::array<bool, CHIMERA_METHODS> methods{};  ///< which of the nine are written
-  bool background = false;                      ///< does something beside its cycles
+  bool background = false;                      ///< has a method that runs beside its cycles
   bool event_source = false;                    ///< its events come from a descriptor
   std::vector<PortDescriptor> ports{};
 
-  /// Has a sync method, so it is released by events.
+  /// True if it has a sync method, so that events release it.
   bool is_aperiodic() const noexcept { return methods[CHIMERA_SYNC]; }
-  /// The port of that name, or nullptr.
+  /// The port with that name, or nullptr.
   const PortDescriptor* port(std::string_view port_name) const noexcept;
   bool operator==(const Descriptor&) const = default;
 };
@@ -88,26 +88,25 @@ std::string_view type_name(std::uint32_t type) noexcept;
 /// Bytes of one element of a plain type; 0 for string and struct, whose size is declared.
 std::uint32_t type_size(std::uint32_t type) noexcept;
 
-/// [a-z][a-z0-9_]*, at most 64 letters: what components, ports, fields and extents may be called.
+/// [a-z][a-z0-9_]*, at most 64 letters: the legal names of components, ports, fields and extents.
 bool is_identifier(std::string_view text) noexcept;
 
-/// Checks a declaration and copies it. Refuses, with the component and port named: illegal or repeated names,
-/// sizes that do not fit the type, a shape that does not parse, an extent named after a port that is no whole-number
-/// scalar constant, more than CHIMERA_MAX_PORTS instances, an unordered range, an order between ports that are no
-/// in-consts of one type, unit and shape, words of a port that is no in-const of text, a safety port that is no
+/// Checks a declaration and copies it. Refuses, with the names of the component and the port: illegal or repeated
+/// names, sizes that do not fit the type, a shape that does not parse, an extent named after a port that is no
+/// whole-number scalar constant, more than CHIMERA_MAX_PORTS instances, an unordered range, an order between ports that
+/// are no in-consts of one type, unit and shape, words of a port that is no in-const of text, a safety port that is no
 /// floating out-var, an initial value of a wrong count, not a number or outside the range. Context: setup; may block.
 Result<Descriptor> describe(const chimera_component& component);
 
-/// The same rules for a descriptor that came from elsewhere. Fills in the extents from the shapes.
-/// Context: setup; may block.
+/// Applies the rules of describe() to a descriptor from another source. Fills in the extents from the shapes. Context:
+/// setup; may block.
 Result<void> complete(Descriptor& descriptor);
 
-/// Names the first difference that matters to binding between a descriptor file and a loaded object:
-/// the port and what each of them says. Documentation, source and state size may differ.
-/// Context: setup; may block.
+/// Names the first difference between a descriptor file and a loaded object that matters to binding: the port, and its
+/// text on both sides. Documentation, source and state size may differ. Context: setup; may block.
 Result<void> match(const Descriptor& file, const Descriptor& object);
 
-/// 64 bits over everything that match() compares: equal descriptors match. Context: setup; may block.
+/// A 64-bit hash over all that match() compares: equal descriptors match. Context: setup; may block.
 std::uint64_t fingerprint(const Descriptor& descriptor);
 
 }  // namespace chimera

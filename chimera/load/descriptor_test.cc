@@ -39,13 +39,13 @@ TEST(Describe, TakesADeclarationFromBeforeThereWasABackgroundAndNoOtherSize) {
   sample.component.background = [](void*, chimera_fault*) -> std::int32_t { return CHIMERA_OK; };
   EXPECT_TRUE(sample.described().value().background);
   sample.component.struct_size = offsetof(chimera_component, background);
-  EXPECT_FALSE(sample.described().value().background);  // what stands there is none of its
+  EXPECT_FALSE(sample.described().value().background);  // the bytes there do not belong to the declaration
   sample.component.event_source = [](void*) -> std::int32_t { return 3; };
   sample.component.methods[CHIMERA_SYNC] = nothing;
   sample.component.struct_size = offsetof(chimera_component, event_source);
   EXPECT_TRUE(sample.described().value().background);
   EXPECT_FALSE(sample.described().value().event_source);
-  const chimera_order nobody{"x", "nobody"};
+  const chimera_order nobody{"x", "absent"};
   sample.component.orders = &nobody;
   sample.component.n_orders = 1;
   sample.component.struct_size = offsetof(chimera_component, n_orders);
@@ -62,7 +62,7 @@ TEST(Describe, TakesADeclarationFromBeforeThereWasABackgroundAndNoOtherSize) {
   EXPECT_TRUE(sample.described().value().event_source);
   sample.component.struct_size = offsetof(chimera_component, host_size);
   sample.component.host_size = sizeof(chimera_host) + 8;
-  EXPECT_TRUE(sample.described());  // what stands there is none of its
+  EXPECT_TRUE(sample.described());  // the bytes there do not belong to the declaration
   sample.component.struct_size = size;
   EXPECT_EQ(sample.refusal(),
             "component: it was built with a newer chimera than this one: rebuild it, or install that chimera");

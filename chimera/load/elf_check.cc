@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks the headers, segments and exported symbols of an ELF file against the bytes that it has, and that nothing of
-// it makes real-time threads wait.
+// Checks headers, segments and exported symbols of an ELF file against its bytes. Also checks that no part of the
+// object can make real-time threads wait.
 #include "chimera/load/elf_check.h"
 
 #include <elf.h>
@@ -29,7 +29,7 @@ constexpr std::uint16_t kMachine = EM_RISCV;
 constexpr std::string_view kMachineName = "RISC-V";
 #endif
 
-constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;  // of a file that is looked through
+constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;  // the largest file that is searched
 
 bool is_inside(std::uint64_t offset, std::uint64_t size, std::uint64_t whole) noexcept {
   return offset <= whole && size <= whole - offset;
@@ -46,17 +46,17 @@ bool is_whole(int file, const Elf64_Ehdr& head, std::uint64_t size) noexcept {
   return true;
 }
 
-/// The `index`th segment of a whole file.
+/// The segment with number `index` in a whole file.
 Elf64_Phdr segment_of(int file, const Elf64_Ehdr& head, std::uint16_t index) noexcept {
   Elf64_Phdr segment{};
   read_at(file, head.e_phoff + std::uint64_t{index} * sizeof segment, std::as_writable_bytes(std::span(&segment, 1)));
   return segment;
 }
 
-/// What the dynamic section tells of the whole object.
+/// Properties of the whole object, from its dynamic section.
 struct Marks {
   bool has_text_relocations = false;
-  bool has_static_tls = false;  // its thread_local variables lie in the block that every thread has from its start
+  bool has_static_tls = false;  // its thread_local variables lie in the block that each thread has from its start
 };
 
 Marks marks_of(int file, const Elf64_Phdr& dynamic) noexcept {
@@ -72,7 +72,7 @@ Marks marks_of(int file, const Elf64_Phdr& dynamic) noexcept {
   return marks;
 }
 
-/// The variable of each thread that the framework itself has in an object, which is used while ports are declared:
+/// True for the thread variable of the framework in an object, which is used only while ports are declared:
 /// task/declare_port.h.
 bool is_of_the_framework(int file, const Elf64_Phdr& tls) noexcept {
   std::uint64_t words[2] = {};  // the mark, and a pointer
@@ -81,8 +81,8 @@ bool is_of_the_framework(int file, const Elf64_Phdr& tls) noexcept {
   return read_at(file, tls.p_offset, bytes) == sizeof words && words[0] == CHIMERA_THREAD_MARK;
 }
 
-/// What loads, and then is no real-time code: memory that a thread asks for at its first use of a variable, code that
-/// is written when it is loaded.
+/// The reason why an object that loads is no real-time code. Either a thread allocates memory at its first use of a
+/// variable, or the loader writes into the code.
 Message unfit_for_real_time(int file, const Elf64_Ehdr& head) noexcept {
   bool has_tls = false;
   Marks marks;
@@ -99,7 +99,7 @@ Message unfit_for_real_time(int file, const Elf64_Ehdr& head) noexcept {
   return {};
 }
 
-/// The whole file; empty when it cannot be read.
+/// The whole file; empty if it cannot be read.
 std::string contents(int file) {
   const std::int64_t size = file_size(file);
   if (size < 0 || static_cast<std::uint64_t>(size) > kMostBytes) return {};
@@ -107,7 +107,7 @@ std::string contents(int file) {
   return read_at(file, 0, std::as_writable_bytes(std::span(bytes))) == size ? bytes : std::string();
 }
 
-/// The `index`th record of a table at `offset`; false where it lies outside the bytes.
+/// Record `index` of a table at `offset`; false if it lies outside the bytes.
 template <class Record>
 bool record_at(const std::string& bytes, std::uint64_t offset, std::uint64_t index, Record& to) {
   if (index > kMostBytes || offset > kMostBytes) return false;
@@ -123,7 +123,7 @@ bool text_is(const std::string& bytes, std::uint64_t at, std::string_view text) 
 
 enum class Exported { kYes, kNo, kUnknown };
 
-/// Whether the file exports a symbol of that name; unknown without a table of sections, which programs may take away.
+/// Checks if the file exports that symbol. Unknown without a table of sections, because some programs remove it.
 Exported exports(const std::string& bytes, std::string_view symbol) {
   Elf64_Ehdr head{};
   Elf64_Shdr table{}, names{};
@@ -168,7 +168,7 @@ Message elf_fault(int file, std::string_view component) {
   if (bytes.empty()) return Message("cannot be read");
   if (exports(bytes, CHIMERA_COMPONENTS_SYMBOL) == Exported::kNo)
     return Message("offers no components: it has no symbol " CHIMERA_COMPONENTS_SYMBOL);
-  // The name lies in the object as the text that the declaration points at: its closing zero is part of it.
+  // The object contains the name as the text that the declaration points to, so its closing zero belongs to it.
   std::string name(component);
   name.push_back('\0');
   if (bytes.find(name) == std::string::npos)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a file is a whole shared object for this machine, and of which component. The system's loader trusts the
-// headers of a file: one that was cut short kills the process instead of being refused.
+// Checks if a file is a whole shared object for this machine, and which component it has. The loader of the system
+// trusts the headers of a file: a truncated file kills the process.
 #pragma once
 
 #include <string_view>
@@ -9,13 +9,13 @@
 
 namespace chimera {
 
-/// Reads the headers of the file behind the descriptor `file`. Empty when it is whole and has neither text relocations
-/// nor thread_local variables that are made at their first use, else what is wrong, as a clause that goes after the
-/// file's name. Context: setup; may block.
+/// Reads the headers of the file behind the descriptor `file`. Empty if the file is whole, without text relocations,
+/// and without thread_local variables that are allocated at their first use. Otherwise the fault, as a clause to put
+/// after the file name. Context: setup; may block.
 Message elf_fault(int file) noexcept;
 
-/// As elf_fault(file), and whether the file offers components, and one of that name, as far as that is seen without
-/// running code of the file: the symbol is exported, and the name stands in the file. Context: setup; may block.
+/// Like elf_fault(file); also checks, without running code of the file, that it offers components and the named one.
+/// The symbol must be exported, and the name must be in the file. Context: setup; may block.
 Message elf_fault(int file, std::string_view component);
 
 }  // namespace chimera

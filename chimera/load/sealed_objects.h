@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The objects of an application as they were when its run began: docs/formats/processes.md, "Shared segments".
+// The objects of an application as they were at the start of its run: docs/formats/processes.md, "Shared segments".
 //
 //   files -> one sealed memory, made by the keeper -> every rtpu and each of its successors links from it
 #pragma once
@@ -15,18 +15,18 @@
 
 namespace chimera {
 
-/// Contents by path. A file that is built anew or removed while the application runs changes nothing here, so a unit
-/// that dies comes back with the code that was verified.
+/// File contents by path. A file that is rebuilt or removed during the run changes nothing here. So an rtpu that is
+/// restarted after its death runs the code that was verified.
 class SealedObjects {
  public:
-  /// The contents of the files, each once, as open() reads them. Refuses what SharedObject::read() refuses. Context:
-  /// setup; may block.
+  /// Packs the contents of each file once, in the form that open() reads. Refuses the same files as
+  /// SharedObject::read(). Context: setup; may block.
   static Result<std::vector<std::byte>> pack(std::span<const std::string> paths);
-  /// What pack() made; `bytes` outlive this. Refuses bytes that are cut short. Context: setup.
+  /// Opens the bytes from pack(); `bytes` must outlive this object. Refuses truncated bytes. Context: setup.
   static Result<SealedObjects> open(std::span<const std::byte> bytes);
 
-  /// Links the object that was at `path`. Refuses as SharedObject::open(), and (kNotFound) a path that was not packed.
-  /// Context: setup; may block.
+  /// Links the object that was at `path`. Refuses like SharedObject::open(), and refuses a path that was not packed
+  /// (kNotFound). Context: setup; may block.
   Result<SharedObject> link(const std::string& path) const;
 
  private:

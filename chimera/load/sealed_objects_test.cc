@@ -66,7 +66,7 @@ TEST_F(SealedObjectsTest, RefuseToBeCutShortAnywhere) {
   const std::size_t first = 8 + 16 + folder.size() + std::string("/counter.so").size();
   for (std::size_t size = 0; size < bytes.size(); size += size < first + 20 ? 1 : 997) {
     const auto cut = SealedObjects::open(std::span(bytes).first(size));
-    EXPECT_EQ(cut.has_value(), size == 8) << size;  // 8: nothing was packed
+    EXPECT_EQ(cut.has_value(), size == 8) << size;  // 8 bytes: an empty pack
   }
 }
 

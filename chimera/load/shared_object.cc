@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens a sealed copy of a component's object and finds the components that it offers.
+// Opens a sealed copy of an object file and finds the components in it.
 #include "chimera/load/shared_object.h"
 
 #include "chimera/base/hosted/ordinary_file.h"
@@ -18,7 +18,7 @@ Error unfit(const std::string& path, std::string_view clause, ErrorCode code = E
   return (Message() << name << " " << clause << kRebuild).error(code, path);
 }
 
-/// Shown in /proc.
+/// The name of the memory in /proc.
 std::string name_of(const std::string& path) {
   return path.substr(path.rfind('/') + 1).substr(0, 200);  // npos + 1: the whole path
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects good and bad: chimera/load/testing.
+// Good and faulty objects: chimera/load/testing.
 #include "chimera/load/shared_object.h"
 
 #include <elf.h>
@@ -19,7 +19,7 @@ namespace {
 
 std::string object(const std::string& name) { return build_path("chimera/load/test_objects/" + name); }
 
-/// A file of its own that goes with the test.
+/// A file that is removed at the end of the test.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const std::string& text) {
@@ -49,7 +49,7 @@ std::string refusal(const std::string& path) {
   return std::string(opened.error().message.view());
 }
 
-/// What check says of the file, which runs nothing of it.
+/// The answer of inspect(), which runs no code of the file.
 std::string inspection(const std::string& path, const std::string& component = "counter") {
   const auto sound = SharedObject::inspect(path, component);
   return sound ? "sound" : std::string(sound.error().message.view());
@@ -59,7 +59,7 @@ std::string rebuild(const std::string& path, const std::string& clause) {
   return path.substr(path.rfind('/') + 1) + " " + clause + ". Rebuild the component.";
 }
 
-/// One cycle of counter.so; what its object has counted.
+/// Runs one cycle of counter.so and returns the count of its object.
 std::int32_t count_once(const chimera_component& component, ComponentState& instance) {
   std::int32_t count = 0;
   const chimera_port_decl& port = component.ports[0];
@@ -134,7 +134,7 @@ TEST(SharedObject, RefusesWhatMakesRealTimeThreadsWait) {
   const std::uint64_t mark = CHIMERA_THREAD_MARK;
   const std::size_t at = marked.find(std::string_view(reinterpret_cast<const char*>(&mark), sizeof mark));
   ASSERT_NE(at, std::string::npos);
-  EXPECT_EQ(inspection(object("marked_tls.so")),  // which is looked at beyond that
+  EXPECT_EQ(inspection(object("marked_tls.so")),  // inspect() goes on behind it
             rebuild("marked_tls.so", "offers no components: it has no symbol " CHIMERA_COMPONENTS_SYMBOL));
   marked[at] ^= 1;
   const TemporaryFile other(marked);
@@ -144,7 +144,7 @@ TEST(SharedObject, RefusesWhatMakesRealTimeThreadsWait) {
       "has text relocations, so its code is written when it is loaded: compile all of it with -fPIC");
   EXPECT_EQ(refusal(object("text_relocations.so")), text);
   EXPECT_EQ(inspection(object("text_relocations.so")), text);
-  EXPECT_EQ(inspection(object("static_tls.so")),  // which is looked at beyond that
+  EXPECT_EQ(inspection(object("static_tls.so")),  // inspect() goes on behind it
             rebuild("static_tls.so", "offers no components: it has no symbol " CHIMERA_COMPONENTS_SYMBOL));
 }
 

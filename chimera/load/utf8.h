@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether bytes are text: descriptors and messages go into JSON, which is UTF-8 or nothing.
+// Checks that bytes are UTF-8 text, because descriptors and messages go into JSON.
 #pragma once
 
 #include <string_view>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The questions that wait for the analyst, and the analyst itself. It is a process of its own, so that no act waits for
-// an analysis and no act is lost if the analyst dies. docs/decisions/0029-acts-before-questions.md.
+// an analysis and no act is lost if the analyst dies. docs/formats/control.md, "Limits".
 #pragma once
 
 #include <deque>

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kMostTerms = 100'000'000;
 
-/// Tasks of one rtpu. The time that a policy looks at within a level, and at ranks of a level each.
+/// The time that a policy compares between tasks of one rtpu: within a level, or, under `rm`, between levels.
 Nanoseconds key_of(const Work& w, Policy policy) noexcept { return policy == Policy::kRm ? w.period : w.deadline; }
 
 bool goes_before(std::span<const ProcessorUse> uses, const RankedWork& a, const RankedWork& b) noexcept {
@@ -28,7 +28,7 @@ bool goes_before(std::span<const ProcessorUse> uses, const RankedWork& a, const 
   return a.task < b.task;
 }
 
-/// One walk over the tasks of a CPU.
+/// Walks once over the tasks of a CPU.
 class Analysis {
  public:
   Analysis(std::span<const Work> works, std::span<const ProcessorUse> uses, std::uint32_t cpu,
@@ -99,7 +99,8 @@ class Analysis {
     return level;
   }
 
-  /// Tasks of a rank with the one at `begin`: same period and user priority, so that whoever runs stays.
+  /// End of the tasks with the rank of the task at `begin`: same period and user priority. Between them the running job
+  /// stays.
   std::uint32_t end_of_equals(std::uint32_t begin) const noexcept {
     const RankedWork& first = ranked_[begin];
     std::uint32_t end = begin + 1;
@@ -112,8 +113,9 @@ class Analysis {
     return a.work.offset != b.work.offset || a.work.server || b.work.server;
   }
 
-  /// Equals that are released together go in the order of the description. When one of them may be late, or they are
-  /// released apart, any of them may find another under way: then all of them have the bound of their busy period.
+  /// Equals that are released together run in the order of the description. If one of them may be late, if
+  /// their offsets differ, or if one is a server, each may find another running. Then all of them get the bound of
+  /// their busy period.
   void judge_equals(std::uint32_t begin, std::uint32_t end, bool preemptive) noexcept {
     bool in_order = true;
     for (std::uint32_t i = begin; i < end; ++i) {

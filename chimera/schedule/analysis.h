@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does a set of tasks keep every deadline, whatever happens within its stated times? Pure functions over plain specs.
+// Tests if a set of tasks meets every deadline while all tasks keep their stated times. Pure functions over plain
+// specs.
 //
-// The tasks of a CPU fall into *levels*: all jobs of a level go before all of later ones. A task under `rm` is a level
-// of its own; all tasks of an rtpu under `edf` or `llf` are one; under `muf` each criticality is one. Higher bands
-// come first. What is asked of each level:
+// The tasks of a CPU form *levels*: all jobs of a level run before those of later levels. A task under `rm` is a level
+// of its own. All tasks of an rtpu under `edf` or `llf` are one level. Under `muf` each criticality is one level.
+// Higher bands come first. The test of each level:
 //   fixed priority, preemptive   exact response times (Joseph & Pandya, Computer J. 29(5), 1986; Audsley et al.,
 //                                Software Eng. J. 8(5), 1993)
 //   fixed priority, executive    response over all jobs of the busy period behind the longest later job (George,
@@ -29,37 +30,37 @@ namespace chimera {
 enum class Guarantee : std::uint8_t {
   kYes,
   kNo,
-  kNotStated,  ///< the task has no time: it was counted as nothing
-  kTooLong,    ///< the search was given up: the load is too close to the whole processor to tell
+  kNotStated,  ///< the task has no stated time and counts as zero
+  kTooLong,    ///< the search stopped: the load is too close to the whole processor
 };
 
 struct WorkVerdict {
   Guarantee guarantee = Guarantee::kNotStated;
-  Nanoseconds response = kNever;  ///< at most; kNever: no bound was found
+  Nanoseconds response = kNever;  ///< upper bound; kNever: no bound was found
   bool is_exact = false;          ///< a synchronous release reaches `response`
-  Nanoseconds blocking;           ///< part of it: a job of a later level that cannot be taken off the processor
-  std::uint32_t level = 0;        ///< 0 goes first
+  Nanoseconds blocking;           ///< part of the response: a job of a later level that cannot be preempted
+  std::uint32_t level = 0;        ///< 0 runs first
 };
 
 struct CpuVerdict {
   std::uint32_t cpu = 0;
   std::uint32_t tasks = 0;
   std::uint32_t unstated = 0;      ///< tasks without a time
-  double utilisation = 0;          ///< of those with one
+  double utilisation = 0;          ///< of the tasks with a stated time
   double rate_monotonic_bound = 0;  ///< n(2^(1/n) - 1): Liu & Layland, J. ACM 20(1), 1973
   double hyperbolic = 0;  ///< product of (1 + u); at most 2 is enough: Bini & Buttazzo, IEEE Trans. Comp. 52(7), 2003
   std::uint32_t guaranteed = 0;
   std::uint32_t not_guaranteed = 0;  ///< kNo and kTooLong
-  std::int64_t terms = 0;          ///< what the searches cost, in terms added up
-  Demand demand;                   ///< the first level found wanting
+  std::int64_t terms = 0;          ///< cost of the searches: number of added terms
+  Demand demand;                   ///< the first level that fails
 
-  /// Every task with a stated time keeps its deadline.
+  /// True if every task with a stated time meets its deadline.
   bool fits() const noexcept { return not_guaranteed == 0; }
 };
 
-/// Judges the tasks of `works` that run on `cpu`. `verdicts` is as long as `works`; only those of this CPU are written.
-/// `room` needs as many elements as there are such tasks. Requires: what Work and ProcessorUse say.
-/// Context: setup; pure; a thousand tasks take well below a second.
+/// Judges the tasks of `works` that run on `cpu`. `verdicts` is as long as `works`; only entries of this CPU are
+/// written. `room` needs one element for each of these tasks. Requires: the conditions of Work and ProcessorUse.
+/// Context: setup; pure; well below 1 s for a thousand tasks.
 CpuVerdict analyse(std::span<const Work> works, std::span<const ProcessorUse> uses, std::uint32_t cpu,
                    std::span<WorkVerdict> verdicts, std::span<RankedWork> room) noexcept;
 

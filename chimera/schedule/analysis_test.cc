@@ -37,7 +37,7 @@ TEST(Analysis, GivesTheResponsesOfTheTextbookUnderRateMonotonic) {
   EXPECT_TRUE(j.verdicts[2].is_exact);
   EXPECT_TRUE(j.at.fits());
   EXPECT_NEAR(j.at.rate_monotonic_bound, 0.7798, 1e-4);
-  EXPECT_GT(j.at.utilisation, j.at.rate_monotonic_bound);  // above the bound and schedulable all the same
+  EXPECT_GT(j.at.utilisation, j.at.rate_monotonic_bound);  // above the bound, but schedulable
 }
 
 TEST(Analysis, GivesTheBoundsOfLiuAndLaylandAndTheHyperbolicOne) {
@@ -76,7 +76,8 @@ TEST(Analysis, CountsTheLongestLaterJobInAnExecutive) {
 }
 
 TEST(Analysis, LetsADeferrableServerRunTwiceBackToBackAndASporadicOneNot) {
-  // Capacity 2 every 5: a task of 3 behind it meets 2 + 2 of the deferrable server within 7, 2 within 5 of the other.
+  // Capacity 2, period 5, with a task of 3 behind the server. The deferrable server takes 2 + 2 within 7, the sporadic
+  // one 2 within 5.
   std::vector<Work> works = {work(5, 2), work(10, 3)};
   works[0].server = ServerKind::kDeferrable;
   EXPECT_EQ(Judged(works, {use(Policy::kRm)}).response(1), 7);

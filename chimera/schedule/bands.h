@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bands of SCHED_FIFO priorities: real-time units that share a CPU get one band each, ordered by their most critical
-// task, ties by the order of the description.
+// Bands of SCHED_FIFO priorities. Rtpus that share a CPU get one band each, ordered by their most critical task. Ties
+// keep the order of the description.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@ namespace chimera {
 inline constexpr std::int32_t kBandWidth = 20;  ///< priorities of one band
 inline constexpr std::int32_t kLowestBandTop = 1;
 
-/// A unit as the bands see it.
+/// The data of an rtpu that decide its band.
 struct BandMember {
   std::uint32_t cpu = 0;
   std::uint32_t criticality = 0;  ///< of its most critical task
 };
 
-/// The highest priority of the band of `members[index]`, counted down from `top`; at least 1. 0 when `top` is 0: no
-/// real-time priorities at all. Context: setup; O(members).
+/// The highest priority of the band of `members[index]`, counted down from `top`; at least 1. 0 if `top` is 0, for a
+/// system without real-time priorities. Context: setup; O(members).
 constexpr std::int32_t band_top(std::span<const BandMember> members, std::size_t index, std::int32_t top) noexcept {
   if (top <= 0) return 0;
   std::int32_t above = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A binary heap over memory that it is given, whose order the caller hands in with each call: keys may lie elsewhere.
+// A binary heap over given memory. The caller passes the order with each call, so keys may lie elsewhere.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace chimera {
 
-/// `before(a, b)`: a comes out before b; it must be the same order in every call. Context: cycle; wait-free; O(log n).
+/// `before(a, b)`: a leaves the heap before b. Each call needs the same order. Context: cycle; wait-free; O(log n).
 template <class T>
 class BinaryHeap {
  public:
@@ -16,12 +16,12 @@ class BinaryHeap {
 
   bool is_empty() const noexcept { return size_ == 0; }
   std::uint32_t size() const noexcept { return size_; }
-  /// The first to come out. Requires: not empty.
+  /// The item that leaves next. Requires: not empty.
   const T& top() const noexcept { return items_[0]; }
-  /// All, in no order that matters. A caller that changes the key of one must restore the order.
+  /// All items, unordered. A caller that changes the key of an item must restore the order.
   std::span<const T> items() const noexcept { return {items_.data(), size_}; }
 
-  /// Requires: room. Context of both: O(1).
+  /// Requires: room. Context of both functions: O(1).
   void set_only(const T& item) noexcept {
     items_[0] = item;
     size_ = 1;
@@ -32,12 +32,12 @@ class BinaryHeap {
     items_[size_] = item;
     sift_up(size_++, before);
   }
-  /// The key of the first has changed so that it comes out later, or as it did.
+  /// Restores the order after the key of the first item changed, so that it leaves later or at the same place.
   template <class Before>
   void sift_top(Before&& before) noexcept {
     sift_down(0, before);
   }
-  /// Takes out the item at that place of items(), whose key may have changed.
+  /// Removes the item at that place of items(). Its key may have changed.
   template <class Before>
   void erase(std::uint32_t at, Before&& before) noexcept {
     if (at == --size_) return;

@@ -40,7 +40,7 @@ bool ChangeWindow::may_lie(const MovingWork& work, GridPlace place) const noexce
   return held_ == nullptr || place == place_ || !work.is_on_grid_of(*held_);
 }
 
-// Of each grid what it asks for where it asks for most.
+// Adds, for each grid, its request at the place where it requests most.
 template <class Delay>
 Nanoseconds ChangeWindow::sum(Nanoseconds until, Delay delay) const noexcept {
   Nanoseconds all;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much work tasks can ask for in a window of time that contains the change of a transition: leaving tasks release
-// before the change only, arriving ones from it on, staying ones all the time. demand.h, with the place of the change
-// as one variable more.
+// Bounds the work of tasks in a window of time that contains the change of a transition. Leaving tasks release jobs
+// only before the change, arriving tasks only from it on, staying tasks always. Extends demand.h by one variable: the
+// place of the change.
 //
-// Releases lie on grids, and tasks of one period and offset share theirs: its first release from the change on comes
-// exactly a period after its last one before. Of all places that a grid can have in the window two ask for most, in
-// every interval that begins with it: a release at the beginning of the window, or one at the change. (Between them the
-// same releases only come later.) Different grids are taken to lie as they like.
+// Releases lie on grids; tasks of one period and offset share a grid. The first release of a grid from the change on
+// comes exactly one period after its last one before. In every interval from the begin of the window, two places of a
+// grid request most: a release at the begin, or a release at the change. (Between them the same releases only come
+// later.) Different grids are assumed to be independent.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,15 @@
 
 namespace chimera {
 
-/// What a transition does to a task.
+/// The part of a task in a transition.
 enum class TransitionPart : std::uint8_t { kAbsent, kStays, kLeaves, kArrives };
 
-/// One task of a transition; memory of the analysis.
+/// A task of a transition; memory of the analysis.
 struct MovingWork {
   RankedWork ranked;
   TransitionPart part = TransitionPart::kStays;
-  std::uint32_t partner = 0;  ///< the task that takes its place like for like, itself otherwise
-  bool is_chosen = false;     ///< takes part in the sums below
+  std::uint32_t partner = 0;  ///< the task that replaces it like for like; otherwise its own index
+  bool is_chosen = false;     ///< counts in the sums below
   bool is_judged = false;
 
   std::uint32_t first_task() const noexcept { return ranked.task < partner ? ranked.task : partner; }
@@ -35,32 +35,32 @@ struct MovingWork {
   }
 };
 
-/// Where a grid lies.
+/// The place of a grid in the window.
 enum class GridPlace : std::uint8_t { kAtBegin, kAtChange };
 
-/// A window [0, ...) with the change at `change`; change 0: all of it lies behind the change.
+/// A window [0, ...) with the change at `change`. If `change` is 0, the whole window lies behind the change.
 class ChangeWindow {
  public:
-  /// `works`, those of one grid in a row, outlive this.
+  /// `works` must outlive this object; works of one grid are adjacent.
   explicit ChangeWindow(std::span<const MovingWork> works) noexcept : works_(works) {}
 
   void set_change(Nanoseconds change) noexcept { change_ = change; }
   Nanoseconds change() const noexcept { return change_; }
-  /// The next place of the change that can ask for more than all before it; kNever: there is none.
+  /// The next place of the change that can request more than all earlier places; kNever: none.
   Nanoseconds next_change() const noexcept;
-  /// From now on the grid of `work` lies there and nowhere else; nullptr: as it likes.
+  /// Fixes the grid of `work` at `place` from now on; nullptr: each grid is free again.
   void hold(const MovingWork* work, GridPlace place) noexcept {
     held_ = work;
     place_ = place;
   }
 
-  /// First release of `work` with its grid at `place`. Context: any; pure.
+  /// First release of `work` if its grid lies at `place`. Context: any; pure.
   Nanoseconds first_release(const MovingWork& work, GridPlace place) const noexcept;
-  /// Of chosen works: what is released in [0, until], the instant included. O(works).
+  /// Work of the chosen tasks that is released in [0, until], including the instant `until`. O(works).
   Nanoseconds released(Nanoseconds until) const noexcept;
-  /// Of chosen works: what is released and due in [0, until]. O(works).
+  /// Work of the chosen tasks that is released and due in [0, until]. O(works).
   Nanoseconds due(Nanoseconds until) const noexcept;
-  /// The last instant before `before` at which due() may rise; 0: there is none. O(works).
+  /// The last instant before `before` at which due() may rise; 0: none. O(works).
   Nanoseconds due_before(Nanoseconds before) const noexcept;
 
  private:

@@ -17,7 +17,7 @@ bool goes_always_before(const Work& a, std::uint32_t a_index, const Work& b, std
   const Nanoseconds kb = use.policy == Policy::kRm ? b.period : b.deadline;
   if (ka != kb) return ka < kb;
   if (a.user_priority != b.user_priority) return a.user_priority > b.user_priority;
-  // A tie: the order of the description, among jobs released at one instant; else whoever runs stays.
+  // On a tie, jobs released together run in the order of the description; otherwise the running job stays.
   return a.period == b.period && a.offset == b.offset && a_index < b_index;
 }
 

@@ -22,7 +22,7 @@ TEST(DataAge, AddsPeriodAndResponseOfEachLink) {
 
 TEST(DataAge, TakesLessWhereTheProducerAlwaysGoesFirst) {
   std::vector<ChainLink> chain = {{work(10, 1), milliseconds(3), true}, {work(20, 2), milliseconds(7), false}};
-  EXPECT_EQ(worst_data_age(chain), milliseconds(27));  // every release of the second is one of the first
+  EXPECT_EQ(worst_data_age(chain), milliseconds(27));  // each release of the second is one of the first
   chain[1].work = work(20, 2, 5);
   EXPECT_EQ(worst_data_age(chain), milliseconds(37));
   chain[1].work = work(15, 2);
@@ -49,7 +49,7 @@ TEST(DataAge, KnowsWhoAlwaysGoesFirst) {
   EXPECT_FALSE(goes_always_before(a, 0, other, 1, {.policy = Policy::kRm}));
 }
 
-// Three tasks on three processors, played at random: nobody acts on what is older than the bound.
+// Simulates three tasks on three processors at random: no actuator uses data older than the bound.
 TEST(DataAge, BoundsWhatIsSeenInRandomRuns) {
   std::mt19937 random(7);
   for (int run = 0; run < 300; ++run) {
@@ -61,7 +61,7 @@ TEST(DataAge, BoundsWhatIsSeenInRandomRuns) {
       offset[i] = static_cast<std::int64_t>(random() % static_cast<unsigned>(period[i]));
       chain.push_back({work(period[i], 1), milliseconds(response[i]), false});
     }
-    // published[i]: (end, release of the sensor's job it goes back to) of each job of task i.
+    // published[i]: (end, release of the sensor job at its origin) of each job of task i.
     std::vector<std::pair<std::int64_t, std::int64_t>> published[3];
     std::int64_t oldest = 0;
     for (int i = 0; i < 3; ++i)
@@ -70,7 +70,7 @@ TEST(DataAge, BoundsWhatIsSeenInRandomRuns) {
         std::int64_t origin = i == 0 ? release : -1;
         for (const auto& [at, from] : i == 0 ? published[0] : published[i - 1])
           if (i > 0 && at <= release) origin = std::max(origin, from);
-        // What stood until now was replaced at `end`.
+        // The previous output was replaced at `end`.
         if (i == 2 && !published[2].empty() && published[2].back().second >= 0)
           oldest = std::max(oldest, end - published[2].back().second);
         published[i].emplace_back(end, origin);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much work tasks can ask for in an interval: the two functions on which all of the analysis stands, and the search
-// for the instant at which a busy processor is done.
+// Bounds the work of tasks in an interval. The analysis is based on these two functions, and on the search for the end
+// of a busy period.
 //   request bound   all jobs released in an interval of length t: ceil((t + J) / T) C  (Joseph & Pandya 1986; release
 //                   jitter J: Audsley et al. 1993)
 //   demand bound    jobs released and due in it: (floor((t - D) / T) + 1) C  (Baruah, Rosier, Howell 1990)
-// A deferrable server may run at the end of one period and at the start of the next: J = T - C, and in the demand its
-// capacity is due as fast as it can be used, D = C. (What of it is due earlier leaves others as much time as at C.)
+// A deferrable server may run at the end of one period and at the start of the next: J = T - C. In the demand its
+// capacity is due as early as it can be used, D = C. (If part of it is due earlier, others still have
+// as much time as with D = C.)
 #pragma once
 
 #include <cstdint>
@@ -19,21 +20,21 @@ namespace chimera {
 struct RankedWork {
   Work work;
   std::uint32_t task = 0;   ///< index in the set
-  std::uint32_t band = 0;   ///< of its rtpu on this CPU; 0 goes first
+  std::uint32_t band = 0;   ///< of its rtpu on this CPU; 0 runs first
   Nanoseconds jitter;       ///< release jitter
-  Nanoseconds early;        ///< deferrable server: capacity that can be due as fast as it can be used
+  Nanoseconds early;        ///< deferrable server: capacity that can be due as early as it can be used
 };
 
-/// Searches end here: no interval that matters is longer (11 days).
+/// Searches end here (11 days); no longer interval matters.
 inline constexpr Nanoseconds kLongestInterval{1'000'000'000'000'000};
 
-/// What a search may still spend: terms added up. Ends searches that a load near the whole processor makes endless.
+/// The number of terms that a search may still add. It ends searches that would not end near a full processor.
 struct Effort {
   std::int64_t terms = 0;
   bool is_spent() const noexcept { return terms <= 0; }
 };
 
-/// Work released in [0, t), all of it at once from 0 on. Requires: t > 0. Context: any; pure.
+/// Work released in [0, t), with all tasks released together at 0. Requires: t > 0. Context: any; pure.
 constexpr Nanoseconds requested(const RankedWork& r, Nanoseconds t) noexcept {
   return r.work.time * ((t + r.jitter - Nanoseconds{1}) / r.work.period + 1);
 }
@@ -43,7 +44,7 @@ constexpr Nanoseconds requested_until(const RankedWork& r, Nanoseconds t) noexce
   return r.work.time * ((t + r.jitter) / r.work.period + 1);
 }
 
-/// The first t at which all of a job can be due; more every period. Context: any; pure.
+/// The first t at which a whole job can be due; one more job is due each period. Context: any; pure.
 constexpr Nanoseconds first_due(const RankedWork& r) noexcept {
   return r.work.server == ServerKind::kDeferrable ? r.early : r.work.deadline;
 }
@@ -68,8 +69,8 @@ inline double share_of(std::span<const RankedWork> works) noexcept {
   return sum;
 }
 
-/// The least t >= `from` with f(t) <= t, for f that never falls; kNever when it is beyond `limit` or `effort`, of which
-/// each try takes `cost`, is spent. Context: any; pure.
+/// The least t >= `from` with f(t) <= t, for a function f that never falls. kNever if it is beyond `limit`, or if
+/// `effort` is spent; each try costs `cost`. Context: any; pure.
 template <class F>
 Nanoseconds least_fixed_point(Nanoseconds from, Nanoseconds limit, std::int64_t cost, Effort& effort, F f) noexcept {
   for (Nanoseconds t = from; t <= limit && !effort.is_spent();) {

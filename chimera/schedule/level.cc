@@ -11,7 +11,7 @@ constexpr Nanoseconds kTick{1};
 
 Nanoseconds later(Nanoseconds a, Nanoseconds b) noexcept { return a < b ? b : a; }
 
-/// QPA: intervals from long to short, leaping over all that cannot fail.
+/// QPA: checks intervals from long to short and skips all intervals that cannot fail.
 class DemandSearch {
  public:
   DemandSearch(const Level& level, Demand& demand, Effort& effort) noexcept
@@ -21,7 +21,7 @@ class DemandSearch {
     for (const RankedWork& r : level.members()) shortest_ = shortest_ < r.work.deadline ? shortest_ : r.work.deadline;
   }
 
-  /// No longer interval needs a look: it would have one of these in it that fails.
+  /// The longest interval to check: if a longer one fails, a shorter one fails too.
   Nanoseconds longest() noexcept { return busy_period(level_, blocking({}) + extra_, effort_); }
 
   Judgement from(Nanoseconds longest) noexcept {
@@ -32,7 +32,7 @@ class DemandSearch {
         demand_ = {t, ends};
         return Judgement::kFails;
       }
-      t = point_before(ends);  // in [ends, t) no more is due, nor blocks: a job that blocks there is due by t
+      t = point_before(ends);  // in [ends, t) no more is due, and no job blocks: a blocking job is due by t
     }
     return Judgement::kHolds;
   }
@@ -98,7 +98,7 @@ Nanoseconds busy_period(const Level& level, Nanoseconds blocking, Effort& effort
     first += r.work.time;
     ahead += r.jitter;
   }
-  // All of the processor catches up with nothing.
+  // A full processor never catches up with earlier work.
   if (share > 1.0 + 1e-12 || (share > 1.0 - 1e-9 && ahead > Nanoseconds{})) return kNever;
   return least_fixed_point(later(first, kTick), kLongestInterval, level.end, effort,
                            [&](Nanoseconds t) { return blocking + requested(works, t); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of two ready jobs is more urgent: pure functions, the same in every executor.
+// Decides which of two ready jobs is more urgent: pure functions, the same in every executor.
 // Rate monotonic and earliest deadline: Liu & Layland 1973. Maximum urgency first: Stewart & Khosla 1991
 // (criticality, then the dynamic part, then the user's priority; a full tie keeps the running job).
 #pragma once
@@ -12,7 +12,7 @@ namespace chimera {
 
 enum class Policy : std::uint8_t { kRm, kEdf, kLlf, kMuf, kMufLaxity };
 
-/// What a policy may look at. `remaining` is the execution time still to come (budget minus used).
+/// The data of a job that a policy compares. `remaining` is its budget minus the execution time used.
 struct Urgency {
   std::uint32_t criticality = 0;
   std::uint32_t user_priority = 0;
@@ -21,9 +21,8 @@ struct Urgency {
   Nanoseconds remaining;
 };
 
-/// True when `a` must run before `b` at the same instant; false on a full tie, so that the running job stays.
-/// Laxity is deadline - now - remaining; `now` is common to both and drops out.
-/// Context: any; wait-free.
+/// True if `a` must run before `b` at this instant; false on a full tie, so that the running job stays. Laxity is
+/// deadline - now - remaining; `now` is common to both and cancels. Context: any; wait-free.
 constexpr bool is_more_urgent(Policy policy, const Urgency& a, const Urgency& b) noexcept {
   const bool by_criticality = policy == Policy::kMuf || policy == Policy::kMufLaxity;
   if (by_criticality && a.criticality != b.criticality) return a.criticality > b.criticality;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a task stands among those of its CPU, by the band of its rtpu and what its policy looks at: what the analysis
-// of a set and that of a transition have in common.
+// Ranks a task among those of its CPU, by the band of its rtpu and by its policy. The analyses of a set and of a
+// transition share these functions.
 #pragma once
 
 #include <algorithm>
@@ -12,18 +12,18 @@
 
 namespace chimera {
 
-/// Whether all of one criticality go before all of a lower one. Context: any; pure.
+/// True if all tasks of one criticality run before all of a lower one. Context: any; pure.
 constexpr bool has_criticalities(Policy policy) noexcept {
   return policy == Policy::kMuf || policy == Policy::kMufLaxity;
 }
 
-/// How tasks of a level are ordered under `policy`. Context: any; pure.
+/// The order of tasks within a level under `policy`. Context: any; pure.
 constexpr LevelOrder order_of(Policy policy) noexcept {
   if (policy == Policy::kRm) return LevelOrder::kAlone;
   return policy == Policy::kEdf || policy == Policy::kMuf ? LevelOrder::kDeadline : LevelOrder::kLaxity;
 }
 
-/// Rtpus of the same CPU with a higher band than `index`. Context: setup; pure.
+/// Number of rtpus on this CPU with a higher band than `index`. Context: setup; pure.
 constexpr std::uint32_t band_of(std::span<const ProcessorUse> uses, std::uint32_t index) noexcept {
   std::uint32_t above = 0;
   for (std::uint32_t i = 0; i < uses.size(); ++i) {
@@ -34,14 +34,14 @@ constexpr std::uint32_t band_of(std::span<const ProcessorUse> uses, std::uint32_
   return above;
 }
 
-/// works[task] as the analysis takes it. Context: setup; pure.
+/// works[task] in the form of the analysis. Context: setup; pure.
 constexpr RankedWork ranked_work(std::span<const Work> works, std::span<const ProcessorUse> uses,
                                  std::uint32_t task) noexcept {
   RankedWork made{works[task], task, band_of(uses, works[task].rtpu), {}, {}};
   Work& w = made.work;
-  w.time = std::min(w.time, w.period);  // beyond it does not fit anyway, and sums must stay in bounds
+  w.time = std::min(w.time, w.period);  // a longer time does not fit anyway, and sums must not overflow
   if (w.server != ServerKind::kDeferrable) return made;
-  // In an executive what begins just before the end of a period runs on into the next.
+  // In an executive, a job that begins just before the end of a period continues in the next period.
   const bool preemptive = uses[w.rtpu].dispatch == Dispatch::kPreemptive;
   made.early = preemptive ? w.time : Nanoseconds{};
   made.jitter = w.period - (preemptive ? w.time : Nanoseconds{1});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps classes of tasks in two heaps, by next release and by urgency, and beside them the jobs outside their runs.
+// Keeps classes of tasks in two heaps, by next release and by urgency. Keeps single jobs outside their runs beside
+// them.
 #include "chimera/schedule/ready_queue.h"
 
 #include <algorithm>
@@ -73,7 +74,7 @@ Urgency ReadyQueue::top_urgency() const noexcept {
   return loose_is_top() ? loose_.top().urgency : classes_.urgency(runs_.top());
 }
 
-// More than one run, or jobs beside them.
+// Pops if several runs are ready, or if loose jobs wait beside them.
 Job ReadyQueue::pop_among() noexcept {
   CHIMERA_ASSERT(!is_empty());
   if (!loose_.is_empty() && loose_is_top()) return pop_loose();
@@ -120,7 +121,7 @@ void ReadyQueue::finish(TaskId task) noexcept {
 
 void ReadyQueue::put_back(const Job& job, Nanoseconds remaining) noexcept { push_loose(job, &remaining); }
 
-// Without `remaining` it needs its whole budget.
+// Without `remaining`, the job needs its whole budget.
 void ReadyQueue::push_loose(const Job& job, const Nanoseconds* remaining) noexcept {
   const ClassMember& m = classes_.member_of(job.task.index);
   const Nanoseconds period = classes_[classes_.class_of(job.task.index)].period;
@@ -144,7 +145,7 @@ bool ReadyQueue::take_loose(TaskId task, Job& job) noexcept {
   return false;
 }
 
-// The member stays in its class; setting its first release beyond this run is what takes it out of the run.
+// The member stays in its class. A first release beyond this run takes it out of the run.
 bool ReadyQueue::take_from_run(TaskId task, Job& job) noexcept {
   const std::uint32_t index = classes_.class_of(task.index), at = classes_.place(task.index);
   TaskClass& c = classes_[index];
@@ -166,7 +167,7 @@ bool ReadyQueue::take_deferred(TaskId task, Job& job) noexcept {
   return true;
 }
 
-// Moves the cursor to the next member that may run; false when the run is over.
+// Moves the cursor to the next member that may run; false if the run is over.
 bool ReadyQueue::settle(TaskClass& c) noexcept {
   for (; c.cursor < c.active; ++c.cursor) {
     const ClassMember& m = classes_.member(c, c.cursor);
@@ -186,7 +187,7 @@ void ReadyQueue::remove_run(std::uint32_t index) noexcept {
     if (runs_.items()[at] == index) return runs_.erase(at, ByUrgency{classes_});
 }
 
-// The members of a class or their standing changed: puts its run where it belongs now.
+// Restores the place of a run in the heap after its members or their order changed.
 void ReadyQueue::refresh_run(std::uint32_t index, bool had_run) noexcept {
   if (!had_run) return;
   remove_run(index);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is released when, and who runs next: the ready side of every single-context executor.
+// Decides when tasks are released and which job runs next: the ready queue of every single-context executor.
 //
 //   pause heap of classes (by next release)  --release_due-->  heap of runs (by urgency of the head)  --pop-->
 //
-// The classes of task_classes.h are released together, each by one entry of the pause heap. A pop takes the head of the
-// most urgent run, so it is O(1) while one class is ready and O(log classes) otherwise; a thousand tasks of one rate
-// cost a job no more than ten.
+// A class of task_classes.h is released as a whole, by one entry of the pause heap. A pop takes the head of the most
+// urgent run. So it is O(1) while one class is ready, and O(log classes) otherwise. With a thousand tasks of one rate,
+// a job costs no more than with ten.
 //
-// Late rule: a release that comes while the previous one has not started replaces it (1 dropped); when k > 1
-// releases went by at once the newest counts and k-1 are dropped. There is never a burst.
+// Late rule: a release replaces an earlier release of its task that has not started (1 dropped). If k > 1 releases
+// passed at once, the newest counts and k-1 are dropped. A burst never occurs.
 #pragma once
 
 #include <cstdint>
@@ -19,24 +19,24 @@
 
 namespace chimera {
 
-/// Releases that will never run: `count` of them up to and including `last`.
+/// Releases without a job: `count` of them, up to and including `last`.
 struct DroppedRelease {
   TaskId task;
   Nanoseconds last;
   std::uint32_t count = 0;
 };
 
-/// A job outside its run: preempted, or deferred until the task's previous job ended; part of QueueStorage.
+/// A job outside its run: preempted, or deferred until the previous job of its task ends; part of QueueStorage.
 struct LooseJob {
   Job job;
   Urgency urgency;
 };
 
-/// What a queue knows of a task beside its class; part of QueueStorage.
+/// The data of a task beside its class; part of QueueStorage.
 struct QueueTask {
-  bool busy = false;         ///< a job of the task was taken and has not finished (preemptive use)
+  bool busy = false;         ///< a job of the task was popped and has not finished (preemptive use)
   bool has_pending = false;  ///< `pending` was released while busy
-  bool is_loose = false;     ///< a job that never started waits among the loose ones
+  bool is_loose = false;     ///< a loose job of the task waits and never started
   Job pending;
 };
 
@@ -52,40 +52,41 @@ struct QueueStorage {
 /// Pure logic over given memory: no clock, no heap, no OS.
 class ReadyQueue {
  public:
-  /// All tasks start outside (OFF); TaskId = index in `tasks`. Requires: period > 0, every span of `storage` as
-  /// long as `tasks`. Context: setup.
+  /// All tasks start inactive (OFF); TaskId = index in `tasks`. Requires: period > 0, every span of `storage` as long
+  /// as `tasks`. Context: setup.
   ReadyQueue(Policy policy, std::span<const TaskSpec> tasks, const QueueStorage& storage) noexcept;
-  /// The instant from which the grid counts, 0 until told. Requires: nobody has joined yet. Context: setup.
+  /// Sets the origin of the grid; 0 by default. Requires: no task has joined yet. Context: setup.
   void set_origin(Nanoseconds origin) noexcept;
 
-  /// The task takes part from the first release of its grid at or after `now`. No effect when it already does.
-  /// Context: cycle boundary; O(class + log classes).
+  /// Activates the task from the first release of its grid at or after `now`. No effect if it is active. Context: cycle
+  /// boundary; O(class + log classes).
   void join(TaskId task, Nanoseconds now) noexcept;
-  /// The task takes part no more; a job of it that waits is forgotten without a count. No effect when outside.
-  /// Context: cycle boundary; O(class + classes).
+  /// Deactivates the task and discards a waiting job of it without a count. No effect if it is inactive. Context: cycle
+  /// boundary; O(class + classes).
   void leave(TaskId task) noexcept;
-  /// A job of the task waits that was released before that instant. Context: cycle boundary; O(class + waiting jobs).
+  /// True if a job of the task waits that was released before `before`. Context: cycle boundary; O(class + waiting
+  /// jobs).
   bool has_waiting(TaskId task, Nanoseconds before) const noexcept;
-  /// The newest release of the members' grids that has come; before the origin when none has. Context: cycle boundary;
-  /// O(classes).
+  /// The newest past release on the grids of active tasks; an instant before the origin if none has come. Context:
+  /// cycle boundary; O(classes).
   Nanoseconds latest_release() const noexcept;
 
-  /// The next instant at which release_due has something to do; kNever without members. Context: cycle; O(1).
+  /// The next instant at which release_due() has work; kNever without active tasks. Context: cycle; O(1).
   Nanoseconds next_release() const noexcept {
     return pauses_.is_empty() ? kNever : classes_[pauses_.top()].next;
   }
-  /// Releases every class whose time has come and calls `dropped(const DroppedRelease&)` for what is lost by it.
-  /// Context: cycle; O(log classes) for each class released, O(1) for each release dropped.
+  /// Releases each class whose time has come, and calls `dropped(const DroppedRelease&)` for lost releases. Context:
+  /// cycle; O(log classes) for each class released, O(1) for each release dropped.
   template <class Dropped>
   void release_due(Nanoseconds now, Dropped&& dropped) noexcept {
     while (next_release() <= now) release_class(pauses_.top(), now, dropped);
   }
 
   bool is_empty() const noexcept { return runs_.is_empty() && loose_.is_empty(); }
-  /// The urgency of what pop would give. Requires: not empty. Context: cycle; O(1).
+  /// The urgency of the job that pop() would return. Requires: not empty. Context: cycle; O(1).
   Urgency top_urgency() const noexcept;
-  /// Takes the most urgent job; ties: user priority, then order of the tasks. Requires: not empty.
-  /// Context: cycle; O(1) while one class is ready, else O(log classes).
+  /// Removes and returns the most urgent job; ties: user priority, then order of the tasks. Requires: not empty.
+  /// Context: cycle; O(1) while one class is ready, otherwise O(log classes).
   Job pop() noexcept {
     const std::uint32_t others = (runs_.size() - 1) | n_beside_;  // one branch for both
     if (others != 0) [[unlikely]] return pop_among();
@@ -100,17 +101,18 @@ class ReadyQueue {
     return TaskClasses::job(c, m);
   }
 
-  /// Preemptive use: the job of the task runs; releases until finish() wait for its end.
+  /// Preemptive use: a job of the task runs, and its releases wait until finish().
   void occupy(TaskId task) noexcept;
-  /// The job of the task ended; a release that came meanwhile becomes ready. Context: cycle; O(log n).
+  /// The job of the task ended; a release that came during the job becomes ready. Context: cycle; O(log n).
   void finish(TaskId task) noexcept;
   /// Puts a preempted job back, with the execution time it still needs. Context: cycle; O(log n).
   void put_back(const Job& job, Nanoseconds remaining) noexcept;
-  /// Takes the waiting (or preempted) job of the task out; false when none waits. `job` receives it.
-  /// Context: cycle; O(class + waiting jobs).
+  /// Removes the waiting or preempted job of the task and stores it in `job`; false if none waits. Context: cycle;
+  /// O(class + waiting jobs).
   bool remove(TaskId task, Job& job) noexcept;
 
-  /// Who is a member (is_active), from which release on (first_release), by which policy. Context: cycle boundary.
+  /// The classes: active tasks (is_active), their first releases (first_release), and the policy. Context: cycle
+  /// boundary.
   const TaskClasses& classes() const noexcept { return classes_; }
 
  private:
@@ -174,7 +176,7 @@ class ReadyQueue {
   TaskClasses classes_;
   std::span<QueueTask> tasks_;
   BinaryHeap<std::uint32_t> pauses_;  // of active classes
-  BinaryHeap<std::uint32_t> runs_;    // of classes with members that are yet to be popped
+  BinaryHeap<std::uint32_t> runs_;    // of classes with members left to pop
   BinaryHeap<LooseJob> loose_;
   std::uint32_t n_beside_ = 0;    // tasks that are busy, and loose jobs
   std::uint32_t n_deferred_ = 0;  // tasks with has_pending or is_loose

@@ -20,7 +20,7 @@ TaskSpec spec(std::int64_t period, std::int64_t budget = 1, std::uint32_t critic
   return t;
 }
 
-// A queue that owns its memory and remembers what was dropped.
+// A queue that owns its memory and records dropped releases.
 class Bench {
  public:
   Bench(Policy policy, std::vector<TaskSpec> tasks)
@@ -34,7 +34,7 @@ class Bench {
   void release(std::int64_t ms) {
     queue.release_due(milliseconds(ms), [this](const DroppedRelease& d) { dropped.push_back(d); });
   }
-  // Pops everything; tasks as letters, in order.
+  // Pops all jobs; returns the tasks as letters, in order.
   std::string drain() {
     std::string order;
     while (!queue.is_empty()) order += static_cast<char>('A' + queue.pop().task.index);
@@ -144,7 +144,7 @@ TEST(ReadyQueue, ReleasesANewMemberWithTheFollowingReleaseOfItsClass) {
   Bench b(Policy::kEdf, {spec(10), spec(10), spec(10)});
   b.queue.join(TaskId(1u), Nanoseconds{});
   b.release(0);
-  b.queue.join(TaskId(0u), Nanoseconds{});  // goes before B in the class, whose run has not started
+  b.queue.join(TaskId(0u), Nanoseconds{});  // comes before B in the class, whose run has not started
   b.queue.join(TaskId(2u), milliseconds(1));
   EXPECT_EQ(b.drain(), "B");
   b.release(10);
@@ -188,7 +188,7 @@ TEST(ReadyQueue, ReplacesADeferredReleaseByANewerOne) {
   ASSERT_EQ(b.dropped.size(), 1u);
   EXPECT_EQ(b.dropped[0].last, milliseconds(10));
   b.queue.finish(TaskId(0u));
-  b.release(30);  // the deferred one of 20 had become ready and never started
+  b.release(30);  // the deferred job of 20 was ready and never started
   ASSERT_EQ(b.dropped.size(), 2u);
   EXPECT_EQ(b.dropped[1].last, milliseconds(20));
   EXPECT_EQ(b.queue.pop().release, milliseconds(30));
@@ -220,7 +220,7 @@ TEST(ReadyQueue, RemovesAWaitingJobWhereverItWaits) {
   EXPECT_EQ(b.drain(), "ABC");
 }
 
-// The same rules without classes, runs or heaps: every task on its own, every choice by looking at all.
+// The same rules without classes, runs or heaps: each task alone, and each choice compares all tasks.
 class Plain {
  public:
   Plain(Policy policy, const std::vector<TaskSpec>& tasks) : policy_(policy), tasks_(tasks), of_(tasks.size()) {}
@@ -266,7 +266,7 @@ class Plain {
   Nanoseconds released_{-1};
 };
 
-// Repeatable choices.
+// A repeatable random source.
 class Dice {
  public:
   explicit Dice(std::uint32_t seed) : engine_(seed) {}

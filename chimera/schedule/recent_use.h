@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// For how long something was in use within the time that ends now, as the kernel counts what real-time threads use of
-// a processor: it takes the processor from all of them when that is too much.
+// Measures the time of use within the last `window`, as the kernel counts the use of a processor by real-time threads.
+// If they use too much, the kernel takes the processor from all of them.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace chimera {
 
-/// Exact to a hundredth of the window. Time does not go back from call to call. Context: cycle; wait-free, O(1) on the
-/// average, O(kBins) at most, no allocation.
+/// Exact to a hundredth of the window. Requires: `now` never goes back. Context: cycle; wait-free, O(1) on average,
+/// O(kBins) at most, no allocation.
 class RecentUse {
  public:
   static constexpr std::size_t kBins = 100;
@@ -19,16 +19,16 @@ class RecentUse {
   /// Requires: window >= 100 ns.
   explicit constexpr RecentUse(Nanoseconds window) noexcept : bin_{window.count / static_cast<std::int64_t>(kBins)} {}
 
-  /// It is in use from `now` on, or it is not.
+  /// Sets if the processor is in use from `now` on.
   constexpr void set(bool in_use, Nanoseconds now) noexcept {
     pass(now);
     in_use_ = in_use;
   }
-  /// Within the window that ends at `now`.
+  /// The time of use within the window that ends at `now`.
   constexpr Nanoseconds used(Nanoseconds now) noexcept {
     pass(now);
     const std::int64_t oldest = bins_[(at_ + 1) % bins_.size()].count;
-    return {total_.count - oldest * (bin_.count - (end_ - now).count) / bin_.count};  // what of it has left the window
+    return {total_.count - oldest * (bin_.count - (end_ - now).count) / bin_.count};  // without the expired part
   }
 
  private:
@@ -40,7 +40,7 @@ class RecentUse {
     }
     add(now);
   }
-  // Whatever it was for the whole of the window, it was that all the time.
+  // More than a window has passed: the present state held during all of it.
   constexpr void start_over(Nanoseconds now) noexcept {
     const Nanoseconds each = in_use_ ? bin_ : Nanoseconds{};
     bins_.fill(each);
@@ -61,10 +61,10 @@ class RecentUse {
   }
 
   Nanoseconds bin_;
-  std::array<Nanoseconds, kBins + 1> bins_{};  // the present one, and those before it
+  std::array<Nanoseconds, kBins + 1> bins_{};  // the present bin, and those before it
   std::size_t at_ = 0;
   Nanoseconds total_;                          // of all bins
-  Nanoseconds last_, end_;                     // counted up to here; of the present bin
+  Nanoseconds last_, end_;                     // end of the counted time; end of the present bin
   bool in_use_ = false;
 };
 

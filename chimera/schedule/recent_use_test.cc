@@ -35,7 +35,7 @@ TEST(RecentUse, NeverCountsMoreThanTheWindow) {
   use.set(true, kBegin);
   for (int ms = 0; ms < 500; ++ms)
     EXPECT_EQ(use.used(kBegin + milliseconds(ms)), milliseconds(std::min(ms, 100))) << ms;
-  EXPECT_EQ(use.used(kBegin + seconds(3600)), milliseconds(100)) << "however long nobody asked";
+  EXPECT_EQ(use.used(kBegin + seconds(3600)), milliseconds(100)) << "an hour without a call";
 }
 
 TEST(RecentUse, AGapLongerThanTheWindowLeavesNothing) {
@@ -47,7 +47,7 @@ TEST(RecentUse, AGapLongerThanTheWindowLeavesNothing) {
   EXPECT_EQ(use.used(kBegin + seconds(3600) + milliseconds(7)), milliseconds(7));
 }
 
-// Against the intervals themselves: never further from the truth than one bin.
+// Compares with the sum of the intervals: the error is at most one bin.
 TEST(RecentUse, AgreesWithTheSumOfTheIntervals) {
   constexpr Nanoseconds kWindow = milliseconds(100);
   std::mt19937_64 random(7);

@@ -23,7 +23,7 @@ Response preemptive_response(const Level& level, Effort& effort) noexcept {
 Response executive_response(const Level& level, Effort& effort) noexcept {
   const RankedWork& me = level.ranked[level.begin];
   const Work& w = me.work;
-  std::uint32_t bands_end = 0;  // before it: rtpus that take this whole one off the processor
+  std::uint32_t bands_end = 0;  // the rtpus before it preempt this whole rtpu
   while (level.ranked[bands_end].band != me.band) ++bands_end;
   const auto bands = level.ranked.first(bands_end);
   const auto earlier = level.ranked.subspan(bands_end, level.begin - bands_end);

@@ -29,10 +29,10 @@ TEST(ServerState, TheTextbooksSporadicServerOfMediumPriority) {
   server.charge(ms(1));
   EXPECT_EQ(server.allowance(ms(13)), Nanoseconds{});
   EXPECT_EQ(server.next_change(ms(13)), ms(14));
-  EXPECT_EQ(server.allowance(ms(14)), ms(2));  // of 4..7
+  EXPECT_EQ(server.allowance(ms(14)), ms(2));  // of the request at 4..7
   server.charge(ms(2));
   EXPECT_EQ(server.next_change(ms(16)), ms(18));
-  EXPECT_EQ(server.allowance(ms(18)), ms(2));  // of 8..10
+  EXPECT_EQ(server.allowance(ms(18)), ms(2));  // of the request at 8..10
   EXPECT_EQ(server.deadline(), ms(28));
 }
 
@@ -51,7 +51,7 @@ TEST(ServerState, TheTextbooksSporadicServerOfTheHighestPriority) {
   EXPECT_EQ(server.next_change(ms(12)), ms(18));
 }
 
-// The same book, 5.3: capacity 2, period 5. What is not used is kept to the end of the period, and no longer.
+// The same book, 5.3: capacity 2, period 5. Unused capacity stays until the end of the period, and no longer.
 TEST(ServerState, TheTextbooksDeferrableServer) {
   ServerState server({ServerKind::kDeferrable, ms(2), ms(5)}, {});
   server.activate(ms(2));
@@ -102,7 +102,7 @@ TEST(ServerState, WhatWasUsedBeyondTheAllowanceIsMadeUpFor) {
   EXPECT_EQ(sporadic.total(), ms(2));
 }
 
-// What a server used, millisecond by millisecond, when nobody else keeps it from running.
+// The use of a server, per millisecond, if no other job delays it.
 std::vector<int> use_at_random(const ServerSpec& spec, std::mt19937& random, int length) {
   ServerState server(spec, {});
   std::vector<int> used(static_cast<std::size_t>(length), 0);
@@ -147,7 +147,7 @@ TEST(ServerState, NoWindowSeesMoreThanTheKindOfServerAllows) {
     EXPECT_LE(most_in_any_window(sporadic, window, 1), capacity);
     const auto deferrable = use_at_random({ServerKind::kDeferrable, ms(capacity), ms(period)}, random, 1000);
     EXPECT_LE(most_in_any_window(deferrable, window, window), capacity);
-    came_near = came_near || most_in_any_window(deferrable, window, 1) > capacity;  // back to back
+    came_near = came_near || most_in_any_window(deferrable, window, 1) > capacity;  // two capacities back to back
   }
   EXPECT_TRUE(came_near);
 }
@@ -162,7 +162,7 @@ TEST(ServerState, MorePiecesThanAreKeptComeBackTogetherAndLate) {
   }
   EXPECT_EQ(server.next_change(ms(79)), ms(100));
   server.activate(ms(175));
-  EXPECT_EQ(server.allowance(ms(175)), ms(14));  // of before 28; the next 25 were merged
+  EXPECT_EQ(server.allowance(ms(175)), ms(14));  // charged before 28; the next 25 were merged
   server.activate(ms(176));
   EXPECT_EQ(server.allowance(ms(176)), ms(39));
   server.activate(ms(178));

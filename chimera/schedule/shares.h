@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What units that share a CPU may use of it, where there is a limit for all of them together.
+// Divides a CPU among rtpus that share it, if one limit applies to all of them together.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,14 @@
 
 namespace chimera {
 
-/// A unit as the shares see it.
+/// The data of an rtpu that decide its share.
 struct ShareMember {
   std::uint32_t cpu = 0;
-  double load = 0;  ///< by the budgets of its tasks
+  double load = 0;  ///< sum over its tasks: budget / period
 };
 
-/// The share of `members[index]`, so that all on its CPU have `all` together: what its budgets ask for, and of what is
-/// left as much as each. Where they ask for more than there is, they get it in proportion. Context: setup; O(members).
+/// The share of `members[index]`, so that all members on its CPU have `all` together. Each gets the load of its budgets
+/// and an equal part of the rest. If the loads exceed `all`, each gets its proportion. Context: setup; O(members).
 constexpr double share_of(std::span<const ShareMember> members, std::size_t index, double all) noexcept {
   double load = 0, n = 0;
   for (const ShareMember& member : members) {

@@ -61,7 +61,7 @@ void TaskClasses::activate(std::uint32_t task, Nanoseconds now) noexcept {
   const std::uint32_t from = place(task);
   ClassMember m = members[from];
   m.first = grid_at_or_after(c, now);
-  if (c.active > 0) m.first = std::max(m.first, c.next);  // the instant's release may be under way already
+  if (c.active > 0) m.first = std::max(m.first, c.next);  // the release of this instant may be running already
   members[from] = members[c.active];
   std::uint32_t to = c.active;
   for (; to > 0; --to) {

@@ -69,7 +69,7 @@ TEST_F(TaskClassesTest, LetANewcomerWaitForTheNextRelease) {
   classes.activate(0, {});
   classes.activate(4, {});
   begin_run(0);
-  classes[0].cursor = 1;  // A runs
+  classes[0].cursor = 1;  // A is running
   classes.activate(2, {});
   EXPECT_EQ(active(0), "CAE");
   EXPECT_EQ(classes.task_at_cursor(0), 4u) << "the run goes on where it was";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Proves the deadlines of a transition, level by level, for each place that the change can have in a busy window.
+// Proves the deadlines of a transition, level by level, for each place of the change in a busy window.
 #include "chimera/schedule/transition.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ enum class Precedence : std::uint8_t { kBefore, kEqual, kAfter };
 /// One attempt over the tasks of a CPU.
 class TransitionAttempt {
  public:
-  /// All given outlive this.
+  /// All arguments must outlive this object.
   TransitionAttempt(std::span<MovingWork> works, std::span<const ProcessorUse> uses, std::span<WorkVerdict> verdicts,
                     Effort& effort) noexcept
       : works_(works), uses_(uses), verdicts_(verdicts), window_(works), effort_(effort) {}
@@ -40,7 +40,7 @@ class TransitionAttempt {
   bool is_executive(const MovingWork& w) const noexcept { return use(w).dispatch == Dispatch::kExecutive; }
   std::int64_t cost() const noexcept { return static_cast<std::int64_t>(2 * works_.size()); }
 
-  /// The share of the processor that those ask for who are there with `part`, and `chosen`.
+  /// Processor share of the tasks that are `chosen`, and that stay or have `part`.
   template <class Chosen>
   double share(TransitionPart part, Chosen chosen) const noexcept {
     double sum = 0;
@@ -54,7 +54,7 @@ class TransitionAttempt {
     return std::max(share(TransitionPart::kLeaves, chosen), share(TransitionPart::kArrives, chosen));
   }
 
-  /// How `a` stands to `b`; equal: of one level, or of one period and priority.
+  /// The rank of `a` relative to `b`. Equal: in one level, or with one period and priority.
   Precedence standing(const MovingWork& a, const MovingWork& b) const noexcept {
     const auto by = [](auto x, auto y) {
       return x < y ? Precedence::kBefore : x > y ? Precedence::kAfter : Precedence::kEqual;
@@ -71,9 +71,9 @@ class TransitionAttempt {
     return standing(a, b) == Precedence::kEqual;
   }
 
-  /// A job of `a` may go before one of `b` that waits. Equals: by the order of the description where both are released
-  /// together, or in an executive; else, `mixed`, whoever is under way stays. Those of one grid that stay, under one
-  /// name or two, meet those of their own set only.
+  /// True if a job of `a` may run before a waiting job of `b`. Equals run in the order of the description if they are
+  /// released together, or in an executive. With `mixed`, the running job stays. Staying tasks of one grid, under one
+  /// name or two, meet only tasks of their own set.
   bool may_go_before(const MovingWork& a, const MovingWork& b, bool mixed) const noexcept {
     const Precedence how = standing(a, b);
     if (how != Precedence::kEqual) return how == Precedence::kBefore;
@@ -82,8 +82,8 @@ class TransitionAttempt {
     return stay ? a.ranked.task < b.ranked.task || a.partner < b.partner : a.first_task() < b.last_task();
   }
 
-  /// The longest job that can be under way when the window of `w` begins, and is not among those that go before. It
-  /// began before the window: it is of the set before where the change lies in the window.
+  /// The longest job that may run when the window of `w` begins, without the jobs that run before `w`. It began before
+  /// the window. So it belongs to the set before the change, if the change lies in the window.
   template <class CanBlock>
   Nanoseconds blocking(const MovingWork& w, CanBlock can_block) const noexcept {
     Nanoseconds most;
@@ -101,7 +101,7 @@ class TransitionAttempt {
     return least_fixed_point(std::max(from, kTick), limit, cost(), effort_, f);
   }
 
-  /// How long the processor can be busy with what is chosen and `first`: all of the processor catches up with nothing.
+  /// The longest time that the processor is busy with the chosen works and `first`. A full processor never catches up.
   Nanoseconds busy_with(Nanoseconds first) noexcept {
     Nanoseconds ahead = first;
     for (const MovingWork& w : works_)
@@ -116,7 +116,7 @@ class TransitionAttempt {
     for (MovingWork& w : works_) w.is_chosen = chosen(w);
   }
 
-  // Fixed priorities.
+  // Fixed priorities:
 
   void judge_equals(const MovingWork& first) noexcept {
     bool mixed = false;
@@ -124,7 +124,7 @@ class TransitionAttempt {
       mixed = mixed || (is_equal(w, first) && &w != &first && !w.is_on_grid_of(first));
     mixed = mixed && !is_executive(first);
     if (judge_equals(first, mixed) || mixed || is_executive(first)) return;
-    (void)judge_equals(first, true);  // one of them may be late: whoever is under way stays
+    (void)judge_equals(first, true);  // one of them may be late: the running job stays
   }
   bool judge_equals(const MovingWork& first, bool mixed) noexcept {
     bool all = true;
@@ -137,7 +137,7 @@ class TransitionAttempt {
     return all;
   }
 
-  /// Over all places of the change; kNever: none was found, or it is beyond the period.
+  /// The maximum over all places of the change; kNever: no bound was found, or it is beyond the period.
   Nanoseconds longest_response(const MovingWork& w, bool mixed) noexcept {
     Nanoseconds most;
     for (window_.set_change({}); !effort_.is_spent(); window_.set_change(window_.next_change())) {
@@ -156,13 +156,13 @@ class TransitionAttempt {
     return kNever;
   }
 
-  /// How long a window that ends with a job of one task can be, and the longest response in it.
+  /// The longest window that ends with a job of one task, and the longest response in it.
   struct Window {
     Nanoseconds length = kNever;
     Nanoseconds response;
   };
 
-  /// The first job of `w` in the window: when it is done within the period nothing of the window is left behind it.
+  /// The first job of `w` in the window. If it ends within the period, no earlier work remains behind it.
   Window preemptive(const MovingWork& w, bool mixed, Nanoseconds first) noexcept {
     if (w.part == TransitionPart::kLeaves && first >= window_.change()) return {{}, {}};
     const Work& work = w.ranked.work;
@@ -172,7 +172,7 @@ class TransitionAttempt {
     return {end, end - first};
   }
 
-  /// All jobs of `w` in a busy period of it and what goes before it, behind the longest job that does not.
+  /// All jobs of `w` in the busy period of `w` and the jobs before it, behind the longest other job.
   Window in_executive(const MovingWork& w, bool mixed, Nanoseconds first) noexcept {
     const Work& work = w.ranked.work;
     const auto goes_before = [&](const MovingWork& o) { return &o != &w && may_go_before(o, w, mixed); };
@@ -200,7 +200,7 @@ class TransitionAttempt {
     return window;
   }
 
-  // Earliest deadline and least laxity.
+  // Earliest deadline and least laxity:
 
   void judge_level(const MovingWork& first) noexcept {
     const bool is_laxity = order(first) == LevelOrder::kLaxity;
@@ -235,7 +235,7 @@ class TransitionAttempt {
     }
   }
 
-  /// Behind the longest job that stands to the level as `blocker`, or lower.
+  /// The longest window behind the longest job whose rank relative to the level is `blocker` or lower.
   Nanoseconds longest_window(const MovingWork& first, Precedence blocker, Nanoseconds extra) noexcept {
     choose([&](const MovingWork& w) { return standing(w, first) != Precedence::kAfter; });
     return busy_with(extra + blocking(first, [&](const MovingWork& w) {
@@ -244,8 +244,9 @@ class TransitionAttempt {
                      }));
   }
 
-  /// Deadlines from the longest window down. As in level.cc all between the end of a demand and it are skipped, but for
-  /// a leaving job that blocks behind the change: what it blocks grows as the window shrinks.
+  /// Checks deadlines from the longest window down. Like level.cc it skips all deadlines between the end of a demand
+  /// and the demand. The exception is a leaving job that blocks behind the change: its blocking grows as the window
+  /// shrinks.
   Judgement demand_holds(const MovingWork& first, Nanoseconds extra, Nanoseconds longest) noexcept {
     const bool leaps = !is_executive(first) || window_.change() > Nanoseconds{};
     const auto is_of_level = [&](const MovingWork& w) { return is_equal(w, first); };
@@ -290,7 +291,7 @@ class TransitionAttempt {
   Effort& effort_;
 };
 
-/// The tasks of one CPU that take part, those of a grid in a row.
+/// The tasks of one CPU that take part; tasks of one grid are adjacent.
 std::span<MovingWork> moving_works(std::span<const Work> works, std::span<const TransitionPart> parts,
                                    std::span<const ProcessorUse> uses, std::uint32_t cpu,
                                    std::span<MovingWork> room) noexcept {
@@ -299,7 +300,7 @@ std::span<MovingWork> moving_works(std::span<const Work> works, std::span<const 
     CHIMERA_ASSERT(works[i].rtpu < uses.size() && works[i].period > Nanoseconds{});
     if (parts[i] == TransitionPart::kAbsent || uses[works[i].rtpu].cpu != cpu) continue;
     CHIMERA_ASSERT(n < room.size());
-    // What events make of a server before and after the change is less than with events all the time.
+    // A server counts as if events came all the time: this bounds its work before and after the change.
     room[n++] = {ranked_work(works, uses, i), works[i].server ? TransitionPart::kStays : parts[i], i};
   }
   const auto moving = room.first(n);
@@ -313,7 +314,7 @@ std::span<MovingWork> moving_works(std::span<const Work> works, std::span<const 
   return moving;
 }
 
-/// An arriving task does what a leaving one of its time could go on to do.
+/// True if an arriving task behaves as a leaving task of its time would continue to do.
 bool is_like_for_like(const MovingWork& leaving, const MovingWork& arriving) noexcept {
   const Work &a = leaving.ranked.work, &b = arriving.ranked.work;
   return leaving.part == TransitionPart::kLeaves && arriving.part == TransitionPart::kArrives && a.rtpu == b.rtpu &&
@@ -321,7 +322,7 @@ bool is_like_for_like(const MovingWork& leaving, const MovingWork& arriving) noe
          a.user_priority == b.user_priority;
 }
 
-/// The longest of `works` that `is_one` and is not paired; nullptr: none.
+/// The longest of `works` that fulfils `is_one` and is not paired; nullptr: none.
 template <class IsOne>
 MovingWork* longest_of(std::span<MovingWork> works, IsOne is_one) noexcept {
   MovingWork* longest = nullptr;
@@ -330,8 +331,8 @@ MovingWork* longest_of(std::span<MovingWork> works, IsOne is_one) noexcept {
   return longest;
 }
 
-/// Makes one task that stays of each leaving task and the one that takes its place, the longest with the longest, so
-/// that the sum of the longer ones is the least. What is left of `works`.
+/// Joins each leaving task and its replacement into one task that stays. It pairs the longest with the longest, so that
+/// the sum of the longer times is least. Returns the rest of `works`.
 std::span<MovingWork> pair_up(std::span<MovingWork> works) noexcept {
   for (MovingWork& w : works) w.is_judged = false;
   for (std::size_t n = works.size();;) {

@@ -60,7 +60,7 @@ TEST(Transition, OfLikeForLikeFitsWhereverTheLongerTimeDoes) {
 }
 
 TEST(Transition, OnAnotherGridMeetsTheLastJobOfTheOneBefore) {
-  // The same rates and times, but 9 ms after the last release before comes the first one behind the change.
+  // The same rates and times. The first release after the change comes 9 ms after the last one before it.
   const Judged far({work(10, 6), work(10, 6, 9)}, {Part::kLeaves, Part::kArrives}, {use(Policy::kEdf)});
   EXPECT_FALSE(far.fits());
   const Judged near({work(10, 6), work(10, 4, 9)}, {Part::kLeaves, Part::kArrives}, {use(Policy::kEdf)});
@@ -74,7 +74,7 @@ TEST(Transition, CountsTheCarryInOfALeavingTaskOfHigherPriority) {
   const std::vector<Part> parts = {Part::kLeaves, Part::kArrives, Part::kStays};
   const Judged j(works, parts, {use(Policy::kRm)});
   EXPECT_TRUE(j.fits());
-  // One job of 4 ms just before the change, and three of 3 ms from it on.
+  // One job of 4 ms just before the change, and three of 3 ms from the change on.
   EXPECT_EQ(j.response(2), 20);
   EXPECT_EQ(Judged(works, {Part::kLeaves, Part::kAbsent, Part::kStays}, {use(Policy::kRm)}).response(2), 15);
   EXPECT_EQ(Judged(works, {Part::kAbsent, Part::kArrives, Part::kStays}, {use(Policy::kRm)}).response(2), 13);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a task asks of its processor, and how a processor orders what is asked: the input of the analysis.
+// The demand of a task, and the order of jobs on a processor: the input of the analysis.
 //
-// Assumptions of every figure made from it:
+// Assumptions of every result:
 //   * a task releases jobs at least `period` apart, each of at most `time`; a set is judged for its worst case, all
 //     released at one instant (offsets are ignored: they can only help);
 //   * a job never waits for anything but the processor; the cost of switching and of transfers is part of `time`;
@@ -18,29 +18,29 @@
 
 namespace chimera {
 
-/// One task, or the server of an aperiodic one: then `time` is its capacity and `deadline` its period.
+/// A task, or the server of an aperiodic task: then `time` is its capacity and `deadline` its period.
 struct Work {
   Nanoseconds period;    ///< above 0
   Nanoseconds deadline;  ///< relative, 0 < deadline <= period
   Nanoseconds offset;    ///< of the grid of releases; decides ties and data age only
-  Nanoseconds time;      ///< execution time of a job at most, transfers included; 0: not known
+  Nanoseconds time;      ///< longest execution time of a job, with transfers; 0: not stated
   std::uint32_t criticality = 0;
   std::uint32_t user_priority = 0;
   std::uint32_t rtpu = 0;  ///< index of its ProcessorUse
   std::optional<ServerKind> server;
 };
 
-/// Whether a job that runs can be taken off the processor by a more urgent one of its rtpu.
+/// kPreemptive: a more urgent job of the rtpu preempts a running job.
 enum class Dispatch : std::uint8_t { kPreemptive, kExecutive };
 
-/// An rtpu, as the analysis sees it. Those that share a CPU have bands (schedule/bands.h): a higher band goes before
-/// everything of a lower one.
+/// An rtpu in the form of the analysis. Rtpus on one CPU have bands (schedule/bands.h): all tasks of a higher band run
+/// before those of a lower one.
 struct ProcessorUse {
   std::uint32_t cpu = 0;
-  std::uint32_t criticality = 0;  ///< of its most critical task, ON or not: settles the band, ties by index
+  std::uint32_t criticality = 0;  ///< of its most critical task, ON or not: decides the band; ties by index
   Policy policy = Policy::kEdf;
   Dispatch dispatch = Dispatch::kPreemptive;
-  Nanoseconds quantum = milliseconds(1);  ///< laxity policies: a running job is compared again this often
+  Nanoseconds quantum = milliseconds(1);  ///< laxity policies: the running job is compared again at this interval
 };
 
 }  // namespace chimera

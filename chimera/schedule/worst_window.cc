@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plays the worst window of a set of tasks: all releases at once, all budgets used up.
+// Simulates the worst window of a set of tasks: all releases at once, all budgets used up.
 #include "chimera/schedule/worst_window.h"
 
 #include <algorithm>
@@ -54,7 +54,7 @@ class Window {
     return uses_[works_[i].rtpu].cpu == cpu_ && works_[i].time > Nanoseconds{};
   }
 
-  /// In each executive: the longest job of all but the first in order is under way when the others are released.
+  /// In each executive, the longest job except the first in order is running when the others are released.
   void open_behind_a_blocker() noexcept {
     for (std::uint32_t r = 0; r < uses_.size(); ++r) {
       if (uses_[r].cpu != cpu_ || uses_[r].dispatch != Dispatch::kExecutive) continue;
@@ -82,7 +82,7 @@ class Window {
       t.left = w.time;
       t.is_active = true;
       t.has_started = false;
-      // A deferrable server: all of its capacity at the end of a period, then that of the next.
+      // A deferrable server uses its whole capacity at the end of a period, and then that of the next period.
       const bool is_end = w.server == ServerKind::kDeferrable && t.releases == 0;
       t.next += is_end ? w.time : w.period;
       ++t.releases;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The worst window as it would be seen: everything released at once, every job as long as it may be, in an executive
-// just behind the longest job that goes last. A picture to look at, not a proof: analysis.h has that.
+// Shows the worst window: all tasks are released at once, every job uses its whole time. In an executive, the longest
+// last-ranked job has just begun. It is a picture, not a proof; analysis.h has the proof.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace chimera {
 
-/// One task held the processor from `from` to `to`; what reaches beyond the window is cut there.
+/// One task ran from `from` to `to`. A run that goes beyond the window is cut at its end.
 struct WindowRun {
   std::uint32_t task = 0;
   Nanoseconds from, to;
@@ -24,12 +24,12 @@ struct WindowTask {
 };
 
 struct WorstWindow {
-  Nanoseconds length;     ///< how far it was drawn: at most as far as asked
-  std::size_t runs = 0;   ///< of `runs` written
+  Nanoseconds length;     ///< length of the window drawn: at most the requested length
+  std::size_t runs = 0;   ///< number of `runs` written
 };
 
-/// Plays `works` on `cpu` for `length`, or until `runs` is full. A late job goes on; of releases behind it the newest
-/// counts. `room` is as long as `works`. Context: setup; pure.
+/// Simulates `works` on `cpu` for `length`, or until `runs` is full. A late job continues; of the releases behind it
+/// only the newest counts. `room` is as long as `works`. Context: setup; pure.
 WorstWindow worst_window(std::span<const Work> works, std::span<const ProcessorUse> uses, std::uint32_t cpu,
                          Nanoseconds length, std::span<WindowTask> room, std::span<WindowRun> runs) noexcept;
 

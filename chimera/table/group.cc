@@ -33,13 +33,14 @@ GroupReader::GroupReader(const std::byte* memory, std::uint32_t payload_bytes) n
 }
 
 void GroupWriter::publish_initial(Nanoseconds now, std::uint64_t valid) noexcept {
-  // Before the counter: who sees the publication sees this. pairs with the load of is_initial(), by the counter
+  // Stored before the counter: a reader that sees the publication also sees this number. Pairs, through the counter,
+  // with the load of is_initial().
   shared_copy::word(base_ + kInitialAt).store(latest_ + 1, std::memory_order_release);
   publish(now, valid);
 }
 
 bool GroupReader::is_initial(std::uint64_t sequence) const noexcept {
-  // pairs with the store of publish_initial(); a publication is read before it is asked about
+  // Pairs with the store of publish_initial(). Callers read a publication before they ask about it.
   return sequence <= shared_copy::word(base_ + kInitialAt).load(std::memory_order_acquire);
 }
 

@@ -12,9 +12,9 @@
 //      7      < 8 >      5        6      [ 7 ]       m = 7: 8 may be half written over it: try again
 //             [latest publication]  <being filled>
 //
-// Invariants: (1) slot c mod 4, c the counter, is complete and nobody writes it; (2) the only slot written to is
-// (c+1) mod 4; (3) the counter only grows, by one a publication. A writer that dies at any instruction leaves
-// all three true: nothing is repaired, its successor fills slot (c+1) mod 4 again. Readers never store.
+// Invariants: (1) slot c mod 4, where c is the counter, is complete and no thread writes it; (2) the writer writes only
+// slot (c+1) mod 4; (3) the counter only grows, by one for each publication. If a writer dies at any instruction, all
+// three still hold: its successor fills slot (c+1) mod 4 again and repairs nothing. Readers never store.
 #pragma once
 
 #include <cstddef>
@@ -31,24 +31,24 @@ namespace chimera {
 class GroupWriter {
  public:
   GroupWriter() noexcept = default;
-  /// Takes up writing where the counter of `memory` stands; zeroed memory is a group never written.
-  /// Requires: memory.size() >= group_bytes(payload_bytes), 64-byte aligned. Context: setup.
+  /// Continues from the counter of `memory`; zeroed memory is a group never written. Requires: memory.size() >=
+  /// group_bytes(payload_bytes), 64-byte aligned. Context: setup.
   GroupWriter(std::span<std::byte> memory, std::uint32_t payload_bytes) noexcept;
 
-  /// Where the next publication's values go; 8-byte aligned. Changes with every publish(). What stands there is
-  /// that of four publications ago until prefill(). Context: cycle; wait-free.
+  /// Memory for the values of the next publication; 8-byte aligned. The address changes with every publish(). Until
+  /// prefill() the memory holds the values of four publications ago. Context: cycle; wait-free.
   std::byte* staging() const noexcept { return slot_of(latest_ + 1) + sizeof(chimera_slot); }
   /// Makes the staged values the latest. Context: cycle; wait-free.
   void publish(Nanoseconds now, std::uint64_t valid) noexcept;
-  /// The same for values that no method of a task has made: the initial values of a new incarnation. Context: setup.
+  /// Publishes values that no method computed: the initial values of a new incarnation. Context: setup.
   void publish_initial(Nanoseconds now, std::uint64_t valid) noexcept;
-  /// Stages payload_bytes from `values` and publishes them: what a task with a local table does after a method.
+  /// Stages payload_bytes from `values` and publishes them. A task with a local table calls this after a method.
   /// Context: cycle; wait-free; O(payload).
   void write(const std::byte* values, Nanoseconds now, std::uint64_t valid) noexcept;
-  /// Copies the latest published values into staging, so that outputs stand until overwritten.
+  /// Copies the latest published values into staging, so that each output keeps its value until a method writes it.
   /// Context: cycle; wait-free; O(payload).
   void prefill() noexcept;
-  /// The latest publication, its values behind the header; nobody changes it before the next but one.
+  /// The latest publication; its values follow the header. They stay unchanged until the second publication after it.
   /// Context: cycle; wait-free.
   const chimera_slot* published() const noexcept { return reinterpret_cast<const chimera_slot*>(slot_of(latest_)); }
   /// Publications so far. Context: cycle; wait-free.
@@ -63,7 +63,7 @@ class GroupWriter {
   std::byte* base_ = nullptr;
   std::uint32_t payload_bytes_ = 0;
   std::uint32_t stride_ = 0;
-  std::uint64_t latest_ = 0;  // what the counter says; nobody else stores to it
+  std::uint64_t latest_ = 0;  // equals the counter; no other thread stores to it
 };
 
 /// A reading side. Works on a read-only mapping.
@@ -81,32 +81,30 @@ class GroupReader {
     std::uint64_t n = shared_copy::word(base_).load(std::memory_order_acquire);  // pairs with the store of publish()
     return read_slot(n, header, values) || try_again(n, header, values);
   }
-  /// The same into a copy of a slot, whose values follow its header: one copy instead of two.
-  /// Requires: sizeof(chimera_slot) + payload_bytes at `to`. Context: cycle; bounded; plain loads only.
+  /// Reads into a copy of a slot, whose values follow its header: one copy instead of two. Requires:
+  /// sizeof(chimera_slot) + payload_bytes at `to`. Context: cycle; bounded; plain loads only.
   [[nodiscard]] bool try_read(chimera_slot* to) const noexcept {
     std::uint64_t n = shared_copy::word(base_).load(std::memory_order_acquire);  // pairs with the store of publish()
     return read_slot(n, to) || try_again(n, to);
   }
-  /// Copies `values.size()` bytes from `offset` on, and the header: of a large group no more than is wanted.
-  /// Requires: offset divisible by 8, offset + values.size() <= payload_bytes(). Context: cycle; bounded; plain loads
-  /// only.
+  /// Copies the header and `values.size()` bytes from `offset` on, for readers of a part of a large group. Requires:
+  /// offset divisible by 8, offset + values.size() <= payload_bytes(). Context: cycle; bounded; plain loads only.
   [[nodiscard]] bool try_read_part(chimera_slot& header, std::uint32_t offset,
                                    std::span<std::byte> values) const noexcept;
-  /// The latest published slot in place: its values follow the header. Only where writer and reader run
-  /// in one context, so that nothing is published while the pointer is in use.
-  /// Context: cycle; wait-free.
+  /// The latest published slot in place: its values follow the header. Requires: writer and reader run in one context,
+  /// so that no publication occurs while the pointer is in use. Context: cycle; wait-free.
   const chimera_slot* published() const noexcept;
-  /// True when publication `sequence` holds initial values and was made by no method of a task.
-  /// Context: cycle boundary; wait-free.
+  /// True if publication `sequence` holds initial values that no method of a task computed. Context: cycle boundary;
+  /// wait-free.
   bool is_initial(std::uint64_t sequence) const noexcept;
   std::uint32_t payload_bytes() const noexcept { return payload_bytes_; }
-  /// False for one that was made without memory: it must not be read.
+  /// False for a reader that was made without memory: it must not read.
   bool is_bound() const noexcept { return base_ != nullptr; }
 
  private:
   const std::byte* slot(std::uint64_t n) const noexcept { return base_ + kCacheLine + n % kSlots * stride_; }
 
-  // One try at publication n; when it was overtaken, n becomes the latest.
+  // Tries once to read publication n. If the writer overtook the copy, sets n to the latest publication.
   bool read_slot(std::uint64_t& n, chimera_slot& header, std::byte* values) const noexcept {
     const std::byte* from = slot(n);
     shared_copy::load_header(header, from);
@@ -114,19 +112,19 @@ class GroupReader {
     return was_whole(base_, n);
   }
   bool read_slot(std::uint64_t& n, chimera_slot* to) const noexcept {
-    const std::byte* const base = base_;  // a copy may write anywhere, as the compiler sees it
+    const std::byte* const base = base_;  // the compiler must assume that a copy may write anywhere
     shared_copy::copy_out(to, slot(n), sizeof *to + payload_bytes_);
     return was_whole(base, n);
   }
-  // After a copy of slot n: was it left alone? Then n becomes the latest.
+  // Checks, after a copy of slot n, that the writer did not touch the slot. Sets n to the latest publication.
   static bool was_whole(const std::byte* base, std::uint64_t& n) noexcept {
     shared_copy::acquire_fence();  // pairs with the fence at the end of publish()
     const std::uint64_t m = shared_copy::word(base).load(std::memory_order_acquire);  // acquire: for the next try
-    const bool is_whole = m - n <= kSlots - 2;  // n + kSlots is begun once the counter says n + kSlots - 1
+    const bool is_whole = m - n <= kSlots - 2;  // n + kSlots begins when the counter is n + kSlots - 1
     n = m;
     return is_whole;
   }
-  // The tries after the first, seldom needed.
+  // All tries after the first; rarely needed.
   bool try_again(std::uint64_t n, chimera_slot& header, std::byte* values) const noexcept;
   bool try_again(std::uint64_t n, chimera_slot* to) const noexcept;
 
@@ -136,13 +134,13 @@ class GroupReader {
 };
 
 inline void GroupWriter::publish(Nanoseconds now, std::uint64_t valid) noexcept {
-  // All members are loaded first: a store to the group may change them, as the compiler sees it.
+  // Loads all members first: the compiler must assume that a store to the group may change them.
   std::byte* const base = base_;
   const std::uint64_t n = latest_ + 1;
   shared_copy::store_header(slot_of(n), {now.count, n, valid, 0});
-  // Whoever loads this value sees the whole slot. pairs with the first load of try_read()
+  // A reader that loads this value sees the whole slot. Pairs with the first load of try_read().
   shared_copy::word(base).store(n, std::memory_order_release);
-  // Whoever sees a byte of the next staging sees this counter. pairs with the fence of read_slot()
+  // A reader that sees a byte of the next staging sees this counter. Pairs with the fence of read_slot().
   shared_copy::release_fence();
   latest_ = n;
 }

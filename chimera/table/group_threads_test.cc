@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A writer that floods and readers that check every byte: under the thread sanitizer a race, elsewhere a tear.
+// One writer publishes without pause, and readers check every byte. The thread sanitizer reports a race; other builds
+// find a torn copy.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -70,7 +71,7 @@ TEST(GroupThreads, FloodingWriterNeverTearsARead) {
   std::vector<std::thread> readers;
   for (auto& count : counts) readers.emplace_back([&] { count = read_until(stop, *memory, &saw_last); });
   flood(*memory, kFlood);
-  while (saw_last.load() != 2) std::this_thread::yield();  // each reader got to the end
+  while (saw_last.load() != 2) std::this_thread::yield();  // each reader has reached the end
   stop = true;
   for (auto& reader : readers) reader.join();
   for (const Count& count : counts) {

@@ -27,7 +27,7 @@ class Fnv1a {
   std::uint64_t value_ = 0xcbf29ce484222325u;
 };
 
-// Places the variables of `spec` one behind the other; the payload's bytes, or why not.
+// Places the variables of `spec` one after another. Returns the bytes of the payload, or the reason of a refusal.
 Result<std::uint32_t> place_variables(const GroupSpec& spec, GroupId group, std::span<VariablePlace> places) noexcept {
   if (spec.variables.size() > kMaxGroupVariables)
     return (Message() << spec.owner << " publishes " << spec.variables.size() << " variables, at most "

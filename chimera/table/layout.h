@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where everything lies in the table, planned once: extents at their maxima, values at multiples of 8 within the
-// payload, groups at multiples of 64 within the region. docs/formats/table.md.
+// Plans the place of each group and variable in the table, once. Extents count with their maxima, values lie at
+// multiples of 8 within the payload, groups at multiples of 64 within the region. docs/formats/table.md.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 namespace chimera {
 
 inline constexpr std::uint32_t kMaxGroupVariables = 64;      // bits of chimera_slot::valid
-inline constexpr std::uint64_t kMaxPayloadBytes = 1u << 24;  // more belongs behind a resource port
+inline constexpr std::uint64_t kMaxPayloadBytes = 1u << 24;  // larger values belong behind a resource port
 
 /// A group in the region: group_bytes(payload_bytes) bytes from `offset`.
 struct GroupPlace {
@@ -31,17 +31,17 @@ struct VariablePlace {
   std::uint32_t bit = 0;     ///< in chimera_slot::valid
 };
 
-/// The plan. Holds no memory of its own: places are written into what the caller gives and keeps alive.
-/// Immutable after plan(). Context of reading: any; wait-free.
+/// The plan. It owns no memory: plan() writes the places into spans that the caller keeps alive. Immutable after
+/// plan(). Context of reading: any; wait-free.
 class TableLayout {
  public:
   TableLayout() noexcept = default;
 
-  /// Variables of all groups together: the length that plan() needs for `variables`. Context: setup.
+  /// The number of variables in all groups: the length that plan() needs for `variables`. Context: setup.
   static std::uint32_t count_variables(std::span<const GroupSpec> specs) noexcept;
-  /// Lays the groups one behind the other in the order given. Refuses a variable of zero bytes, more than 64
-  /// variables or 16 MiB of values in a group, and a region below region_bytes(), saying by how much.
-  /// Requires: groups.size() >= specs.size(), variables.size() >= count_variables(specs). Context: setup.
+  /// Places the groups one after another in the given order. Refuses a variable of zero bytes, more than 64 variables
+  /// or 16 MiB of values in a group, and a region below region_bytes(), with the missing bytes. Requires: groups.size()
+  /// >= specs.size(), variables.size() >= count_variables(specs). Context: setup.
   static Result<TableLayout> plan(std::span<const GroupSpec> specs, std::uint64_t available_bytes,
                                   std::span<GroupPlace> groups, std::span<VariablePlace> variables) noexcept;
 
@@ -50,9 +50,9 @@ class TableLayout {
   const GroupPlace& group(GroupId id) const noexcept;
   /// Variable `index` of the group, counted as in its GroupSpec.
   const VariablePlace& variable(GroupId id, std::uint32_t index) const noexcept;
-  /// Bytes of the region that are in use, from its start.
+  /// Bytes of the region in use, from its start.
   std::uint64_t region_bytes() const noexcept { return region_bytes_; }
-  /// The same for two processes if and only if they mean the same owners, names, sizes and places (64-bit FNV-1a).
+  /// Equal in two processes only if their owners, names, sizes and places are equal (64-bit FNV-1a).
   std::uint64_t hash() const noexcept { return hash_; }
 
  private:

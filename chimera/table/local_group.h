@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A task's own copy of a group that another context produces. Two halves: one is used, the other is read into;
-// they change places only when a read succeeded, so that an overtaken read never spoils what the task sees.
+// The copy that a task keeps of a group from another context. The copy has two halves: the task uses one, and refresh()
+// reads into the other. The halves change places only after a successful read, so an overtaken read never damages the
+// used half.
 #pragma once
 
 #include <cstddef>
@@ -18,16 +19,16 @@ constexpr std::size_t local_group_bytes(std::size_t payload_bytes) noexcept { re
 class LocalGroup {
  public:
   LocalGroup() noexcept = default;
-  /// Until the first successful refresh() the slot is never-written with the values that stand in `memory`: fill
+  /// Until the first successful refresh() the slot is never-written and holds the values in `memory`. Fill
   /// values_of_half() of both halves before use. Requires: memory.size() >= local_group_bytes(payload), 64-byte
   /// aligned. Context: setup.
   LocalGroup(GroupReader reader, std::span<std::byte> memory) noexcept;
 
-  /// Where the values of half 0 or 1 lie: for the never-written fill. Context: setup.
+  /// Address of the values of half 0 or 1, for the never-written fill. Context: setup.
   std::span<std::byte> values_of_half(std::uint32_t half) const noexcept;
 
-  /// Takes over the latest publication. False when the writer overtook every try: the previous copy stays and
-  /// counts as stale. Context: cycle; bounded; O(payload).
+  /// Copies the latest publication. False if the writer overtook every try: the previous copy stays and counts as
+  /// stale. Context: cycle; bounded; O(payload).
   bool refresh() noexcept {
     if (!reader_.try_read(spare_)) [[unlikely]] {
       ++stale_;
@@ -38,13 +39,13 @@ class LocalGroup {
     used_ = read;
     return true;
   }
-  /// From now on reads `reader`, keeping the present copy until the next refresh(). Requires: same payload size.
-  /// Context: cycle; wait-free.
+  /// Reads `reader` from now on; the present copy stays until the next refresh(). Requires: same payload size. Context:
+  /// cycle; wait-free.
   void rebind(GroupReader reader) noexcept;
 
-  /// The present copy: header, then values. Changes its place with refresh(). Context: cycle; wait-free.
+  /// The present copy: header, then values. Each refresh() may change its address. Context: cycle; wait-free.
   const chimera_slot* slot() const noexcept { return used_; }
-  /// Reads that were overtaken, since construction.
+  /// Number of overtaken reads since construction.
   std::uint64_t stale() const noexcept { return stale_; }
 
  private:

@@ -11,7 +11,7 @@
 namespace chimera::local_group_threads_test {
 namespace {
 
-constexpr std::uint32_t kPayload = 1u << 20;  // long enough to copy that another thread gets in between
+constexpr std::uint32_t kPayload = 1u << 20;  // the copy takes so much time that another thread runs during it
 
 struct alignas(kCacheLine) Group {
   std::byte bytes[group_bytes(kPayload)]{};
@@ -30,7 +30,7 @@ TEST(LocalGroupThreads, AnOvertakenReadKeepsThePreviousCopyAndCounts) {
   ASSERT_TRUE(local.refresh());
 
   std::atomic<bool> stop{false};
-  std::thread flood([&] {  // publishes without end, so fast that no copy is finished in time
+  std::thread flood([&] {  // publishes without pause, so fast that no copy ends in time
     GroupWriter fast(group->bytes, kPayload);
     while (!stop.load(std::memory_order_relaxed)) fast.publish(Nanoseconds{2}, 1);
   });

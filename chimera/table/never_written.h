@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a variable holds before anybody wrote it: floats NaN, so that a reader who forgets to ask valid() notices,
-// everything else zero.
+// The value of a variable before its first publication. Floats are NaN, so that a reader that does not call valid()
+// notices; all other types are zero.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,10 @@
 
 namespace chimera {
 
-/// How the elements of a never-written variable look. A struct is filled field by field.
+/// The kind of the elements of a never-written variable. A struct is filled field by field.
 enum class NeverWritten : std::uint8_t { kZero, kFloat32, kFloat64 };
 
-/// Fills `values` whole; a rest smaller than an element becomes zero. Context: setup; wait-free.
+/// Fills all of `values`; a remainder smaller than an element becomes zero. Context: setup; wait-free.
 inline void fill_never_written(std::span<std::byte> values, NeverWritten kind) noexcept {
   if (values.empty()) return;
   std::memset(values.data(), 0, values.size());

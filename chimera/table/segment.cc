@@ -14,7 +14,7 @@ namespace {
 bool fits(std::uint64_t size, const Link& link) noexcept {
   if (link.payload_bytes > kMaxPayloadBytes || link.offset % kCacheLine != 0) return false;
   if (link.offset < sizeof(SegmentHeader) || link.offset > size) return false;
-  return group_bytes(link.payload_bytes) <= size - link.offset;  // no sum that could overflow
+  return group_bytes(link.payload_bytes) <= size - link.offset;  // subtracts, because a sum could overflow
 }
 
 }  // namespace
@@ -24,7 +24,7 @@ Result<SegmentView> SegmentView::open(std::span<const std::byte> bytes, std::uin
     return (Message() << "segment of " << bytes.size() << " bytes is shorter than its header of "
                       << sizeof(SegmentHeader))
         .error(ErrorCode::kBadInput);
-  SegmentHeader header;  // read once: it may change under our eyes when its owner is broken
+  SegmentHeader header;  // copied once: a broken owner may change the original at any time
   std::memcpy(&header, bytes.data(), sizeof header);
   if (header.magic != kSegmentMagic)
     return Message("not a state variable table: the first 8 bytes are not CHIMTBL1").error(ErrorCode::kBadInput);

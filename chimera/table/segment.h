@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A table over bytes that other processes map: a header that says what lies there, the planned groups, headroom.
-// docs/formats/table.md. What is read from the header is compared, never believed: sizes and offsets come from the
-// reader's own plan or are checked against the bytes it really mapped.
+// A table in memory that other processes map: a header that describes it, the planned groups, and headroom.
+// docs/formats/table.md. Readers compare the header and never trust it. Sizes and offsets come from the plan of the
+// reader, or are checked against the mapped bytes.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct SegmentHeader {
 };
 static_assert(sizeof(SegmentHeader) == 64);
 
-/// Where a group lies: never an address, because every process maps a segment elsewhere.
+/// The place of a group. A link holds no address, because each process maps a segment at a different one.
 struct Link {
   std::uint32_t segment = UINT32_MAX;  ///< number of the segment, from 0
   std::uint32_t payload_bytes = 0;
@@ -37,17 +37,16 @@ struct Link {
   constexpr bool operator==(const Link&) const noexcept = default;
 };
 
-/// A segment as a reader sees it. Plain value over mapped bytes.
+/// A segment as a reader sees it: a plain value over mapped bytes.
 class SegmentView {
  public:
-  /// Refuses what is not a segment, has another version, another layout, or says another size than the bytes given.
-  /// Context: setup.
+  /// Refuses bytes that are no segment, and a segment with another version, layout or size. Context: setup.
   static Result<SegmentView> open(std::span<const std::byte> bytes, std::uint64_t layout_hash) noexcept;
 
-  /// The group that `link` names (its segment number is the caller's business). Refuses one that is not aligned or
-  /// reaches beyond the segment. Context: setup, or at a rebinding in a cycle: wait-free.
+  /// The group that `link` names; the caller checks its segment number. Refuses a group that is not aligned or reaches
+  /// beyond the segment. Context: setup, or at a rebinding in a cycle: wait-free.
   Result<GroupReader> group(const Link& link) const noexcept;
-  /// The planned group `id` as a link into segment `number`. Requires: `layout` has the hash of open().
+  /// A link to the planned group `id` in segment `number`. Requires: `layout` has the hash of open().
   static Link planned(const TableLayout& layout, GroupId id, std::uint32_t number) noexcept;
 
  private:
@@ -55,14 +54,14 @@ class SegmentView {
   std::span<const std::byte> bytes_;
 };
 
-/// The owning side: formats, and hands out what is left behind the planned groups.
+/// The owner of a segment: formats it, and gives out the headroom.
 class SegmentOwner {
  public:
-  /// Writes the header; the rest must be zeroed bytes. Refuses bytes too few for the layout, saying by how much.
+  /// Writes the header; all other bytes must be zero. Refuses too few bytes for the layout, with the missing number.
   /// Requires: 64-byte aligned. Context: setup.
   static Result<SegmentOwner> format(std::span<std::byte> bytes, const TableLayout& layout) noexcept;
 
-  /// A further group out of the headroom, never given back. Refuses when the headroom is used up.
+  /// Reserves one more group in the headroom; it is never returned. Refuses when the headroom is used up.
   Result<Link> claim(std::uint32_t payload_bytes, std::uint32_t number) noexcept;
   /// Requires: a link of this segment, from planned() or claim().
   GroupWriter writer(const Link& link) const noexcept;
@@ -71,10 +70,10 @@ class SegmentOwner {
  private:
   SegmentOwner(std::span<std::byte> bytes, std::uint64_t used) noexcept : bytes_(bytes), used_(used) {}
   std::span<std::byte> bytes_;
-  std::uint64_t used_ = 0;  // known to the owner alone: what others could write is not trusted
+  std::uint64_t used_ = 0;  // kept outside the segment, because other processes could write there
 };
 
-/// Bytes of a segment with `headroom_bytes` behind the planned groups.
+/// Bytes of a segment with the planned groups and `headroom_bytes`.
 inline std::uint64_t segment_bytes(const TableLayout& layout, std::uint64_t headroom_bytes) noexcept {
   return sizeof(SegmentHeader) + layout.region_bytes() + headroom_bytes;
 }

@@ -92,7 +92,7 @@ TEST_F(Segment, RefusesLinksThatLeaveTheSegment) {
   for (const Link& link : {Link{0, 16, 0},                         // the header itself
                            Link{0, 16, 72},                        // not aligned
                            Link{0, 16, size - 64}, Link{0, 16, size}, Link{0, 16, size + 64},
-                           Link{0, 16, UINT64_MAX - 63},           // would wrap round
+                           Link{0, 16, UINT64_MAX - 63},           // would wrap around
                            Link{0, UINT32_MAX, 64}, Link{0, 1u << 20, 64}})
     EXPECT_FALSE(view->group(link).has_value()) << link.offset << " " << link.payload_bytes;
   EXPECT_EQ(view->group(Link{0, 16, 72}).error().message.view(),

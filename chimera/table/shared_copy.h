@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// How bytes and the counter of a group cross from one context to another, in one place
-// (docs/decisions/0001-register-copy.md). Two builds of the same register:
+// Copies bytes and the counter of a group from one context to another (docs/decisions/0001-register-copy.md). The
+// register has two builds:
 //
-//   release    the copy is a call of memcpy with a size the compiler cannot know. The bytes race with the
-//              writer; what was torn is thrown away by the counter check. Two fences order copy and counter.
-//   word-wise  (CHIMERA_WORDWISE_COPY=1, thread sanitizer) each 8-byte word is an atomic of its own: release
+//   release    memcpy copies, with a size that the compiler cannot know. The bytes race with the
+//              writer; the counter check discards a torn copy. Two fences order copy and counter.
+//   word-wise  (CHIMERA_WORDWISE_COPY=1, thread sanitizer) each 8-byte word is an atomic: release
 //              stores, acquire loads, no fence, because the sanitizer does not model fences.
 #pragma once
 
@@ -21,14 +21,14 @@
 
 namespace chimera::shared_copy {
 
-/// The counter word at `place`. Readers use it on read-only mappings: it is never stored through. What pairs with
-/// what is said where a group is published and read (group.h).
+/// The counter word at `place`. Readers use it on read-only mappings and never store through it. group.h names the
+/// pairs of loads and stores.
 inline std::atomic_ref<std::uint64_t> word(const std::byte* place) noexcept {
   return std::atomic_ref<std::uint64_t>(*reinterpret_cast<std::uint64_t*>(const_cast<std::byte*>(place)));
 }
 
-/// The header of a slot, in both builds word by word: three moves, the reserved word stays zero. (Built on the stack
-/// and copied as a block it would be read back wider than it was written, which stalls.)
+/// The header of a slot, in both builds word by word: three moves; the reserved word stays zero. A header that is built
+/// on the stack and copied as a block would be read with wider loads than its stores, which stalls.
 inline void store_header(std::byte* to, const chimera_slot& header) noexcept {
   constexpr auto order = CHIMERA_WORDWISE_COPY ? std::memory_order_release : std::memory_order_relaxed;
   word(to).store(static_cast<std::uint64_t>(header.published_ns), order);
@@ -88,7 +88,7 @@ inline void acquire_fence() noexcept { std::atomic_thread_fence(std::memory_orde
 
 /// memcpy with a size hidden from the compiler: a known size would be expanded to `rep movsq`, three times slower.
 inline void opaque_copy(void* to, const void* from, std::size_t bytes) noexcept {
-  if (bytes == 0) return;  // a group without variables has no values, and perhaps no place for them
+  if (bytes == 0) return;  // a group without variables has no values, and possibly no memory for them
   asm volatile("" : "+r"(bytes));
   std::memcpy(to, from, bytes);
 }
@@ -96,14 +96,14 @@ inline void opaque_copy(void* to, const void* from, std::size_t bytes) noexcept 
 inline void copy_out(void* to, const std::byte* from, std::size_t bytes) noexcept { opaque_copy(to, from, bytes); }
 /// From private memory into the register.
 inline void copy_in(std::byte* to, const void* from, std::size_t bytes) noexcept { opaque_copy(to, from, bytes); }
-/// Within the register, by its writer: from one slot to another, `bytes` behind the header. A slot is whole cache lines
-/// and its header 32 bytes, so blocks of 32 bytes stay inside it. A few of them cost less than a call of memcpy.
+/// Copies from one slot to another, `bytes` behind the header; only the writer calls it. A slot is whole cache lines
+/// and its header 32 bytes, so blocks of 32 bytes stay inside it. A few blocks cost less than a call of memcpy.
 inline void move_inside(std::byte* to, const std::byte* from, std::size_t bytes) noexcept {
   constexpr std::size_t kBlock = 32, kCallBeyond = 256;
   if (bytes > kCallBeyond) return opaque_copy(to, from, bytes);
   for (const std::byte* end = from + bytes; from < end; from += kBlock, to += kBlock) {
     std::memcpy(to, from, kBlock);
-    asm volatile("" : "+r"(from), "+r"(to));  // else the compiler makes a call of the loop
+    asm volatile("" : "+r"(from), "+r"(to));  // keeps the compiler from turning the loop into a call
   }
 }
 

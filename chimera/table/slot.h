@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a group of state variables lies in memory: docs/formats/table.md.
+// The memory layout of a group of state variables: docs/formats/table.md.
 //
 //   [counter: 8 bytes, last initial publication: 8 bytes, on a cache line of their own][slot 0][slot 1][slot 2][slot 3]
 //   slot = chimera_slot header (32 bytes) + payload, rounded up to whole cache lines
@@ -16,7 +16,7 @@ namespace chimera {
 inline constexpr std::uint32_t kSlots = 4;
 inline constexpr std::size_t kCacheLine = 64;
 inline constexpr std::uint32_t kReadTries = 4;
-/// From the start of a group to the number of its last publication of initial values.
+/// Offset, from the start of a group, of the number of its last publication of initial values.
 inline constexpr std::size_t kInitialAt = 8;
 
 /// Bytes from one slot to the next for `payload_bytes` of values. Context: any; wait-free.

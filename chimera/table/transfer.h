@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The transfer before a method: one GroupInput per group that a task reads. The same call whether the producer
-// runs in the same context (the published slot is used in place) or elsewhere (copied through the register).
-// The transfer after a method is GroupWriter::publish(), or write() from a local table.
+// The transfer before a method: one GroupInput for each group that a task reads. The call is the same for every
+// producer. From the same context the published slot is used in place; from another one the register copies it.
+// GroupWriter::publish() is the transfer after a method, or write() from a local table.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,21 @@
 
 namespace chimera {
 
-/// One group as a task reads it. Plain value; owned by one task.
+/// A group as a task reads it. Plain value; owned by one task.
 class GroupInput {
  public:
   GroupInput() noexcept = default;
-  /// The producer runs in this context: never while a method of the reader runs, so the slot cannot change under it.
+  /// For a producer in this context: it never runs during a method of the reader, so the slot cannot change.
   static GroupInput direct(GroupReader reader) noexcept;
-  /// The producer runs elsewhere. Copies into `local`, which outlives the input.
+  /// For a producer in another context. Copies into `local`, which must outlive the input.
   static GroupInput copied(LocalGroup& local) noexcept;
 
-  /// As copied(), but `local` is refreshed by somebody else, once for all inputs that follow it.
+  /// Like copied(), but another caller refreshes `local`, once for all inputs that follow it.
   static GroupInput following(LocalGroup& local) noexcept;
   bool follows(const LocalGroup& local) const noexcept { return local_ == &local; }
 
-  /// Brings slot() up to date. False when it stayed as it was because the writer overtook the read (counted by the
-  /// LocalGroup). Context: cycle; bounded; O(1) when direct, else O(payload).
+  /// Updates slot(). False if it is unchanged because the writer overtook the read (the LocalGroup counts this).
+  /// Context: cycle; bounded; O(1) when direct, otherwise O(payload).
   bool latch() noexcept {
     if (local_ == nullptr) {
       slot_ = reader_.published();
@@ -36,9 +36,9 @@ class GroupInput {
     slot_ = local_->slot();
     return fresh;
   }
-  /// The slot to use until the next latch(); the values follow it. Never null after the first latch().
+  /// The slot to use until the next latch(); the values follow the header. Never null after the first latch().
   const chimera_slot* slot() const noexcept { return slot_; }
-  /// Where the values of the latched slot begin. Context: cycle; wait-free.
+  /// The values of the latched slot. Context: cycle; wait-free.
   const std::byte* values() const noexcept { return reinterpret_cast<const std::byte*>(slot_ + 1); }
   bool is_direct() const noexcept { return local_ == nullptr; }
 
@@ -49,8 +49,8 @@ class GroupInput {
   const chimera_slot* slot_ = nullptr;
 };
 
-/// Latches every input; the number of those that stayed stale. Port pointers are resolved from slot() afterwards.
-/// Consistent per group, not across groups. Context: cycle; bounded; O(bytes of the copied groups).
+/// Latches every input and returns the number of stale ones. Resolve port pointers from slot() afterwards. Consistent
+/// within a group, not across groups. Context: cycle; bounded; O(bytes of the copied groups).
 inline std::uint32_t transfer_in(std::span<GroupInput> inputs) noexcept {
   std::uint32_t stale = 0;
   for (GroupInput& input : inputs)

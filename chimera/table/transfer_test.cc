@@ -119,7 +119,7 @@ TEST(LocalGroup, AnyCounterReadsInsideTheGroup) {
   GroupWriter writer(group.bytes, kPayload);
   publish(writer, 1);
   LocalGroup local(GroupReader(group.bytes.data(), kPayload), memory.bytes);
-  set_counter(group, UINT64_MAX - 1);  // garbage from a broken neighbour: slot 2 of this group, not beyond it
+  set_counter(group, UINT64_MAX - 1);  // garbage from a broken process: slot 2 of this group, not beyond it
   EXPECT_TRUE(local.refresh());
   EXPECT_EQ(local.slot()->sequence, 0u);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the table is told about a state variable: its bytes at their largest. Names, units and shapes are
-// settled above (verify/); the table never learns what a file is.
+// The data that the table needs about a state variable: its largest size in bytes. verify/ settles names, units and
+// shapes; the table never reads a file.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace chimera {
 
-/// One state variable of a group. Its values take element_bytes * max_count bytes.
+/// A state variable of a group. Its values take element_bytes * max_count bytes.
 struct VariableSpec {
   std::string_view name;
   std::uint32_t element_bytes = 8;

@@ -2,11 +2,11 @@
 /* The binary contract between a component and the framework: plain C, versioned, checked at load.
  *
  * A component is a `chimera_component`: a declaration (ports, methods, sizes) and function pointers.
- * A shared object offers its components through `chimera_components`. Nobody writes this by hand: the C++
- * face (chimera/task/component.h) and the C face (chimera/task/pbo.h) make it.
+ * A shared object offers its components through `chimera_components`. The C++ interface
+ * (chimera/task/component.h) and the C interface (chimera/task/pbo.h) generate all of this.
  *
- * Who writes what: the declaration is constant after `declare`. The live half of a port (`chimera_port`)
- * lies in the component's state and is written by the framework only, between methods.
+ * The declaration is constant after `declare`. The live half of a port (`chimera_port`) lies in the state of the
+ * component. Only the framework writes it, between methods.
  */
 #ifndef CHIMERA_TASK_ABI_H_
 #define CHIMERA_TASK_ABI_H_
@@ -58,8 +58,8 @@ enum {
   CHIMERA_METHODS = 9
 };
 
-/* Signals. WAKEUP comes from the timer or the event source; sent to a task behind a server it is
-   one event for it, and no other task can be sent it. */
+/* Signals. WAKEUP comes from the timer or the event source. A task can send it only to a task behind a server, for
+ * which it is one event. */
 enum {
   CHIMERA_SIGNAL_SPAWN = 0,
   CHIMERA_SIGNAL_ON = 1,
@@ -71,26 +71,26 @@ enum {
   CHIMERA_SIGNALS = 7
 };
 
-/* What a method answers. */
+/* The status that a method returns. */
 enum {
   CHIMERA_OK = 0,      /* done; error(): recovered; clear(): the cause is gone; sync(): one event taken */
   CHIMERA_FAULT = 1,   /* failed; text in call->fault; error(): not recovered; clear(): still there */
   CHIMERA_NO_EVENT = 2,/* sync() only: nothing pending, no cycle follows */
   CHIMERA_ABORTED = 3, /* cycle() only: gave up in time, publishes nothing */
-  CHIMERA_PARTIAL = 4, /* cycle() only: gave up in time, what it has put out is of use and is published */
-  CHIMERA_NOT_YET = 5  /* on() only: the device is on its way and needs no other answer; the task stays OFF, publishes
-                          nothing, and on() is asked again */
+  CHIMERA_PARTIAL = 4, /* cycle() only: gave up in time, its outputs are useful and are published */
+  CHIMERA_NOT_YET = 5  /* on() only: the device is on its way; the task stays OFF, publishes nothing, and the
+                          framework calls on() again */
 };
 
 enum {
   CHIMERA_PORT_SAFETY = 1u << 0,      /* never publishes NaN, infinity, or a value outside [min, max] */
   CHIMERA_PORT_REPEATED = 1u << 1,    /* instances come from the description */
   CHIMERA_PORT_HAS_RANGE = 1u << 2,   /* min and max count */
-  CHIMERA_PORT_CONFIGURATION = 1u << 4, /* in-const of text: what `request` takes, or empty */
+  CHIMERA_PORT_CONFIGURATION = 1u << 4, /* in-const of text: an argument of `request`, or empty */
   CHIMERA_PORT_SAFE_STATE = 1u << 5, /* out-var of bool: true while the device is in the state that the
-                                        illegal-configuration flag asks for; resource: nothing of it ever moves */
-  CHIMERA_PORT_SHARED = 1u << 6, /* resource: several tasks may have it open at one time */
-  CHIMERA_PORT_HAS_INITIAL = 1u << 3  /* out-var: value at spawn; in-const: default when nobody produces it */
+                                        illegal-configuration flag requests; resource: no part of it ever moves */
+  CHIMERA_PORT_SHARED = 1u << 6, /* resource: several tasks may open it together */
+  CHIMERA_PORT_HAS_INITIAL = 1u << 3  /* out-var: value at spawn; in-const: default if no source gives it */
 };
 
 #define CHIMERA_MAX_PORTS 64u      /* ports of one component, every instance of a repeated one counted */
@@ -114,7 +114,7 @@ typedef struct chimera_field {
  * shape: "" scalar; "[6]" literal; "[ndof<=10]" an extent given by the constant port `ndof`, at most 10;
  *        "[n<=16]" where no constant port is called n: an extent variable, solved by verification;
  *        two dimensions as "[3][3]"; "[n...<=64]" a shape variable: any dimensions of at most 64 elements together.
- * unit:  UDUNITS-2 text with our unit file; the letters U, X, Y and Z, which are no units, are unit
+ * unit:  UDUNITS-2 text with the unit file of the framework; the letters U, X, Y and Z, which are no units, are unit
  *        variables ("U", "U/s", "U.X"; V is the volt).
  */
 typedef struct chimera_port_decl {
@@ -138,9 +138,9 @@ typedef struct chimera_port_decl {
   double min, max;        /* in the port's unit */
 } chimera_port_decl;
 
-/* What an out-var held when the present `on` began. Stands until the next one. */
+/* The value of an out-var when the present `on` began. It stays until the next `on`. */
 typedef struct chimera_inherited {
-  chimera_slot slot;  /* header of the publication that the value was taken from */
+  chimera_slot slot;  /* header of the publication with the value */
   int64_t age_ns;     /* of that publication when `on` began, 0 or more */
   int64_t period_ns;  /* of the task that published it; 0 for an aperiodic one */
 } chimera_inherited;
@@ -160,49 +160,50 @@ typedef struct chimera_port {
   uint32_t element_size;     /* bytes of one element, as solved */
 } chimera_port;
 
-/* A text that somebody else keeps: `size` bytes, without a zero behind them. */
+/* A text that the framework owns: `size` bytes, without a closing zero. */
 typedef struct chimera_text {
   const char* at;
   uint32_t size;
 } chimera_text;
 
-/* Where a method leaves the text of its fault. */
+/* The fault of a method. */
 typedef struct chimera_fault {
-  int32_t code; /* the component's own number, 0 if it has none */
+  int32_t code; /* a number that the component defines, 0 if it has none */
   char text[CHIMERA_FAULT_TEXT];
 } chimera_fault;
 
-/* What a method may ask of the framework. All but safe_frame are wait-free and safe in the cycle context. */
+/* The functions of the framework for methods. All but safe_frame are wait-free and safe in the cycle context. */
 typedef struct chimera_host {
-  /* 1 when the job is past its deadline or was told to give up. */
+  /* 1 if the job is past its deadline or must give up. */
   int32_t (*expired)(void* context);
-  /* Sends `signal` to the task of that name (NULL: to itself). CHIMERA_OK, or CHIMERA_FAULT when there is
-   * no such task or the outbox is full. Acted upon after the present method, at a cycle edge. */
+  /* Sends `signal` to the task of that name (NULL: to itself). CHIMERA_OK, or CHIMERA_FAULT if the
+   * task does not exist or the outbox is full. It acts after the present method, at a cycle boundary. */
   int32_t (*signal)(void* context, uint32_t signal, const char* task);
-  /* Uses `ns` of execution time: computes in real time, is added to the modelled time in virtual time. */
+  /* Uses `ns` of execution time: computes in real time; in virtual time, adds it to the modelled time. */
   void (*spend)(void* context, int64_t ns);
-  /* One line for whoever runs the application, at most CHIMERA_FAULT_TEXT - 1 bytes of it. Told once, as an event; the
-   * last one of a method counts. */
+  /* Shows the user one line, at most CHIMERA_FAULT_TEXT - 1 bytes of it, once, as an event. The last one of a method
+   * counts. */
   void (*note)(void* context, const char* text);
-  /* What the port is joined to: the name of the variable or constant and the unit of its values, as verified; "" where
-   * there is none. Good as long as the task. `port` lies in the component's state. */
+  /* The variable or constant that the port is linked to, and the verified unit of its values; "" if there is none.
+   * Valid as long as the task. `port` lies in the state of the component. */
   chimera_text (*variable)(void* context, const chimera_port* port);
   chimera_text (*unit)(void* context, const chimera_port* port);
-  /* Asks for a switch to the configuration of that name, or of tasks ("--on A --off B"), as an operator would; the last
-   * request of a method counts. CHIMERA_OK, or CHIMERA_FAULT when there is no such configuration or task, or nothing
-   * can be switched in this run: told as a note, once for each task. Acted upon after the present method. */
+  /* Requests a switch to the configuration of that name, or of tasks ("--on A --off B"), as an operator would. The last
+   * request of a method counts; it acts after the method. CHIMERA_OK, or CHIMERA_FAULT if the name is unknown, or if
+   * the run cannot switch: a note says so, once for each task. */
   int32_t (*request)(void* context, const char* configuration);
-  /* Safe frame `index` of this task is written to `descriptor`, of which a copy is kept, by another process, when this
-   * one is dead; below 0: there is no such frame any more. Before it is written, output that waits in the queue of a
-   * terminal is dropped, and the line rests for `pause_ns`. In init or clear; may block for a moment, the only one
-   * here that does. CHIMERA_FAULT: nobody would write it (virtual time, one process), or there is no such index. */
+  /* Registers safe frame `index` of this task: another process writes it to a copy of `descriptor` if this process
+   * dies. A `descriptor` below 0 removes the frame. Before the write, waiting output in the queue of a terminal is
+   * dropped, and the line rests for `pause_ns`. Only for init and clear, because it may block for a moment.
+   * CHIMERA_FAULT: no process would write it (virtual time, one process), or the index does not exist. */
   int32_t (*safe_frame)(void* context, uint32_t index, int32_t descriptor, int64_t pause_ns);
-  /* What is written there: a copy of `size` bytes. It stands until the next one; 0 bytes take it back, and so do an
-   * `off` and a `kill` that end well. From on on, in any method. CHIMERA_FAULT: no such index, or too many bytes. */
+  /* Sets the bytes of safe frame `index`: a copy of `size` bytes, which stays until the next call. 0 bytes remove it; a
+   * successful `off` or `kill` also removes it. From on onwards, in any method. CHIMERA_FAULT: the index does not
+   * exist, or too many bytes. */
   int32_t (*safe_bytes)(void* context, uint32_t index, const void* bytes, uint32_t size);
 } chimera_host;
 
-/* Given to every method. */
+/* The argument of every method. */
 typedef struct chimera_call {
   int64_t now_ns;      /* release of this job; outside cycles the time of the call */
   int64_t dt_ns;       /* release minus release of the last completed cycle; the period after on */
@@ -217,25 +218,26 @@ typedef struct chimera_call {
 
 typedef int32_t (*chimera_method)(void* state, const chimera_call* call);
 
-/* What may wait: files, sockets. Called about every 10 ms by a thread without real-time rights from the end of init
- * on, and once more before kill; beside the other methods, so what both sides touch crosses by atomics. Reads and
- * writes no port. CHIMERA_OK, or CHIMERA_FAULT with a text: then it is not called again. */
+/* Work that may wait: files, sockets. A thread without real-time rights calls it about every 10 ms from the end of init
+ * on, and once more before kill. It runs beside the other methods, so shared data must be atomic. It reads and writes
+ * no port. CHIMERA_OK, or CHIMERA_FAULT with a text: then it is not called again. */
 typedef int32_t (*chimera_background)(void* state, chimera_fault* fault);
 
-/* Where the events of an aperiodic component come from: a descriptor that is readable while there is one, asked for
- * after init and good until kill; below 0: none. Behind a server the framework waits for it, and calls sync, which
- * takes one event from it and does not block, for as long as it is readable. Context: setup. */
+/* The event source of an aperiodic component: returns a descriptor that is readable while an event waits; below 0:
+ * none. Called after init; the descriptor stays valid until kill. Behind a server the framework waits for the
+ * descriptor. It calls sync, which reads one event and does not block, as long as the descriptor is readable. Context:
+ * setup. */
 typedef int32_t (*chimera_event_source)(void* state);
 
-/* What holds between two in-consts of one type, unit and shape: no element of `lower` is above that of `upper`. The
- * checker holds written values against it; a value that another component tells is the business of init. */
+/* An order between two in-consts of one type, unit and shape: no element of `lower` is above that of `upper`. The
+ * checker compares written values; init must check a value that another component produces. */
 typedef struct chimera_order {
   const char* lower;
   const char* upper;
 } chimera_order;
 
-/* The words that an in-const of text may be: separated by single spaces, each once. The checker holds written values
- * against them; a value that another component tells is the business of init. */
+/* The legal words of an in-const of text: separated by single spaces, each once. The checker compares written values;
+ * init must check a value that another component produces. */
 typedef struct chimera_choice {
   const char* port;
   const char* words;
@@ -267,12 +269,12 @@ typedef struct chimera_component {
   uint32_t host_size; /* sizeof(chimera_host): the functions of the framework that it knows of */
 } chimera_component;
 
-/* The one symbol of a shared object. NULL when `abi_version` is not the one it was built with. */
+/* The only symbol that a shared object must export. NULL if the object was built for another `abi_version`. */
 typedef const chimera_component* const* (*chimera_components_fn)(uint32_t abi_version, uint32_t* count);
 #define CHIMERA_COMPONENTS_SYMBOL "chimera_components"
 
-/* An object has no thread_local variables but one of the framework, two words long of which this is the first: others
-   may ask the heap when a thread first uses them. */
+/* First of the two words of the only thread_local variable in an object, which belongs to the framework. Others are
+   refused: a thread may allocate them on the heap at its first use. */
 #define CHIMERA_THREAD_MARK UINT64_C(0x454e4f4441455254)
 
 #ifdef __cplusplus

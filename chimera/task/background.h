@@ -7,7 +7,7 @@
 
 namespace chimera {
 
-/// What the component does beside its cycles; null: nothing, or it was built before there was such a thing.
+/// The background function of the component. Null if it has none, or if it was built before this member existed.
 /// Context: any; wait-free.
 inline chimera_background background_of(const chimera_component& component) noexcept {
   return component.struct_size >= offsetof(chimera_component, event_source) ? component.background : nullptr;

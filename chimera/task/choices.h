@@ -8,8 +8,8 @@
 
 namespace chimera {
 
-/// The words that constants of the component may be; none, when it was built before there was such a thing.
-/// Context: any; wait-free.
+/// The legal words of text constants of the component. Empty if it was built before this member existed. Context: any;
+/// wait-free.
 inline std::span<const chimera_choice> choices_of(const chimera_component& component) noexcept {
   if (component.struct_size < offsetof(chimera_component, host_size) || component.choices == nullptr) return {};
   return {component.choices, component.n_choices};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writing a component in C++: all that a component's source includes. docs/howto/write-a-component.md.
+// For components in C++: the only include that the source of a component needs. docs/howto/write-a-component.md.
 //
 //   #include "chimera/task/component.h"
 //   using namespace chimera;
@@ -13,14 +13,14 @@
 //   };
 //   CHIMERA_COMPONENT(TimeDerivative, "tderiv", "Time derivative of one signal.")
 //
-// Methods, all but cycle optional, each with (Cycle) or ():
+// Methods, each with (Cycle) or (); all except cycle are optional:
 //   init reinit on cycle off kill   return nothing, or an Outcome: ok(), fault("text", code); on also not_yet(), cycle
 //                                   also aborted(), partial()
 //   sync                            returns bool (an event was taken), or an Outcome with no_event()
 //   error clear                     return bool (recovered; the cause is gone), or an Outcome
-// Beside them void background(), for what may wait: called every 10 ms or so by a thread without real-time rights,
-// while other methods run; and int event_source() const noexcept, with sync: the descriptor whose events those are.
-// docs/howto/write-a-component.md.
+// A component may also have void background(), for work that may wait. A thread without real-time rights calls it about
+// every 10 ms, while other methods run. int event_source() const noexcept, with sync, returns the descriptor of the
+// events. docs/howto/write-a-component.md.
 // An exception that leaves a method is a fault with its text.
 #pragma once
 
@@ -45,7 +45,7 @@ inline std::int32_t note_fault(chimera_fault* fault, std::int32_t code, const ch
   return CHIMERA_FAULT;
 }
 
-/// Runs `body`, which answers a CHIMERA_ status; an exception that escapes becomes a fault with its text.
+/// Runs `body`, which returns a CHIMERA_ status. An exception that leaves it becomes a fault with its text.
 template <class Body>
 std::int32_t guard(chimera_fault* fault, Body body) noexcept {
 #ifdef __cpp_exceptions
@@ -63,7 +63,7 @@ std::int32_t guard(chimera_fault* fault, Body body) noexcept {
 #endif
 }
 
-/// Whether `method` may answer `status`, and the status it counts as.
+/// Checks that `method` may return this status; returns the status that counts.
 inline std::int32_t judge(Method method, const Outcome& outcome, chimera_fault* fault) noexcept {
   if (outcome.status() == CHIMERA_ABORTED && method != Method::kCycle)
     return note_fault(fault, 0, "only cycle may answer aborted()");
@@ -77,7 +77,7 @@ inline std::int32_t judge(Method method, const Outcome& outcome, chimera_fault* 
   return outcome.status();
 }
 
-/// A "no" without words: sync has no event; error has not recovered; clear found the cause still there.
+/// A false without a text. sync: no event; error: not recovered; clear: the cause is still there.
 inline std::int32_t judge(Method method, bool yes, chimera_fault* fault) noexcept {
   if (yes) return CHIMERA_OK;
   if (method == Method::kSync) return CHIMERA_NO_EVENT;
@@ -138,7 +138,7 @@ std::int32_t construct(void* state, chimera_fault* fault) noexcept {
   });
 }
 
-/// Memory for an instance that is made once, to be looked at: from the heap, where there is one.
+/// Memory for a sample instance that is constructed once: from the heap, if the system has one.
 template <class T>
 class SampleMemory {
  public:
@@ -148,7 +148,7 @@ class SampleMemory {
 #if __STDC_HOSTED__
   ~SampleMemory() { ::operator delete(at_, std::align_val_t{alignof(T)}); }
 #endif
-  /// Null: there is none.
+  /// Null if there is no memory.
   void* at() noexcept { return at_; }
 
  private:
@@ -159,7 +159,7 @@ class SampleMemory {
 #endif
 };
 
-/// Constructs one instance under a collector: its port handles declare themselves.
+/// Constructs one instance under a collector, so that its ports declare themselves.
 template <class T>
 void collect_ports(Declaration& to) noexcept {
   SampleMemory<T> memory;
@@ -208,7 +208,7 @@ const chimera_component* declare() noexcept {
 inline void apply_extra(chimera_component& to, RateIs rate) noexcept { to.default_rate_hz = rate.hertz; }
 inline void apply_extra(chimera_component& to, SourceIs source) noexcept { to.source = source.text; }
 
-/// What CHIMERA_COMPONENT does while the object is loaded.
+/// CHIMERA_COMPONENT creates one of these objects; its constructor runs while the object is loaded.
 template <class T, class... Extras>
 bool offer(PortName name, Literal doc, Extras... extras) noexcept {
   static_assert(check_component<T>());
@@ -225,9 +225,9 @@ bool offer(PortName name, Literal doc, Extras... extras) noexcept {
 #define CHIMERA_COMPONENT_JOIN_(a, b) a##b
 #define CHIMERA_COMPONENT_JOIN(a, b) CHIMERA_COMPONENT_JOIN_(a, b)
 
-/// Offers a class as a component: CHIMERA_COMPONENT(Class, "name", "One sentence.") with optional extras
-/// `rate = 1000.0` (default rate, Hz) and `source = "paper or book"`. Stands at namespace scope, in the one
-/// source file of the component.
+/// Offers a class as a component: CHIMERA_COMPONENT(Class, "name", "One sentence."). Optional extras are `rate =
+/// 1000.0` (default rate, Hz) and `source = "paper or book"`. Use it at namespace scope, in the one source file of the
+/// component.
 #define CHIMERA_COMPONENT(Class, ...)                                                 \
   namespace {                                                                         \
   [[maybe_unused]] const bool CHIMERA_COMPONENT_JOIN(chimera_offered_, __COUNTER__) = \

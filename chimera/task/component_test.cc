@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Methods and outcomes: what the C++ face makes of a class.
+// Methods and outcomes: the C++ interface turns a class into a component.
 #include "chimera/task/component.h"
 
 #include <gtest/gtest.h>
@@ -183,7 +183,7 @@ TEST(Component, AConstructorThatThrowsIsAnAnswer) {
 }
 
 TEST(Component, IsDestroyedOnceForEachConstruction) {
-  EXPECT_EQ(linked_component("living").n_ports, 0u);  // declared by now: the sample is gone
+  EXPECT_EQ(linked_component("living").n_ports, 0u);  // declared already: the sample is destroyed
   EXPECT_EQ(living, 0);
   {
     Rig one("living"), two("living");

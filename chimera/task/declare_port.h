@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// From `{"x", "m", range(-1, 1)}` to the declaration of a port: what each option may be given to, and what it sets.
-// While one sample instance is constructed, each port adds its declaration to the collector, with its place in the
-// object. Instances that are constructed to run find no collector and add nothing.
+// Turns `{"x", "m", range(-1, 1)}` into the declaration of a port: which ports accept each option, and what it sets.
+// While one sample instance is constructed, each port adds its declaration, with its place in the object, to the
+// collector. Instances that are constructed to run find no collector and add nothing.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,7 @@
 
 namespace chimera::component_api {
 
-/// Puts the parts one behind the other into `size` bytes, cut to what fits with the zero behind them. Context: any;
-/// wait-free.
+/// Writes the parts one after another into `size` bytes, cut so that the closing zero fits. Context: any; wait-free.
 inline void put_text(char* to, std::size_t size, std::initializer_list<std::string_view> parts) noexcept {
   std::size_t n = 0;
   for (const std::string_view part : parts)
@@ -27,13 +26,13 @@ inline void put_text(char* to, std::size_t size, std::initializer_list<std::stri
   to[n] = '\0';
 }
 
-/// Everything declared about one component. Lives in the object's static storage.
+/// The whole declaration of one component. Lives in the static storage of the object.
 struct Declaration {
   chimera_component component{};
   chimera_port_decl ports[CHIMERA_MAX_PORTS] = {};
   chimera_order orders[CHIMERA_MAX_PORTS] = {};
   chimera_choice choices[CHIMERA_MAX_PORTS] = {};
-  char error[CHIMERA_FAULT_TEXT] = {};  ///< why the component cannot be used; "" when it can
+  char error[CHIMERA_FAULT_TEXT] = {};  ///< the reason why the component is unusable; "" if it is usable
   std::size_t kept = 0;
   alignas(16) std::byte memory[8192] = {};  ///< initial values, and names without their '*'
 };
@@ -44,7 +43,7 @@ struct CollectorOfThread {
   Collector* current;
 };
 
-/// Takes ports while it lives. Context: setup.
+/// Collects ports during its lifetime. Context: setup.
 class Collector {
  public:
   Collector(Declaration& to, const void* sample, std::size_t size) noexcept
@@ -66,21 +65,21 @@ class Collector {
     to_.ports[n++] = port;
   }
 
-  /// Notes that no element of the constant `lower` is above that of `upper`.
+  /// Records that no element of the constant `lower` is above that of `upper`.
   void add_order(const char* lower, const char* upper) noexcept {
     std::uint32_t& n = to_.component.n_orders;
     if (n == CHIMERA_MAX_PORTS) return refuse(upper, "is one too many with at_least");
     to_.orders[n++] = {lower, upper};
   }
 
-  /// Notes the words that the constant `port` may be.
+  /// Records the legal words of the constant `port`.
   void add_choice(const char* port, const char* words) noexcept {
     std::uint32_t& n = to_.component.n_choices;
     if (n == CHIMERA_MAX_PORTS) return refuse(port, "is one too many with one_of");
     to_.choices[n++] = {port, words};
   }
 
-  /// A copy of `bytes` that lives as long as the declaration; null when there is no more room.
+  /// A copy of `bytes` that lives as long as the declaration; null if no room is left.
   std::byte* keep(const void* bytes, std::size_t size) noexcept {
     const std::size_t at = (to_.kept + 15) / 16 * 16;
     if (at + size > sizeof(to_.memory)) return nullptr;
@@ -89,7 +88,7 @@ class Collector {
     return to_.memory + at;
   }
 
-  /// Notes the first reason why the component cannot be used.
+  /// Records the first reason why the component is unusable.
   void refuse(const char* port, const char* reason) noexcept {
     if (to_.error[0] == '\0') put_text(to_.error, sizeof(to_.error), {"port ", port, " ", reason});
   }
@@ -103,12 +102,12 @@ class Collector {
   }
 
 #if __STDC_HOSTED__
-  // One per thread: another thread may construct an instance to run at the same time. The mark tells it from variables
-  // of the component where the object is judged.
+  // One per thread, because another thread may construct an instance to run at the same time. The mark distinguishes it
+  // from variables of the component when an object is checked.
   static inline thread_local CollectorOfThread of_thread_{CHIMERA_THREAD_MARK, nullptr};
   static Collector*& slot() noexcept { return of_thread_.current; }
 #else
-  static inline Collector* current_ = nullptr;  // there is one thread
+  static inline Collector* current_ = nullptr;  // this system has one thread
   static Collector*& slot() noexcept { return current_; }
 #endif
 
@@ -125,7 +124,7 @@ inline constexpr bool kIsInitial<InitialIs<V>> = true;
 template <class V>
 inline constexpr bool kIsInitial<InitialListIs<V>> = true;
 
-/// Says in a sentence why an option does not go with a kind of port.
+/// Explains in a sentence why an option does not fit a kind of port.
 template <std::uint32_t Kind, class Option>
 constexpr bool check_option() {
   static_assert(!kIsInitial<Option> || Kind == CHIMERA_OUT_VAR || Kind == CHIMERA_IN_CONST,
@@ -224,7 +223,7 @@ void apply_option(chimera_port_decl& port, Collector&, const DocIs& option) { po
 template <class E>
 void apply_option(chimera_port_decl& port, Collector&, const TypeIs& option) { port.type_name = option.text; }
 
-/// The declaration that T alone makes.
+/// The part of a declaration that depends on T alone.
 template <class T, std::uint32_t Kind>
 chimera_port_decl declare_type(const char* name, const char* unit, const char* shape) {
   using E = typename PortType<T>::Element;
@@ -250,7 +249,7 @@ chimera_port_decl declare_type(const char* name, const char* unit, const char* s
   return port;
 }
 
-/// True when the fields leave out at least one member: a gap that padding cannot explain.
+/// True if the fields omit at least one member: the struct has a gap that padding cannot explain.
 inline bool leaves_out_a_member(const chimera_port_decl& port, std::size_t align) {
   std::size_t end = 0;
   for (std::uint32_t i = 0; i < port.n_fields; ++i) {
@@ -261,14 +260,14 @@ inline bool leaves_out_a_member(const chimera_port_decl& port, std::size_t align
   return port.element_size >= end + align;
 }
 
-/// Where a port's live half lies; `instances` and `max` only for a repeated one.
+/// The place of the live half of a port; `instances` and `max` are only for a repeated port.
 struct PortPlace {
   const void* live;
   const void* instances = nullptr;
   std::uint32_t max = 1;
 };
 
-/// Declares a port to the collector, when one is at work. Context: setup.
+/// Declares a port to the collector, if one is active. Context: setup.
 template <class T, std::uint32_t Kind, class... Options>
 void declare_port(const char* name, const char* unit, const char* shape, PortPlace place, const Options&... options) {
   using E = typename PortType<T>::Element;

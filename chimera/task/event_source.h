@@ -7,8 +7,8 @@
 
 namespace chimera {
 
-/// How the component tells where its events come from; null: nowhere, or it was built before there was such a thing.
-/// Context: any; wait-free.
+/// The function that returns the descriptor of the events. Null if the component has none, or if it was built before
+/// this member existed. Context: any; wait-free.
 inline chimera_event_source event_source_of(const chimera_component& component) noexcept {
   return component.struct_size >= offsetof(chimera_component, n_orders) ? component.event_source : nullptr;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last fault of a task, its last note, and how many there were: read from outside, written by the job step.
+// The last fault of a task, its last note, and their number. The job step writes it; other processes read it.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct FaultRecord {
   Nanoseconds at;                 ///< of the last fault
   Method method = Method::kInit;  ///< that answered it
   chimera_fault last{};           ///< its code and text
-  std::uint64_t told = 0;         ///< faults and notes
+  std::uint64_t told = 0;         ///< number of faults and notes
   std::uint64_t notes = 0;
   char note[CHIMERA_FAULT_TEXT] = {};  ///< the last one, zero-terminated
   std::uint64_t off_count = 0;         ///< faults that `off` or `kill` answered

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which C++ types may be the element of a port, and what the declaration says about each: a type crosses processes
-// when its bytes mean the same everywhere.
+// Decides which C++ types may be the element of a port, and declares each. A type may cross processes if its bytes mean
+// the same in all of them.
 #pragma once
 
 #include <cstddef>
@@ -13,13 +13,13 @@
 
 namespace chimera {
 
-/// A type variable: the port takes whatever element type verification finds for it, as bytes.
+/// A type variable: the port accepts each element type that verification finds for it, as bytes.
 struct Any {};
-/// Marks a port of two dimensions whose extents are given by its shape: In<Matrix<double>>.
+/// Marks a port of two dimensions; the shape gives its extents: In<Matrix<double>>.
 template <class T>
 struct Matrix;
 
-/// Names and units of the members of a struct that goes through a port. Specialise it beside the struct:
+/// Names and units of the members of a struct that a port carries. Specialise it beside the struct:
 ///   template <> struct chimera::Fields<Battery> {
 ///     static constexpr const char* name = "battery";
 ///     static constexpr auto list = std::tuple{chimera::field("voltage", "V", &Battery::voltage), ...};
@@ -50,7 +50,7 @@ inline constexpr bool kIsText<Text<N>> = true;
 template <class T>
 concept HasFields = requires { Fields<T>::name; Fields<T>::list; };
 
-/// The element type of the ABI for a scalar or text; CHIMERA_STRUCT for the rest.
+/// The ABI element type of a scalar or text; CHIMERA_STRUCT for all others.
 template <class T>
 constexpr std::uint32_t element_type() {
   if constexpr (std::is_same_v<T, bool>) return CHIMERA_BOOL;
@@ -63,7 +63,7 @@ constexpr std::uint32_t element_type() {
   else return CHIMERA_STRUCT;
 }
 
-/// Says in a sentence why T cannot be the element of a port.
+/// Explains in a sentence why T cannot be the element of a port.
 template <class T>
 constexpr bool check_element() {
   static_assert(!std::is_pointer_v<T> && !std::is_member_pointer_v<T> && !std::is_reference_v<T>,
@@ -138,7 +138,7 @@ struct ShapeText {
   static constexpr auto kMade = make();
 };
 
-/// How the T of In<T> splits into element and shape. `kRank` dimensions; `kOpen`: the shape text must be given.
+/// Splits the T of In<T> into element and shape. `kRank` dimensions; `kOpen`: the declaration needs a shape text.
 template <class T>
 struct PortType {
   using Element = T;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Structs for ports about bodies in space, each with a unit per field. The reference frame is the port's:
+// Structs for ports that describe bodies in space, each with a unit per field. The port names the reference frame:
 // `frame = "base"`.
 #pragma once
 
@@ -9,19 +9,19 @@
 
 namespace chimera {
 
-/// Where a body is: position in m; orientation as a unit quaternion, scalar first (w x y z), body to frame.
+/// The place of a body: position in m; orientation as a unit quaternion, scalar first (w x y z), body to frame.
 struct Pose {
   double position[3];
   double orientation[4];
 };
 
-/// How a body moves: linear velocity of its origin in m/s, angular velocity in rad/s, both along the frame's axes.
+/// The motion of a body: velocity of its origin in m/s, angular velocity in rad/s, both along the axes of the frame.
 struct Twist {
   double linear[3];
   double angular[3];
 };
 
-/// What acts on a body: force in N at its origin, torque in N.m, both along the frame's axes.
+/// The load on a body: force in N at its origin, torque in N.m, both along the axes of the frame.
 struct Wrench {
   double force[3];
   double torque[3];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of the nine methods a class has, and a sentence for each mistake that would otherwise pass in silence.
+// Finds which of the nine methods a class has, with an error for each mistake that would otherwise stay unnoticed.
 #pragma once
 
 #include <type_traits>
@@ -8,8 +8,8 @@
 
 namespace chimera::component_api {
 
-// For each name: is there any member of that name (even private or overloaded), can it be called with a Cycle, or
-// with nothing? A name is found by making it ambiguous: a class that inherits it twice cannot take its address.
+// For each name: does a member of that name exist (even private or overloaded)? Does it accept a Cycle or no argument?
+// A deliberate ambiguity finds the name: a class that inherits it twice cannot take its address.
 #define CHIMERA_FACE_NAME(word)                                                                                   \
   template <class T>                                                                                              \
   struct Name_##word {                                                                                            \
@@ -46,8 +46,8 @@ CHIMERA_FACE_NAME(clear)
 CHIMERA_FACE_NAME(background)
 CHIMERA_FACE_NAME(event_source)
 
-// The usual misspellings, and the method that is meant: the one list. Only words that nobody chooses for something
-// else; a member counts only when it could be called as a method is.
+// Common misspellings, and the method that each one means. The list has only words that rarely name anything else. A
+// member counts only if it can be called like a method.
 #define CHIMERA_FACE_MISSPELLINGS(X)                                                                              \
   X(Init, init) X(INIT, init) X(inti, init) X(initialise, init) X(initialize, init)                 \
   X(Initialise, init) X(Initialize, init) X(on_init, init) X(onInit, init)                                        \
@@ -63,7 +63,7 @@ CHIMERA_FACE_NAME(event_source)
   X(Error, error) X(ERROR, error) X(eror, error) X(errror, error) X(on_error, error) X(onError, error)            \
   X(Clear, clear) X(CLEAR, clear) X(claer, clear) X(cler, clear) X(on_clear, clear)
 
-// Cycle is also a type of ours; inside these templates the word must mean the member.
+// Cycle is also a type of the framework; inside these templates the word must mean the member.
 #define CHIMERA_FACE_CALLABLE(word, meant)                                                     \
   template <class T>                                                                           \
   constexpr bool could_be_##word() {                                                           \
@@ -120,12 +120,12 @@ constexpr bool check_signatures() {
   return true;
 }
 
-/// True, or a compile error with a sentence.
+/// True, or a compile error with an explanation.
 template <class T>
 constexpr bool check_component() {
   static_assert(std::is_class_v<T>, "a component is a struct or a class");
   static_assert(!std::is_final_v<T>, "a component must not be final: its methods could not be checked");
-  // An aggregate has no constructor: when it cannot be made, a port of it is wrong and has been told already.
+  // An aggregate has no constructor. If it cannot be made, one of its ports is wrong and has already caused an error.
   static_assert(std::is_default_constructible_v<T> || std::is_aggregate_v<T>,
                 "a component is made without arguments: what it needs comes by in-const and resource ports (if a port "
                 "is refused above, mend that first)");

@@ -9,8 +9,8 @@
 
 namespace chimera {
 
-/// An element of a port as a double, for whoever learns its type from the description (`In<Any>`): CHIMERA_BOOL to
-/// CHIMERA_FLOAT64; an int64 beyond 2^53 is rounded, everything else is 0. Context: cycle; wait-free.
+/// An element of a port as a double, for components that learn its type from the description (`In<Any>`): CHIMERA_BOOL
+/// to CHIMERA_FLOAT64. An int64 beyond 2^53 is rounded; any other type gives 0. Context: cycle; wait-free.
 inline double number_at(std::uint32_t type, const std::byte* at) noexcept {
   const auto as = [at]<class T>(T value) {
     std::memcpy(&value, at, sizeof value);

@@ -10,7 +10,7 @@ template <class T>
 double read(std::uint32_t type, T value) {
   std::byte bytes[1 + sizeof value];
   std::memcpy(bytes + 1, &value, sizeof value);
-  return number_at(type, bytes + 1);  // aligned for nothing
+  return number_at(type, bytes + 1);  // an odd address, so unaligned for every type
 }
 
 TEST(NumberAt, ReadsEveryTypeOfNumber) {

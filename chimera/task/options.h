@@ -20,7 +20,7 @@ struct Literal {
   const char* text;
 };
 
-/// Called while the compiler evaluates a name, which ends the compilation at the line that says why. Has no body.
+/// If the compiler evaluates a call of this function, compilation ends at the line with the reason. Has no body.
 void refused(const char* why);
 
 /// [a-z][a-z0-9_]*, at most 64 letters, for the first `size` characters.
@@ -56,7 +56,7 @@ struct OptionBase {};
 template <class T>
 concept Option = std::derived_from<T, OptionBase>;
 
-/// Options live for the constructor call that they stand in: they may point at temporaries.
+/// Options live during the constructor call that uses them, so they may point at temporaries.
 template <class V>
 struct InitialIs : OptionBase {
   explicit InitialIs(const V& v) : value(v) {}
@@ -130,23 +130,22 @@ struct SourceName {
   constexpr SourceIs operator=(Literal t) const { return {t.text}; }  // NOLINT
 };
 
-/// The names themselves stand in a namespace of their own, so that a variable called `rate` elsewhere in
-/// chimera hides nothing.
+/// The names are in a namespace of their own, so that a variable called `rate` elsewhere in chimera hides none of them.
 namespace names {
-inline constexpr InitialName initial{};  ///< out-var: value at spawn; in-const: default when nobody gives one
+inline constexpr InitialName initial{};  ///< out-var: value at spawn; in-const: default if the description gives none
 inline constexpr SafetyIs safety{};      ///< never publishes NaN, infinity or a value outside range()
 inline constexpr FrameName frame{};      ///< reference frame of the values
 inline constexpr DocName doc{};          ///< one sentence for the data sheet
 inline constexpr TypeName type{};        ///< name of the type variable of an Any port ("T" if not given)
 inline constexpr AtLeastName at_least{};  ///< in-const: the in-const that no element of this one is below
-inline constexpr OneOfName one_of{};      ///< in-const of text: the words it may be, with spaces between them
+inline constexpr OneOfName one_of{};      ///< in-const of text: the legal words, with spaces between them
 inline constexpr ConfigurationIs configuration{};  ///< in-const of text: names a configuration, or is empty
-inline constexpr SafeStateIs safe_state{};  ///< bool out-var: the device is as the flag asks; resource: it never moves
-inline constexpr SharedIs shared{};  ///< resource: several tasks may have it open at one time
+inline constexpr SafeStateIs safe_state{};  ///< bool out-var: the device obeys the flag; resource: it never moves
+inline constexpr SharedIs shared{};  ///< resource: several tasks may open it together
 inline constexpr RateName rate{};         ///< CHIMERA_COMPONENT: default rate in Hz
 inline constexpr SourceName source{};     ///< CHIMERA_COMPONENT: the paper or book behind it
 
-/// The values this port may take, in its unit, ends included.
+/// The legal values of this port, in its unit, ends included.
 inline RangeIs range(double min, double max) { return RangeIs(min, max); }
 }  // namespace names
 }  // namespace component_api

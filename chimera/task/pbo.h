@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Writing a component in C99, after the papers (2000 paper, figures 7 to 9). docs/howto/write-a-component.md.
+/* For components in C99, in the style of the papers (2000 paper, figures 7 to 9). docs/howto/write-a-component.md.
  *
  *   #include "chimera/task/pbo.h"
  *
@@ -17,14 +17,14 @@
  *   }
  *
  * One module per source file. Methods: tballInit Reinit On Cycle Sync Off Kill Error Clear, each int f(tballLocal_t*);
- * only Cycle must be written; Term is another name of Kill. PBO_MODULE declares them all, so a method of another type
- * does not compile, and a function that is not static and no method of ours is an error of the build.
+ * only Cycle is mandatory; Term is another name of Kill. PBO_MODULE declares them all, so a method of another type
+ * does not compile. A function that is neither static nor one of these methods breaks the build.
  * They return PBO_OK, PBO_FAULT("text"), On also PBO_NOT_YET, Sync also PBO_NO_EVENT, Cycle also PBO_ABORTED and
  * PBO_PARTIAL; anything else is a fault.
  *
- * With Sync the component is aperiodic: one cycle for each event. Events are rings of its task's doorbell
- * (PBO_RING("task") in another one), and where int tballEventSource(tballLocal_t*) is written, with Sync, also that the
- * descriptor it returns is readable (below 0: there is none). It is asked after Init and calls nothing of this header.
+ * With Sync the component is aperiodic: one cycle for each event. An event is a ring of the doorbell of its task
+ * (PBO_RING("task") in another task). With int tballEventSource(tballLocal_t*), an event is also that the returned
+ * descriptor is readable (below 0: none). It is called after Init and must use nothing of this header.
  *
  * The framework allocates the local state and zeroes it. The papers' Init returns it as (int)local, which does not
  * survive 64 bits: write `return PBO_LOCAL(local);`, which says ok unless local is NULL.
@@ -85,10 +85,10 @@ typedef struct pboPort_t {
 #define PBO_RANGE(low, high) .has_range = 1, .min = low, .max = high
 #define PBO_SAFETY .safety = 1
 #define PBO_AT_LEAST(lower) .at_least = lower /* in_const of numbers: no element is below that of in_const `lower` */
-#define PBO_ONE_OF(words) .one_of = words /* in_const of text: "the words it may be", with spaces between them */
+#define PBO_ONE_OF(words) .one_of = words /* in_const of text: "the legal words", with spaces between them */
 #define PBO_CONFIGURATION .configuration = 1 /* in_const of text: a configuration, tasks (--on a --off b), or empty */
-#define PBO_SAFE_STATE .safe_state = 1 /* out_var of bool: the device is as the flag asks; resource: it never moves */
-#define PBO_SHARED .shared = 1 /* resource: several tasks may have it open at one time */
+#define PBO_SAFE_STATE .safe_state = 1 /* out_var of bool: the device obeys the flag; resource: it never moves */
+#define PBO_SHARED .shared = 1 /* resource: several tasks may open it together */
 #define PBO_INITIAL(type, ...) \
   .initial = (const PBO_TYPE_##type[]){__VA_ARGS__}, .initial_bytes = sizeof((const PBO_TYPE_##type[]){__VA_ARGS__})
 
@@ -112,8 +112,8 @@ typedef struct pboPort_t {
 #define PBO_KIND_out_const CHIMERA_OUT_CONST
 #define PBO_KIND_resource CHIMERA_RESOURCE
 
-/* The type that SVAR_IN and SVAR_OUT find by the port's name: there is one of them only, so writing to an input does
- * not compile. */
+/* The type that SVAR_IN and SVAR_OUT find by the name of the port. Only one of the two exists, so that a write to an
+ * input does not compile. */
 #define PBO_SIDE_in_var(name, type) typedef const type pbo_in_##name;
 #define PBO_SIDE_in_const(name, type) typedef const type pbo_in_##name;
 #define PBO_SIDE_out_var(name, type) typedef type pbo_out_##name;
@@ -153,29 +153,29 @@ typedef struct pboPort_t {
 #define SVAR_OUT(name) pbo_out_##name* const name = (pbo_out_##name*)PBO_PORT(name)->value
 #define SVAR_RESOURCE(name) pbo_resource_##name* const name = (pbo_resource_##name*)PBO_PORT(name)->value
 #define SVAR_SIZE(name) (PBO_PORT(name)->count) /* elements in use */
-#define SVAR_VALID(name) pboValid(PBO_PORT(name)) /* in-var: has been written or has an initial value */
+#define SVAR_VALID(name) pboValid(PBO_PORT(name)) /* in-var: a task wrote it, or it has an initial value */
 #define SVAR_FRESH(name) pboFresh(PBO_PORT(name)) /* in-var: published since the previous cycle */
 #define SVAR_AGE(name) pboAge(PBO_PORT(name))     /* in-var: ns since it was published; -1 while not valid */
-/* out-var: how old the value was, in ns, that it held when the present `on` began; -1: nobody had published it */
+/* out-var: age in ns of its value when the present `on` began; -1: no task had published it */
 #define SVAR_INHERITED(name) pboInherited(PBO_PORT(name))
-#define SVAR_HANDED_OVER(name) chimera_is_handed_over(PBO_PORT(name)) /* out-var: to go on from: handover.h */
+#define SVAR_HANDED_OVER(name) chimera_is_handed_over(PBO_PORT(name)) /* out-var: continue from it (handover.h) */
 
 /* Inside a method: the present call. */
 #define PBO_CALL (*(const chimera_call* const*)(const void*)((const char*)local - pbo_back_to_call))
 #define PBO_DT ((double)PBO_CALL->dt_ns * 1e-9) /* s since the last completed cycle */
 #define PBO_NOW (PBO_CALL->now_ns)              /* ns, release of this job */
 #define PBO_DROPPED (PBO_CALL->dropped)         /* releases dropped since the last completed cycle */
-#define PBO_NOTE(text) PBO_CALL->host->note(PBO_CALL->context, text) /* one line for whoever runs it */
+#define PBO_NOTE(text) PBO_CALL->host->note(PBO_CALL->context, text) /* one line for the user */
 #define PBO_ILLEGAL (PBO_CALL->illegal)         /* the illegal-configuration flag */
 #define PBO_EXPIRED (PBO_CALL->host->expired(PBO_CALL->context))
 #define PBO_SIGNAL(which, task) (PBO_CALL->host->signal(PBO_CALL->context, which, task))
 #define PBO_RING(task) PBO_SIGNAL(CHIMERA_SIGNAL_WAKEUP, task) /* one event for a task behind a server */
-#define PBO_SAFE_FRAME(index, descriptor, pause_ns) /* what is written when this process is dead; CHIMERA_OK or not */ \
+#define PBO_SAFE_FRAME(index, descriptor, pause_ns) /* written if this process dies; CHIMERA_OK or not */             \
   (PBO_CALL->host->safe_frame(PBO_CALL->context, index, descriptor, pause_ns))
 #define PBO_SAFE_BYTES(index, bytes, size) (PBO_CALL->host->safe_bytes(PBO_CALL->context, index, bytes, size))
 #define PBO_REQUEST(name) (PBO_CALL->host->request(PBO_CALL->context, name)) /* a configuration; CHIMERA_OK or not */
 #define PBO_SPEND(ns) (PBO_CALL->host->spend(PBO_CALL->context, ns))
-/* Notes the text of a fault and is PBO_ERROR: return PBO_FAULT("the device does not answer"); */
+/* Stores the text of a fault and returns PBO_ERROR: return PBO_FAULT("the device does not answer"); */
 #define PBO_FAULT(message) pboFault(PBO_CALL, message)
 
 static inline int pboValid(const chimera_port* port) {
@@ -198,7 +198,7 @@ static inline int pboFault(const chimera_call* call, const char* text) {
   return PBO_ERROR;
 }
 
-/* Whether `method` may answer `status`; an unknown answer is a fault. */
+/* Checks that `method` may return `status`; an unknown status is a fault. */
 static inline int32_t pboJudge(uint32_t method, int status, const chimera_call* call) {
   if (status == PBO_OK) return status;
   if (status == PBO_NO_EVENT && method == CHIMERA_SYNC) return status;
@@ -247,7 +247,7 @@ static inline void pboDestroy(void* state) { (void)state; }
     s->call = call;                                                                       \
     return pboJudge(METHOD, m##Name(&s->local), call);                                    \
   }
-/* Weak: where it is not written, its address is NULL and the method is absent. */
+/* Weak: without a definition its address is NULL, and the method is absent. */
 #define PBO_OPTIONAL(m, Name, METHOD)                                     \
   int m##Name(m##Local_t* local) __attribute__((weak, visibility("hidden"))); \
   PBO_RUN(m, Name, METHOD)

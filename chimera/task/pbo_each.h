@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* One macro for each element of a list, up to 32 elements: how pbo.h turns its list of ports into C. */
+/* Applies a macro to each element of a list, up to 32 elements. pbo.h turns its list of ports into C with it. */
 #ifndef CHIMERA_TASK_PBO_EACH_H_
 #define CHIMERA_TASK_PBO_EACH_H_
 

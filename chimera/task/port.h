@@ -8,7 +8,7 @@
 //   Resource        device{"device"};                            resource: a text that names something outside
 //   Many<In<double>> in{"in*", "U"};                             repeated: as many as the description says
 //
-// After the unit may stand a shape, where the type leaves it open: In<double[]> q{"q", "rad", "[ndof<=10]"}.
+// A shape may follow the unit if the type leaves it open: In<double[]> q{"q", "rad", "[ndof<=10]"}.
 // Types: bool, int32, int64, float, double, Text<N>, structs with Fields, Any. Options: chimera/task/options.h.
 // A port is a view of its values: by shape (one value, a list, a matrix) or as bytes (any type). The framework fills
 // the live half of a view (chimera_port) between methods: do not keep pointers or spans from one method to the next.
@@ -39,7 +39,7 @@ class Many;
 
 namespace component_api {
 
-/// Ends the method with a fault that says so. (Where exceptions are not built, the process ends.)
+/// Ends the method with a fault that names the index. (Without exceptions, the process ends.)
 [[noreturn]] inline void index_beyond(std::size_t index, std::size_t size) {
 #ifdef __cpp_exceptions
   char text[80];
@@ -55,12 +55,12 @@ inline void check_index(std::size_t index, std::size_t size) {
   if (index >= size) [[unlikely]] index_beyond(index, size);
 }
 
-/// The live half; not copyable, because the framework knows its place.
+/// The live half; not copyable, because the framework stores its address.
 class PortBase {
  public:
   PortBase(const PortBase&) = delete;
   PortBase& operator=(const PortBase&) = delete;
-  /// As the framework knows the port.
+  /// The port in the form of the framework.
   const chimera_port* live() const noexcept { return &live_; }
 
  protected:
@@ -139,14 +139,14 @@ struct ViewOf {
 template <class T, bool kReadOnly>
 using View = typename ViewOf<T, kReadOnly>::type;
 
-/// What the four kinds of typed ports have in common: the three ways to declare one.
+/// The common part of the four kinds of typed ports: the three ways to declare one.
 template <class T, std::uint32_t Kind>
 class TypedPort : public View<T, Kind == CHIMERA_IN_VAR || Kind == CHIMERA_IN_CONST> {
  public:
   using Type = T;
   static constexpr std::uint32_t kKind = Kind;
 
-  /// Without a unit: bool, text, or a struct whose fields have their own.
+  /// Without a unit: bool, text, or a struct whose fields have their own units.
   template <Option... O>
   explicit TypedPort(PortName name, const O&... options) : TypedPort(name, Literal("1"), options...) {}
   template <Option... O>
@@ -161,25 +161,25 @@ class TypedPort : public View<T, Kind == CHIMERA_IN_VAR || Kind == CHIMERA_IN_CO
   }
 
  protected:
-  TypedPort() noexcept = default;  // one of Many, which declares for all
+  TypedPort() noexcept = default;  // an instance of Many, which declares for all
 };
 
 }  // namespace component_api
 
-/// An in-var: the latest value published before the method began; it stands still until the method returns.
+/// An in-var: the latest value published before the method began; it does not change until the method returns.
 template <class T>
 class In : public component_api::TypedPort<T, CHIMERA_IN_VAR> {
  public:
   using component_api::TypedPort<T, CHIMERA_IN_VAR>::TypedPort;
 
-  /// How long ago the value was published, seen from the release of this job; kNever while !valid().
-  /// Context: cycle; wait-free.
+  /// The time from the publication of the value to the release of this job; kNever while !valid(). Context: cycle;
+  /// wait-free.
   Nanoseconds age() const noexcept {
     return valid() ? Nanoseconds{*this->live_.now_ns - this->live_.slot->published_ns} : kNever;
   }
-  /// True when the producer has published since this task's previous cycle. Context: cycle; wait-free.
+  /// True if the producer has published since the previous cycle of this task. Context: cycle; wait-free.
   bool fresh() const noexcept { return this->live_.slot != nullptr && this->live_.slot->sequence != this->live_.seen; }
-  /// False as long as nobody has written it and it had no initial value: floats are NaN then, the rest zero.
+  /// False until a task writes the variable, if it has no initial value: floats are NaN then, all other types zero.
   /// Context: cycle; wait-free.
   bool valid() const noexcept {
     return this->live_.slot != nullptr && ((this->live_.slot->valid >> this->live_.bit) & 1u) != 0;
@@ -191,26 +191,25 @@ class In : public component_api::TypedPort<T, CHIMERA_IN_VAR> {
   In() noexcept = default;
 };
 
-/// An out-var: holds the last published value until the method writes it. Published together with all
-/// other out-vars of the task, when the method returned ok. At `on` that is the value of whoever produced the variable
-/// last, a predecessor or the task itself; chimera/task/handover.h says when to go on from it.
+/// An out-var: holds the last published value until the method writes it. All out-vars of a task are published
+/// together, after the method returned ok. At `on` it holds the value of the last producer of the variable: a
+/// predecessor, or the task itself. chimera/task/handover.h states when to continue from that value.
 template <class T>
 class Out : public component_api::TypedPort<T, CHIMERA_OUT_VAR> {
  public:
   using component_api::TypedPort<T, CHIMERA_OUT_VAR>::TypedPort;
 
-  /// How long before the present `on` the value was published that the out-var held when `on` began; the same number
-  /// until the next `on`. kNever when no task had published it: it held its initial value, or was not valid.
-  /// Context: any; wait-free.
+  /// The age, at the begin of the present `on`, of the value that the out-var held then; constant until the next `on`.
+  /// kNever if no task had published it: then it held its initial value, or was not valid. Context: any; wait-free.
   Nanoseconds inherited() const noexcept {
     const chimera_inherited* const from = chimera_inherited_of(&this->live_);
     return from == nullptr ? kNever : Nanoseconds{from->age_ns};
   }
-  /// True when that value was published at most 2 periods of its producer before `on`, or at most 10 ms: it is the
-  /// present command, to go on from. Context: any; wait-free.
+  /// True if that value was published at most 2 periods of its producer before `on`, or at most 10 ms. Then it is the
+  /// present command, and the task continues from it. Context: any; wait-free.
   bool is_handed_over() const noexcept { return chimera_is_handed_over(&this->live_) != 0; }
-  /// True when it was published earlier than that: nobody has followed it since, so begin from what is measured.
-  /// Context: any; wait-free.
+  /// True if it was published earlier: no task followed it since, so begin from measured values. Context: any;
+  /// wait-free.
   bool is_outdated() const noexcept { return this->live_.slot != nullptr && !is_handed_over(); }
 
  private:
@@ -219,13 +218,13 @@ class Out : public component_api::TypedPort<T, CHIMERA_OUT_VAR> {
   Out() noexcept = default;
 };
 
-/// An in-const: a value that is known from init on and changes only with reinit. Read-only.
+/// An in-const: a value that is known from init on and changes only at reinit. Read-only.
 template <class T>
 class InConst : public component_api::TypedPort<T, CHIMERA_IN_CONST> {
  public:
   using component_api::TypedPort<T, CHIMERA_IN_CONST>::TypedPort;
 
-  /// False when nobody gives the value and it has no default. Context: setup; wait-free.
+  /// False if no source gives the value and it has no default. Context: setup; wait-free.
   bool valid() const noexcept { return this->live_.value != nullptr; }
 
  private:
@@ -234,7 +233,7 @@ class InConst : public component_api::TypedPort<T, CHIMERA_IN_CONST> {
   InConst() noexcept = default;
 };
 
-/// An out-const: written in init or reinit; its users are initialised after it.
+/// An out-const: written in init or reinit; its readers are initialised after it.
 template <class T>
 class OutConst : public component_api::TypedPort<T, CHIMERA_OUT_CONST> {
  public:
@@ -246,8 +245,8 @@ class OutConst : public component_api::TypedPort<T, CHIMERA_OUT_CONST> {
   OutConst() noexcept = default;
 };
 
-/// A resource: the text of the description that names a device, a file, an address. What to do with it is
-/// the component's business, in init and kill. Nothing is transferred.
+/// A resource: the text of the description that names a device, a file or an address. The component opens and closes
+/// it, in init and kill. Nothing is transferred.
 class Resource : public component_api::PortBase {
  public:
   template <component_api::Option... O>
@@ -259,7 +258,7 @@ class Resource : public component_api::PortBase {
   const char* c_str() const noexcept { return live_.value == nullptr ? "" : static_cast<const char*>(live_.value); }
 };
 
-/// A repeated port: at most N instances, as many as the description names; size() is known from init on.
+/// A repeated port: the description sets the number of instances, at most N. size() is known from init on.
 template <class P, std::uint32_t N>
 class Many {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ports: what a member declares, and how its values are reached.
+// The declarations that members make, and the access to their values.
 #include "chimera/task/port.h"
 
 #include <gtest/gtest.h>
@@ -190,7 +190,7 @@ struct Heir {
     *is_outdated = list[1].is_outdated();
   }
 };
-CHIMERA_COMPONENT(Heir, "heir", "Tells what it inherited.");
+CHIMERA_COMPONENT(Heir, "heir", "Outputs what it inherited.");
 
 TEST(Port, AnOutVarTellsHowOldTheValueWasThatItHeldAtOn) {
   Rig rig("heir");

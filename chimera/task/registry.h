@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The one symbol of a component's object, chimera_components, and the list behind it. Included by the C++ face and
- * by the C face, so both may stand in one object. Everything here is weak: each source file brings it, one is kept.
+/* The one symbol of a component's object, chimera_components, and the list behind it. The C++ and the C interface
+ * include it, so one object may use both. All definitions are weak: each source file has them, the linker keeps one.
  */
 #ifndef CHIMERA_TASK_REGISTRY_H_
 #define CHIMERA_TASK_REGISTRY_H_
@@ -15,7 +15,7 @@ extern "C" {
 
 #define CHIMERA_MAX_COMPONENTS 256u /* of one object */
 
-/* Makes the declaration at its first call, and returns the same one ever after. */
+/* Makes the declaration at its first call; every call returns the same one. */
 typedef const chimera_component* (*chimera_declare_fn)(void);
 
 typedef struct chimera_registry {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A test bench for one component: sets its inputs, calls its methods with stepped time, shows its outputs. For tests
-// of components only; it knows nothing of states, deadlines or other tasks.
+// A test bench for one component: sets its inputs, calls its methods with stepped time, shows its outputs. Only for
+// tests of components; it has no states, deadlines or other tasks.
 //
 //   Rig rig("tderiv");                    // a component linked into this test, C++ or C
 //   rig.set("x", 1.0);
@@ -25,7 +25,7 @@
 
 namespace chimera {
 
-/// What a method answered: true for CHIMERA_OK.
+/// The result of a method: true for CHIMERA_OK.
 struct RigAnswer {
   std::int32_t status = CHIMERA_OK;
   std::int32_t code = 0;
@@ -34,11 +34,10 @@ struct RigAnswer {
   explicit operator bool() const noexcept { return status == CHIMERA_OK; }
 };
 
-/// One component under test. Its ports are set and read as RigPorts says, its safe frames as RigSafeFrames.
-/// Context: setup.
+/// One component under test. RigPorts sets and reads its ports; RigSafeFrames shows its safe frames. Context: setup.
 class Rig : public RigPorts, public RigSafeFrames {
  public:
-  /// Finds the component of that name in this program and constructs it; throws when its constructor fails.
+  /// Finds the component of that name in this program and constructs it; throws if its constructor fails.
   explicit Rig(const char* component) : RigPorts(component, &call_.now_ns) {
     call_.host = &kHost;
     call_.context = this;
@@ -48,7 +47,7 @@ class Rig : public RigPorts, public RigSafeFrames {
   RigAnswer init() { return run(Method::kInit); }
   RigAnswer reinit() { return run(Method::kReinit); }
   RigAnswer on() { return run(Method::kOn); }
-  /// Steps time by `dt`, then calls sync(): CHIMERA_NO_EVENT when there was none.
+  /// Steps time by `dt`, then calls sync(): CHIMERA_NO_EVENT if it found none.
   RigAnswer sync(Nanoseconds dt = milliseconds(1)) {
     call_.now_ns += dt.count;
     return run(Method::kSync);
@@ -62,7 +61,7 @@ class Rig : public RigPorts, public RigSafeFrames {
     see_all();
     return answer;
   }
-  /// cycle() `n` times in steps of `dt` and nothing beside it, for measuring; the status of the last.
+  /// Only calls cycle() `n` times in steps of `dt`, for measurements; returns the last status.
   std::int32_t repeat(std::uint64_t n, Nanoseconds dt) {
     chimera_fault fault{};
     call_.fault = &fault;
@@ -80,7 +79,7 @@ class Rig : public RigPorts, public RigSafeFrames {
   RigAnswer kill() { return run(Method::kKill); }
   RigAnswer error() { return run(Method::kError); }
   RigAnswer clear() { return run(Method::kClear); }
-  /// What the framework's thread without real-time rights calls; true when the component has none.
+  /// Calls background(), as a thread without real-time rights would; true if the component has none.
   RigAnswer background() {
     if (component().background == nullptr) return {};
     chimera_fault fault{};
@@ -88,20 +87,20 @@ class Rig : public RigPorts, public RigSafeFrames {
     return {status, fault.code, fault.text};
   }
 
-  /// The descriptor its events come from; below 0: there is none.
+  /// The descriptor of its events; below 0: none.
   int event_source() {
     return component().event_source == nullptr ? -1 : static_cast<int>(component().event_source(state()));
   }
 
-  /// What Cycle::expired(), illegal() and dropped() say from now on.
+  /// Sets the answers of Cycle::expired(), illegal() and dropped() from now on.
   void expire(bool is_expired) { expired_ = is_expired; }
   void illegal(bool is_illegal) { call_.illegal = is_illegal ? 1 : 0; }
   void dropped(std::uint32_t count) { call_.dropped = count; }
   /// Execution time used through Cycle::spend() so far.
   Nanoseconds spent() const { return spent_; }
-  /// The signals sent so far, as "off pid"; to itself "off". Requests for a configuration, as "request figure_9".
+  /// The signals sent so far, as "off pid"; to itself "off". Requests appear as "request figure_9".
   const std::vector<std::string>& signals() const { return signals_; }
-  /// The notes left so far, the first 16 of them.
+  /// The first 16 notes.
   std::vector<std::string> notes() const {
     std::vector<std::string> texts;
     for (const FixedString<CHIMERA_FAULT_TEXT>& note : notes_) texts.emplace_back(note.view());
@@ -147,7 +146,7 @@ class Rig : public RigPorts, public RigSafeFrames {
 
   chimera_call call_{};
   std::vector<std::string> signals_;
-  FixedVector<FixedString<CHIMERA_FAULT_TEXT>, 16> notes_;  // a cycle that leaves one allocates nothing
+  FixedVector<FixedString<CHIMERA_FAULT_TEXT>, 16> notes_;  // fixed size, so that a cycle with a note allocates nothing
   Nanoseconds spent_;
   bool expired_ = false;
 };

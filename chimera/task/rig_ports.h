@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Half of the test bench for one component (chimera/task/rig.h): the component itself and the values behind its ports.
+// Part of the test bench for one component (chimera/task/rig.h): the component and the values behind its ports.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@
 
 namespace chimera {
 
-/// The component of that name in this program; throws std::invalid_argument where there is none. Context: setup.
+/// The component of that name in this program; throws std::invalid_argument if there is none. Context: setup.
 inline const chimera_component& linked_component(const std::string& name) {
   std::uint32_t count = 0;
   const chimera_component* const* all = chimera_components(CHIMERA_ABI_VERSION, &count);
@@ -29,28 +29,28 @@ inline const chimera_component& linked_component(const std::string& name) {
   throw std::invalid_argument("no component " + name + " is linked into this test");
 }
 
-/// A constructed component. A port that does not exist, or a value of the wrong size, throws std::invalid_argument: the
-/// test is wrong then. Context: setup.
+/// A constructed component. A port that does not exist, or a value of the wrong size, throws std::invalid_argument,
+/// because the test is wrong. Context: setup.
 class RigPorts {
  public:
-  /// How many instances a repeated port has; its maximum until said. Call it before init().
+  /// Sets the number of instances of a repeated port; its maximum by default. Call it before init().
   void instances(const char* port, std::uint32_t count) {
     const chimera_port_decl& decl = declaration(port);
     if (count > decl.max_instances) throw std::invalid_argument(std::string(port) + " has fewer instances at most");
     std::memcpy(state_.get() + decl.instances_offset, &count, sizeof count);
   }
-  /// Fixes an extent that no constant of the component gives; its maximum until said.
+  /// Sets an extent that no constant of the component gives; its maximum by default.
   void extent(const char* symbol, std::uint32_t size) {
     fixed_.push_back({symbol, size, 1});
     fix_extents();
   }
-  /// Fixes a shape that nothing of the component gives to a matrix.
+  /// Sets the shape of a matrix whose extents no constant of the component gives.
   void shape(const char* symbol, std::uint32_t rows, std::uint32_t columns) {
     fixed_.push_back({symbol, rows, columns});
     fix_extents();
   }
-  /// What a port of any type carries: T = bool, std::int32_t, std::int64_t, float; double until said. Call it before
-  /// init() and set().
+  /// Sets the element type of a port of any type: T = bool, std::int32_t, std::int64_t, float; double by default. Call
+  /// it before init() and set().
   template <class T>
   void type(const char* port, std::size_t instance = 0) {
     Cell& cell = cell_of(port, instance);
@@ -66,12 +66,12 @@ class RigPorts {
     cell.live->value = cell.memory.get();
   }
 
-  /// What Cycle::variable() and unit() say of a port; by itself the port's own name and no unit.
+  /// Sets the answers of Cycle::variable() and unit() for a port; by default the name of the port and no unit.
   void joined(const char* port, const char* variable, const char* unit, std::size_t instance = 0) {
     cell_of(port, instance).joined = {variable, unit};
   }
 
-  /// Publishes a value to an in-var, or gives a constant: element `i` of instance `instance`.
+  /// Publishes a value to an in-var, or sets a constant: element `i` of instance `instance`.
   template <class T>
   void set(const char* port, const T& value, std::size_t i = 0, std::size_t instance = 0) {
     Cell& cell = cell_of(port, instance);
@@ -82,8 +82,8 @@ class RigPorts {
     cell.slot.published_ns = *now_ns_;
     fix_extents();
   }
-  /// What an out-var is given at the next on(): a value that was published `age` before by a task of that period. Its
-  /// elements are set before, by set(). kNever: nobody has published it, which is so until said.
+  /// Sets the value that an out-var holds at the next on(): published `age` before by a task of that period. Call set()
+  /// for its elements first. kNever, the default: no task has published it.
   void inherit(const char* port, Nanoseconds age, Nanoseconds period = milliseconds(1)) {
     for (auto& cell : cells_) {
       if (cell->decl != &declaration(port)) continue;
@@ -92,7 +92,7 @@ class RigPorts {
       cell->live->slot = age == kNever ? nullptr : &cell->inherited.slot;
     }
   }
-  /// Element `i` of instance `instance` as it stands.
+  /// The present value of element `i` of instance `instance`.
   template <class T>
   T get(const char* port, std::size_t i = 0, std::size_t instance = 0) {
     return at<T>(cell_of(port, instance), i);
@@ -101,7 +101,7 @@ class RigPorts {
   std::uint32_t size(const char* port) { return cell_of(port, 0).live->count; }
 
  protected:
-  /// Throws when the constructor fails. The ports take their age from `now_ns`.
+  /// Throws if the constructor fails. The ports measure age against `now_ns`.
   RigPorts(const char* component, const std::int64_t* now_ns)
       : component_(linked_component(component)), state_(make_state(component_), {&component_}), now_ns_(now_ns) {
     for (std::uint32_t i = 0; i < component_.n_ports; ++i) add_port(component_.ports[i]);
@@ -120,11 +120,11 @@ class RigPorts {
       if (cell->live == port) return cell->joined;
     throw std::invalid_argument("a port of another component");
   }
-  /// What there is to be read has been read: it is no longer fresh.
+  /// Marks all inputs as read: they are no longer fresh.
   void see_all() {
     for (auto& cell : cells_) cell->live->seen = cell->slot.sequence;
   }
-  /// Gives every port its shape, from the constants as they are now.
+  /// Sets the shape of every port from the present constants.
   void fix_extents() {
     for (auto& cell : cells_) {
       chimera_port& live = *cell->live;
@@ -183,7 +183,8 @@ class RigPorts {
     fix_extents();
   }
 
-  /// As a task finds it at spawn: the initial value, else NaN for floating numbers and zero for the rest.
+  /// Sets the values of a port at spawn: the initial value; without one, NaN for floating numbers and zero for all
+  /// others.
   void fill(Cell& cell) {
     const chimera_port_decl& decl = *cell.decl;
     const std::size_t count = extent_of(decl, 0, true) * extent_of(decl, 1, true);
@@ -205,8 +206,8 @@ class RigPorts {
     if (is_given) cell.live->value = cell.memory.get();
   }
 
-  /// Extent `dimension` of a shape: literal, a constant's value, what extent() or shape() said, or the maximum; 1
-  /// beyond the last.
+  /// Extent `dimension` of a shape: a literal, the value of a constant, the extent from extent() or shape(), or the
+  /// maximum. 1 beyond the last dimension.
   std::uint32_t extent_of(const chimera_port_decl& decl, int dimension, bool maximum) {
     const char* at = decl.shape;
     const bool is_shape = std::strstr(at, "...<=") != nullptr;

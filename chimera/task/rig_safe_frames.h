@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A part of rig.h: the safe frames that the component under test has given.
+// Part of rig.h: the safe frames of the component under test.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace chimera {
 
-/// What would be written if the process died now. Context: any; wait-free.
+/// The frames that would be written if the process died now. Context: any; wait-free.
 class RigSafeFrames {
  public:
   struct GivenFrame {
-    int descriptor = -1;  ///< below 0: it goes nowhere
+    int descriptor = -1;  ///< below 0: no destination
     Nanoseconds pause;
-    std::uint32_t size = 0;  ///< 0: there is none
+    std::uint32_t size = 0;  ///< 0: no frame
     unsigned char bytes[CHIMERA_SAFE_BYTES];
   };
   /// Requires: index < CHIMERA_SAFE_FRAMES.

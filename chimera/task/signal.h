@@ -8,7 +8,7 @@
 
 namespace chimera {
 
-/// What a task may be told. `kWakeup` comes from the timer or the event source; from a sender it rings the doorbell of
+/// The signals of a task. `kWakeup` comes from the timer or the event source. Sent by a task, it rings the doorbell of
 /// a task behind a server.
 enum class Signal : std::uint32_t {
   kSpawn = CHIMERA_SIGNAL_SPAWN,

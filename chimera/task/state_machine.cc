@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of transitions of a task, and the questions that are answered from it.
+// The table of transitions of a task, and functions that read it.
 #include "chimera/task/state_machine.h"
 
 namespace chimera {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of state_machine.cc against a second one, written as the stories that the papers and
-// docs/decisions/0002-state-machine.md tell: who signals what in which state, which methods run with which
-// transfers and answers, and where the task ends.
+// Compares the table of state_machine.cc with a second one: the transitions of the papers and of state_machine.h. Each
+// line has a signal in a state, the methods with their transfers and answers, and the final state.
 #include "chimera/task/state_machine.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +15,8 @@
 namespace chimera {
 namespace {
 
-// One line a story: state, signal, then per method `before|method=answer|after`, then the end.
-// A leading ~ marks the aperiodic variant of a wakeup. "-" means that nothing is transferred.
+// One line for each story: state, signal, then per method `before|method=answer|after`, then the end.
+// A leading ~ marks the aperiodic variant of a wakeup. "-" marks a method without transfers.
 constexpr const char* kStories = R"(
 NOT-CREATED spawn  >ic|init=ok|oc>  OFF
 NOT-CREATED spawn  >ic|init=fault|- -|kill=ok|-  NOT-CREATED
@@ -97,7 +96,7 @@ std::string text(std::uint8_t transfers) {
   return out.empty() ? "-" : out;
 }
 
-// Follows every possible answer from `next` on and collects the stories told.
+// Follows every possible answer from `next` on and collects the stories.
 void follow(const std::string& so_far, Next next, std::set<std::string>& stories) {
   if (next.kind == Next::Kind::kState) {
     stories.insert(so_far + " " + std::string(state_name(next.state)));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A task as handed down: everything the floors below need to make and run it, and nothing about files.
-// Plain data over memory that the giver keeps alive (a Configuration, or tables baked into an image).
+// The specification of a task for the lower layers: all data to make and run it, without files. Plain data over memory
+// that the caller keeps alive (a Configuration, or tables in an image).
 #pragma once
 
 #include <cstddef>
@@ -39,26 +39,26 @@ struct PortSpec {
   /// out-var: initial value; in-const: the value given to this task alone, else the component's default;
   /// resource: its text without the zero. Empty: none. Values fill all max elements.
   std::span<const std::byte> value;
-  /// Entries of the list that `value` was written as, by dimension; 0: one value for all elements. An extent that a
+  /// Number of list entries in the written `value`, by dimension; 0: one value for all elements. An extent that a
   /// constant fixes must agree with them.
   std::uint32_t listed[CHIMERA_MAX_EXTENTS] = {};
-  /// out-var: how far a switch of configurations may move each of the max elements, above 0; empty: as far as it likes.
+  /// out-var: the largest step at a switch of configurations, for each of the max elements, above 0; empty: no limit.
   std::span<const std::byte> max_step;
-  bool shared = false;  ///< resource: several tasks may have it open at one time
+  bool shared = false;  ///< resource: several tasks may open it together
 
   std::uint32_t max_count() const noexcept { return extent[0].max * extent[1].max; }
   std::uint32_t max_bytes() const noexcept { return max_count() * element_bytes; }
 };
 
-/// The reactions to a failure of time; chimera/runtime/miss_policy.h says what each does.
+/// The reactions to a missed deadline or an overrun; chimera/runtime/miss_policy.h describes each.
 enum class OnMiss : std::uint8_t { kContinue, kHold, kSkip, kAbort, kDemote, kError, kSwitch, kFlag, kStop };
 
 /// The reactions to a fault from which the method error does not recover, so that the task is in ERROR.
 enum class OnFault : std::uint8_t {
-  kError,   ///< nothing beyond that
+  kError,   ///< no further action
   kFlag,    ///< the illegal-configuration flag goes up, until the task is no longer in ERROR
   kStop,    ///< the executor stops
-  kSwitch,  ///< a configuration is asked for
+  kSwitch,  ///< requests a configuration
   kRestart,  ///< `clear` and `on`, as RestartSpec says (runtime/application_spec.h)
 };
 
@@ -66,7 +66,7 @@ enum class OnFault : std::uint8_t {
 struct TaskSpec {
   std::string_view name;
   std::string_view component;
-  Nanoseconds period;    ///< between releases; an aperiodic task is asked for an event at each
+  Nanoseconds period;    ///< between releases; an aperiodic task checks for an event at each
   Nanoseconds offset;    ///< of the grid of releases: start of the run + offset + k * period, whenever on comes
   Nanoseconds deadline;  ///< relative to the release, 0 < deadline <= period
   Nanoseconds budget;    ///< execution time a cycle may use; 0 = not stated
@@ -77,18 +77,19 @@ struct TaskSpec {
   OnMiss on_overrun = OnMiss::kContinue;
   OnFault on_fault = OnFault::kError;
   std::uint32_t max_consecutive = 0;  ///< misses in a row after which the task goes to ERROR; 0 = no limit
-  std::uint32_t tolerated_misses = 0;  ///< of the last `tolerated_of` cycles so many may miss without a reaction
+  std::uint32_t tolerated_misses = 0;  ///< of the last `tolerated_of` cycles, this number may miss without a reaction
   std::uint32_t tolerated_of = 0;      ///< 0: none; at most 64
   std::uint32_t stack_bytes = 0;       ///< of the task's thread, where it has one; 0: the default
   bool aperiodic = false;             ///< the component has a sync method
   bool is_hardware = false;           ///< has a resource port: first to go ON, last to go OFF
-  // Of the reactions `switch`: the configuration, by its number in the list of them; UINT16_MAX for other reactions.
-  // They stand where they take no room: a job step multiplies by the size of this.
+  // For reactions `switch`: the number of the configuration; UINT16_MAX for other reactions. These members fill a gap,
+  // because a job step multiplies by the size of this struct.
   std::uint16_t on_miss_set = UINT16_MAX;
   RtpuId rtpu;
   std::uint16_t on_overrun_set = UINT16_MAX, on_fault_set = UINT16_MAX;
   std::span<const PortSpec> ports;
-  /// Then it is aperiodic, `period` and `deadline` are the server's period, and each event is one release.
+  /// With a server the task is aperiodic, `period` and `deadline` are those of the server, and each event is one
+  /// release.
   std::optional<ServerSpec> server;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text of fixed size, for ports: a std::string keeps its characters on a heap that other processes do not see.
+// Text of fixed size, for ports: a std::string keeps its characters on a heap that other processes cannot read.
 #pragma once
 
 #include <cstddef>

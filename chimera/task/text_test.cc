@@ -25,7 +25,7 @@ TEST(Text, IsZeroFilledSoThatEqualTextsHaveEqualBytes) {
 
 TEST(Text, ReadsBytesWithoutAnEndAsFull) {
   Text<4> text;
-  std::memset(static_cast<void*>(&text), 'x', 4);  // what another process may have written
+  std::memset(static_cast<void*>(&text), 'x', 4);  // another process may have written this
   EXPECT_EQ(text.view(), "xxx");
 }
 

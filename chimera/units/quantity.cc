@@ -12,13 +12,13 @@ namespace {
 
 __extension__ using Wide = unsigned __int128;
 
-/// kBadInput: the text has not the form; kRefused: it has, and the number is not one of those that are taken.
+/// kBadInput: the text has the wrong form. kRefused: the form is right, but the number is not accepted.
 Error refused(std::string_view text, std::string_view why, ErrorCode code = ErrorCode::kBadInput) {
   const std::string whole = "\"" + std::string(text.substr(0, 100)) + "\" " + std::string(why);
   return {code, std::string_view(whole), {}};
 }
 
-/// What follows the number, without the one space that may stand between.
+/// The text behind the number, without the one optional space between.
 std::string_view unit_part(std::string_view text, std::size_t number_length) {
   std::string_view rest = text.substr(number_length);
   if (rest.size() > 1 && rest.front() == ' ') rest.remove_prefix(1);
@@ -43,7 +43,7 @@ std::int64_t scale_of(const NamedScale (&scales)[N], std::string_view unit) {
   return 0;
 }
 
-/// 10^12 / (digits * scale * 10^exponent) ns, rounded to the nearest; 0 for what is out of all bounds.
+/// 10^12 / (digits * scale * 10^exponent) ns, rounded to the nearest; 0 if it is outside all bounds.
 std::int64_t period_of(const Decimal& number, std::int64_t millihertz) {
   Wide above = 1'000'000'000'000u, below = static_cast<Wide>(number.digits) * static_cast<Wide>(millihertz);
   if (number.exponent < -30 || number.exponent > 30) return 0;

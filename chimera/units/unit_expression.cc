@@ -34,7 +34,7 @@ UnitExpression substitute(const UnitExpression& expression, char variable, const
   if (index == std::string_view::npos || expression.variables[index] == 0) return expression;
   UnitExpression result = expression;
   result.variables[index] = 0;
-  // The variable alone keeps the offset: a generic filter carries degC through.
+  // A variable alone keeps the offset, so that a generic filter passes degC on.
   const bool alone = expression.variables[index] == 1 && result.is_concrete() && same(expression.rest, Unit{});
   result.rest = alone ? unit : expression.rest * power(unit, expression.variables[index]);
   return result;

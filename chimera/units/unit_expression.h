@@ -21,9 +21,9 @@ struct UnitExpression {
   std::array<std::int16_t, kUnitVariables.size()> variables{};
   Unit rest;
 
-  /// No variable: `rest` is the unit.
+  /// True if it has no variable: `rest` is the unit.
   bool is_concrete() const noexcept;
-  /// The number of variables that occur.
+  /// The number of different variables in it.
   int unknowns() const noexcept;
 };
 
@@ -31,18 +31,18 @@ UnitExpression operator*(const UnitExpression& a, const UnitExpression& b) noexc
 UnitExpression operator/(const UnitExpression& a, const UnitExpression& b) noexcept;
 UnitExpression power(const UnitExpression& expression, int exponent) noexcept;
 
-/// `expression` with every `variable` (a letter of kUnitVariables) replaced. "U/s" with m for U is m/s, with
-/// degC/s for "U/s" K/s: offsets are lost but where the expression is the variable alone. Context: setup.
+/// `expression` with every `variable` (a letter of kUnitVariables) replaced. "U/s" with m for U is m/s; with degC it is
+/// K/s. An offset remains only if the expression is the variable alone. Context: setup.
 UnitExpression substitute(const UnitExpression& expression, char variable, const Unit& unit) noexcept;
 
-/// A variable and what it must be.
+/// A variable and its solved unit.
 struct Solved {
   char variable = 'U';
   Unit unit;
 };
 
-/// The only unknown of `expression` such that it becomes `unit`: "U/s" and m/s give U = m. nullopt when there is
-/// not exactly one unknown or no unit fits ("U2" and m/s). Context: setup.
+/// The value of the only unknown of `expression` for which it becomes `unit`: "U/s" and m/s give U = m. nullopt if
+/// there is not exactly one unknown, or if no unit fits ("U2" and m/s). Context: setup.
 std::optional<Solved> solve(const UnitExpression& expression, const Unit& unit) noexcept;
 
 /// "U.m/s" form in base units, for messages.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the units by UDUNITS-2, and names the unit that was probably meant by a wrong one.
+// Reads the units with UDUNITS-2, and suggests the unit that a wrong one probably means.
 #include "chimera/units/unit_system.h"
 
 #include <udunits2.h>
@@ -19,9 +19,9 @@
 namespace chimera {
 namespace {
 
-constexpr std::size_t kMostUnitBytes = 1 << 20;  // ours has 10 KiB
+constexpr std::size_t kMostUnitBytes = 1 << 20;  // the file of the framework has 10 KiB
 
-/// UDUNITS keeps its status and its parser in static variables, so only one thread may be inside.
+/// UDUNITS keeps its status and its parser in static variables, so only one thread may call it at a time.
 std::mutex& inside() {
   static std::mutex mutex;
   return mutex;
@@ -37,7 +37,7 @@ const std::map<std::string, std::string, std::less<>>& slips() {
   return kSlips;
 }
 
-/// Collects what UDUNITS says a unit is made of: value_in_base = factor * (x + offset).
+/// Collects the parts of a unit from UDUNITS: value_in_base = factor * (x + offset).
 struct UnitParts {
   Unit unit;
   bool is_known = true;
@@ -87,7 +87,7 @@ ut_status visit_galilean(const ut_unit*, double scale, const ut_unit* under, dou
   return status;
 }
 
-/// The texts between <tag> and </tag>, but for those of prefixes.
+/// The texts between <tag> and </tag>, except those of prefixes.
 void collect(const std::string& xml, const std::string& tag, std::vector<std::string>& names) {
   const std::string open = "<" + tag + ">", close = "</" + tag + ">";
   for (std::size_t at = xml.find(open); at != std::string::npos; at = xml.find(open, at)) {
@@ -101,13 +101,13 @@ void collect(const std::string& xml, const std::string& tag, std::vector<std::st
   }
 }
 
-/// ": REASON" when the last call failed because there was no memory or descriptor left.
+/// ": REASON" if the last call failed for lack of memory or descriptors.
 std::string want() {
   const bool is_want = errno == EMFILE || errno == ENFILE || errno == ENOMEM;
   return is_want ? std::string(": ") + std::strerror(errno) : "";
 }
 
-/// The units of `xml`. UDUNITS reads nothing but files, so the text is given the form of one.
+/// The units of `xml`. UDUNITS reads only files, so the text is presented as a file.
 ut_system* read_units(const std::string& xml) {
   const auto file = FrozenBytes::create("chimera-units", std::as_bytes(std::span(xml)));
   if (!file) return nullptr;

@@ -10,7 +10,7 @@ namespace {
 
 enum class Verdict { kSame, kConvertible, kRefused };
 
-/// A pair that people, or other systems of units, take for one another.
+/// A pair of units that people, or other systems of units, confuse.
 struct Pair {
   const char* a;
   const char* b;

@@ -11,7 +11,7 @@ namespace {
 
 bool is_word(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '%'; }
 
-/// The signs people type for their ASCII spelling: micro, degree and the product dot.
+/// Replaces signs that people type by their ASCII spelling: micro, degree and the product dot.
 std::string plain(std::string_view text) {
   struct Spelling {
     std::string_view sign, ascii;

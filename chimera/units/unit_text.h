@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grammar of unit texts (docs/formats/units.md), without knowing any unit: the meaning of a word is asked for.
+// The grammar of unit texts (docs/formats/units.md). It knows no unit: a callback gives the meaning of a word.
 #pragma once
 
 #include <functional>
@@ -15,11 +15,11 @@ namespace chimera {
 inline constexpr std::size_t kMaxUnitText = 100;  ///< bytes
 inline constexpr int kMaxUnitExponent = 30;       ///< of a text as a whole, each base unit
 
-/// What a word such as "kHz" or "U" means; nullopt when it means nothing.
+/// The meaning of a word such as "kHz" or "U"; nullopt if it has none.
 using WordMeaning = std::function<std::optional<UnitExpression>(std::string_view word)>;
 
-/// Reads `text`. Refuses what breaks the grammar, and a word without meaning with the text that `unknown` makes of
-/// it. Context: setup; bounded time.
+/// Reads `text`. Refuses a text that breaks the grammar. Refuses a word without meaning, with the message from
+/// `unknown`. Context: setup; bounded time.
 Result<UnitExpression> read_unit_text(std::string_view text, const WordMeaning& meaning,
                                       const std::function<std::string(std::string_view word)>& unknown);
 

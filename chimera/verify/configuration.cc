@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes of a legal model what clients read (names, types and links as texts) and what the runtime reads (plain specs:
-// every link an id, every value the bytes that the rules accepted, every name a view into the parts).
+// Builds a configuration from a legal model, in two halves. Clients read names, types and links as texts. The runtime
+// reads plain specs: ids for links, the accepted bytes for values, views into the parts for names.
 #include "chimera/verify/configuration.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ struct Configuration::Parts {
   std::vector<ConfiguredSet> sets;
   std::size_t start = 0;
   std::vector<double> utilisation;
-  // What spec() points at. Elements of a deque stay where they are.
+  // Storage behind spec(). Elements of a deque never move.
   std::deque<std::string> texts;
   std::deque<std::vector<std::byte>> values;
   std::vector<RtpuSpec> rtpus;
@@ -92,7 +92,7 @@ ConfiguredVariable configured(const Model& model, const VariableModel& variable)
     out.at = variable.given->name.at;
   else if (port != nullptr)
     out.at = port->at;
-  if (port == nullptr) return out;  // given and used by nobody
+  if (port == nullptr) return out;  // given, but no task uses it
   const ConfiguredPort like = configured(*port);
   out.type = like.type;
   out.unit = like.unit;
@@ -123,7 +123,7 @@ void count_list(const Node& node, std::uint32_t (&listed)[CHIMERA_MAX_EXTENTS]) 
   }
 }
 
-/// The number of the configuration that a reaction names; a reaction without one has none.
+/// The number of the configuration that a reaction names; UINT16_MAX if it names none.
 std::uint16_t set_number(const Model& model, const Word& name) {
   for (std::size_t i = 0; i < model.sets.size(); ++i)
     if (model.sets[i].name == name.text) return static_cast<std::uint16_t>(i);
@@ -196,7 +196,7 @@ TaskSpec task_spec(const Model& model, const TaskModel& task, const ConfiguredTa
   return spec;
 }
 
-/// Gives every variable that a port is linked to its id, and each port the id of what it is linked to.
+/// Gives an id to every variable that a port is linked to, and to each port the id of its variable.
 class SpecMaker {
  public:
   SpecMaker(const Model& model, Parts& parts)
@@ -214,7 +214,7 @@ class SpecMaker {
   }
 
  private:
-  /// State variables and constants are counted apart, in the order of the model.
+  /// Numbers state variables and constants separately, in the order of the model.
   void number_variables() {
     for (std::size_t v = 0; v < model_.variables.size(); ++v) {
       const VariableModel& variable = model_.variables[v];
@@ -262,7 +262,7 @@ class SpecMaker {
       spec.element_bytes = port.element_bytes;
       spec.type = *port.type;
       fill_extents(port, spec.extent);
-      // A linked in-const has the value of its constant.
+      // A linked in-const gets the value of its constant.
       if (port.source != ConstSource::kVariable && !port.value.empty()) spec.value = keep(parts_, port.value);
       if (!port.max_step.empty()) spec.max_step = keep(parts_, port.max_step);
     } else {
@@ -287,7 +287,7 @@ class SpecMaker {
     }
   }
 
-  /// What the description itself says of a constant or an operator variable, where a task reads it.
+  /// Adds the value that the description gives to a constant or an operator variable, if a task reads it.
   void add_given(std::size_t v) {
     const VariableModel& variable = model_.variables[v];
     if (variable.given == nullptr || variable.consumers.empty()) return;
@@ -322,7 +322,7 @@ SafeCondition safe_condition(const SetModel& set, const Parts& parts) {
   return condition;
 }
 
-/// The half that the runtime reads; `parts` has its tasks already.
+/// Fills the half for the runtime; `parts` has its tasks already.
 void fill_spec(const Model& model, Parts& parts) {
   SpecMaker(model, parts).make();
   parts.spec.name = parts.draft.subsystem.text;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A verified application: immutable, made by verify() alone. Everything later stages need to know about a
-// description, with the places it came from. spec() hands it down to the runtime.
+// A verified application: immutable, made only by verify(). It holds all data about a description for later stages,
+// with the places in the file. spec() passes it to the runtime.
 #pragma once
 
 #include <cstddef>
@@ -16,17 +16,17 @@
 
 namespace chimera {
 
-/// One port instance of one task, solved.
+/// A port instance of a task, after verification.
 struct ConfiguredPort {
   std::uint32_t declared = 0;  ///< index in the component's descriptor
   std::uint32_t instance = 0;
   std::uint32_t kind = 0;  ///< CHIMERA_IN_VAR ...
   std::string name;        ///< as declared; an instance of a repeated port as "in[2]"
-  std::string variable;    ///< linked to; empty for resources and for in-consts that nobody else gives
+  std::string variable;    ///< linked to; empty for resources and for in-consts without another source
   std::string type;        ///< "float64", "Pose"
   std::string unit;        ///< solved; "1" for none
   std::string shape;       ///< "" scalar, "[6]", "[ndof<=10]"
-  Place at;                ///< of the alias, else of the task
+  Place at;                ///< of the alias, otherwise of the task
 };
 
 struct ConfiguredTask {
@@ -51,18 +51,18 @@ struct PortRef {
   std::size_t port = 0;
 };
 
-/// A state variable or constant and everybody who names it, over all tasks.
+/// A state variable or constant and all its producers and consumers, over all tasks.
 struct ConfiguredVariable {
   std::string name;
   bool is_constant = false;
   bool is_given = false;  ///< by `operator` (a state variable) or `constants` of the file
   std::string type, unit, shape;
-  Place at;  ///< of the given value, else of the first producer
+  Place at;  ///< of the given value, otherwise of the first producer
   std::vector<PortRef> producers;
   std::vector<PortRef> consumers;
 };
 
-/// One of `configurations`: its tasks in data-flow order.
+/// An entry of `configurations`: its tasks in data-flow order.
 struct ConfiguredSet {
   std::string name;
   Place at;
@@ -71,7 +71,7 @@ struct ConfiguredSet {
 
 struct Model;
 
-/// Cheap to copy: all copies share one immutable whole. Context: setup.
+/// Cheap to copy: all copies share one immutable object. Context: setup.
 class Configuration {
  public:
   struct Parts;
@@ -80,20 +80,20 @@ class Configuration {
   const std::string& subsystem() const noexcept;
   std::span<const ConfiguredTask> tasks() const noexcept;
   std::span<const ConfiguredVariable> variables() const noexcept;
-  /// The state variable that the runtime knows by `id`. Requires: an id of spec().
+  /// The state variable with the runtime id `id`. Requires: an id of spec().
   const ConfiguredVariable& variable(VariableId id) const noexcept;
   std::span<const ConfiguredSet> sets() const noexcept;
-  /// Index in sets() of the one that goes ON at the start.
+  /// Index in sets() of the configuration that goes ON at the start.
   std::size_t start() const noexcept;
   std::span<const RtpuSpec> rtpus() const noexcept;
-  /// The description it came from.
+  /// The description behind this configuration.
   const Draft& draft() const noexcept;
   /// The application for the runtime. Its spans live as long as any copy of this Configuration.
   const ApplicationSpec& spec() const noexcept;
-  /// The utilisation of each CPU in the start configuration by declared budgets; 0 where none is declared.
+  /// The utilisation of each CPU in the start configuration by declared budgets; 0 without a declared budget.
   std::span<const double> utilisation() const noexcept;  // one per rtpu
 
-  /// Of a model without faults: for verify() alone.
+  /// Requires: a model without faults; only verify() calls it.
   explicit Configuration(const Model& model);
 
  private:

@@ -215,7 +215,7 @@ TEST(Configuration, HandsLinksDownById) {
   for (std::size_t v = 0; v < spec.variables.size(); ++v) {
     variables.emplace_back(spec.variables[v].name);
     EXPECT_EQ(made.variable(VariableId(v)).name, spec.variables[v].name);
-    for (const PortOf& port : spec.variables[v].producers) {  // these components have one output each
+    for (const PortOf& port : spec.variables[v].producers) {  // each of these components has one output
       ASSERT_EQ(port.index, 0u);
       const auto is_output = [](const PortSpec& p) { return p.kind == CHIMERA_OUT_VAR; };
       EXPECT_EQ(std::ranges::find_if(spec.tasks[port.task.index].ports, is_output)->variable, VariableId(v));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a description: refused with places inside the text, or a configuration whose spec holds together.
+// Reads any bytes as a description. The result is a refusal with places inside the text, or a configuration with a
+// sound spec.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -52,7 +53,7 @@ void check_spec(const Configuration& made) {
 }
 
 #ifdef CHIMERA_PLANTED_DEFECT
-/// A defect to prove that the fuzzer finds one: beyond the end for a task name of more than 16 letters.
+/// A planted defect, to prove that the fuzzer finds one: a read beyond the end for a task name of more than 16 letters.
 void planted(const Draft& draft) {
   for (const DraftTask& task : draft.tasks) {
     volatile char marks[17] = {};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hostile description is refused within 64 MiB. Measured in a release build, each in a process of its own, because
-// the memory of a process never shrinks. The time is recorded: 100 ms is the goal.
+// A hostile description is refused within 64 MiB. Each measurement in a release build has its own process, because the
+// memory of a process never shrinks. The time is only recorded; the goal is 100 ms.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -70,7 +70,7 @@ struct Cost {
   bool refused = false;
 };
 
-/// Reads the file in a child, and tells what it took. Starting the child is not counted, its memory is.
+/// Reads the file in a child and returns the cost. The time to start the child does not count; its memory does.
 Cost cost_of(const std::string& path, const Library& library) {
   int ends[2];
   EXPECT_EQ(::pipe(ends), 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the legality rules work on: the draft, linked with descriptors and filled in step by step.
-// Lives only inside verify(); pointers into draft and library are good for that long.
+// The data of the legality rules: the draft, linked with descriptors, with results added step by step. Lives only
+// inside verify(); pointers into draft and library are valid during that call.
 #pragma once
 
 #include <cstdint>
@@ -22,18 +22,18 @@
 
 namespace chimera {
 
-/// One dimension of a port of a task: a literal (`constant` empty) or a constant variable with a maximum.
-/// `known` is the number of elements where the description or a default settles it.
+/// A dimension of a port of a task: a literal (`constant` empty) or a constant variable with a maximum. `known` is the
+/// number of elements if the description or a default settles it.
 struct SolvedExtent {
   std::string constant;
   std::uint32_t max = 1;
   std::optional<std::uint32_t> known;
 };
 
-/// Who produces the value of an in-const.
+/// The source of the value of an in-const.
 enum class ConstSource : std::uint8_t { kNobody, kOwn, kVariable, kDefault };
 
-/// One instance of one port of one task.
+/// An instance of a port of a task.
 struct LinkedPort {
   const PortDescriptor* declared = nullptr;
   std::uint32_t index = 0;  ///< of `declared` in the component
@@ -41,19 +41,19 @@ struct LinkedPort {
   std::size_t task = 0;
   std::string name;                           ///< "x", "in[2]"
   std::string variable;                       ///< "" for resources and in-consts that are not linked
-  Place at;                                   ///< of the alias, else of the task
+  Place at;                                   ///< of the alias, otherwise of the task
   const Node* own = nullptr;                  ///< `constants`, `initial` or `resources` of the task
   ConstSource source = ConstSource::kNobody;  ///< in-const
-  // Filled in by the rules of agreement:
+  // Set by the rules of agreement:
   std::optional<std::uint32_t> type;
   std::uint32_t element_bytes = 0;
   std::optional<Unit> unit;
   std::string unit_text;
   std::vector<SolvedExtent> extents;
   bool has_extents = false;
-  /// Written, default or initial value, elements at their maxima; empty: none, or only init will know it.
+  /// Written, default or initial value, elements at their maxima; empty: none, or only init knows it.
   std::vector<std::byte> value;
-  std::vector<std::byte> max_step;  ///< out-var: as `value`; empty: none
+  std::vector<std::byte> max_step;  ///< out-var: form of `value`; empty: none
 
   bool is(std::uint32_t kind) const noexcept { return declared->kind == kind; }
   bool is_linked() const noexcept { return !variable.empty(); }
@@ -72,7 +72,7 @@ struct TaskModel {
   bool lacks_link = false;  ///< a name under its keys is no port, or a repeated port has no instances
 
   const std::string& name() const noexcept { return draft->name.text; }
-  /// Of an unknown component, or with a key or a link that could not be read.
+  /// True for an unknown component, and for a task with a key or a link that could not be read.
   bool is_partial() const noexcept { return component == nullptr || draft->is_partial || lacks_link; }
   bool has_inputs() const noexcept;
   bool has_resource() const noexcept;
@@ -82,9 +82,9 @@ struct VariableModel {
   std::string name;
   bool is_constant = false;
   const NamedNode* given = nullptr;  ///< by `operator` or `constants`
-  std::vector<std::byte> value;      ///< what `given` says, as its first consumer reads it
+  std::vector<std::byte> value;      ///< the bytes of `given`, in the form of its first consumer
   std::vector<PortRef> producers, consumers;
-  // The agreement of its ports, each with the port that settled it (nullopt: the given value did).
+  // The agreement of its ports, each with the port that settled it (nullopt: the given value).
   std::optional<std::uint32_t> type;
   std::optional<Unit> unit;
   std::string unit_text;
@@ -97,15 +97,15 @@ struct SetModel {
   std::string name;
   Place at;
   std::vector<std::size_t> tasks;  ///< indices, in the order of the description
-  bool is_whole = true;            ///< false: names a task that is unknown, so nothing is said about its inputs
+  bool is_whole = true;            ///< false: it names an unknown task, so its inputs are not judged
   std::vector<TaskId> order;
-  SafeCondition safe_when;                 ///< its variable is `safe_variable`
-  std::optional<std::size_t> safe_variable;  ///< in Model::variables; nothing: none is asked for
+  SafeCondition safe_when;                 ///< the variable is `safe_variable`
+  std::optional<std::size_t> safe_variable;  ///< in Model::variables; nothing: no condition
 
   bool has(std::size_t task) const noexcept;
 };
 
-/// A written list that tells how many elements a constant extent has, before `init` tells it.
+/// A written list that gives the number of elements of a constant extent before `init` does.
 struct WrittenLength {
   std::size_t count = 0;
   Place at;
@@ -122,7 +122,7 @@ struct Model {
   std::map<std::string, std::size_t, std::less<>> variable_index;
   std::vector<SetModel> sets;
   std::size_t start = 0;
-  std::vector<DraftRtpu> rtpus;  ///< the declared ones, or the one by default
+  std::vector<DraftRtpu> rtpus;  ///< the declared ones, or the default one
   std::vector<TaskId> init_order;
   std::vector<double> utilisation;                       ///< per rtpu, start configuration
   std::map<std::string, WrittenLength> written_lengths;  ///< by constant
@@ -132,19 +132,19 @@ struct Model {
   LinkedPort& port(PortRef ref) { return tasks[ref.task].ports[ref.port]; }
   const LinkedPort& port(PortRef ref) const { return tasks[ref.task].ports[ref.port]; }
   std::optional<std::size_t> task_named(std::string_view name) const;
-  /// That the task stands in for; nothing: none, or one that there is not.
+  /// The primary of `standby`; nothing if it has none or names an unknown task.
   std::optional<std::size_t> primary_of(std::size_t standby) const;
   VariableModel* variable(std::string_view name);
-  /// What the port is linked to; nullptr: nothing.
+  /// The variable of the port; nullptr: not linked.
   VariableModel* variable(const LinkedPort& p) { return p.is_linked() ? variable(p.variable) : nullptr; }
-  /// Something is missing that could supply what else seems to be missing: say nothing about lacks.
+  /// True if a missing part could explain other missing parts: then report no missing parts.
   bool is_incomplete() const noexcept;
 
   void error(std::string_view rule, Place at, std::string message, std::string found = {}, std::string expected = {},
              std::string nearest = {}, std::string remedy = {});
   void warn(std::string_view rule, Place at, std::string message, std::string remedy = {});
 
-  /// "output 'tau' of task 'pid'", with "(variable 'x')" where an alias says so.
+  /// "output 'tau' of task 'pid'", with "(variable 'x')" if an alias gives it.
   std::string say(const LinkedPort& port) const;
   /// "12:8".
   static std::string say(Place at) { return std::to_string(at.line) + ':' + std::to_string(at.column); }
@@ -152,11 +152,11 @@ struct Model {
 
 // ---- what the three rules of agreement (types, units, shapes) share: the bindings of the symbols of a task ----
 
-/// A variable of a generic component: the task, and its symbol. A symbol that only one repeated port uses stands for
-/// itself in each instance, so that a logger can take signals of any kinds side by side.
+/// A variable of a generic component: the task, and its symbol. If only one repeated port uses a symbol, each instance
+/// has its own, so that a logger can read signals of different kinds.
 using SymbolKey = std::pair<std::size_t, std::string>;
 
-/// `uses(port, symbol)` tells whether a declared port mentions the symbol. Context: setup.
+/// `uses(port, symbol)` returns if a declared port contains the symbol. Context: setup.
 template <class Uses>
 SymbolKey symbol_key(const TaskModel& task, const LinkedPort& port, const std::string& symbol, Uses uses) {
   std::size_t users = 0;
@@ -165,7 +165,7 @@ SymbolKey symbol_key(const TaskModel& task, const LinkedPort& port, const std::s
   return {port.task, apart ? symbol + '#' + std::to_string(port.instance) : symbol};
 }
 
-/// What a symbol was found to be, and by which port.
+/// The solution of a symbol, and the port that gave it.
 template <class T>
 struct Binding {
   T value;
@@ -175,7 +175,7 @@ struct Binding {
 template <class T>
 using Bindings = std::map<SymbolKey, Binding<T>>;
 
-/// Every port that takes part in the table or has a value: all but resources and streams.
+/// Calls `act` for every port with a place in the table or with a value: all but resources and streams.
 template <class Do>
 void for_each_port(Model& model, Do act) {
   for (std::size_t t = 0; t < model.tasks.size(); ++t)
@@ -183,17 +183,17 @@ void for_each_port(Model& model, Do act) {
       if (model.tasks[t].ports[p].declared->kind <= CHIMERA_OUT_CONST) act(PortRef{t, p}, model.tasks[t].ports[p]);
 }
 
-/// Producers first, then consumers: whoever comes first and is concrete settles the variable.
+/// Calls `act` for producers, then consumers: the first concrete one settles the variable.
 template <class Do>
 void for_each_port_of(const VariableModel& variable, Do act) {
   for (const PortRef ref : variable.producers) act(ref);
   for (const PortRef ref : variable.consumers) act(ref);
 }
 
-/// "float64", "string[16]", "Pose". Requires: the port's type is solved. Context: setup.
+/// "float64", "string[16]", "Pose". Requires: the type of the port is solved. Context: setup.
 std::string type_text(const LinkedPort& port);
 
-/// "output 'q' of task 'arm' at 7:3", or the given value: who settled a variable.
+/// The source that settled a variable: "output 'q' of task 'arm' at 7:3", or the given value.
 std::string settled_by(const Model& model, const VariableModel& variable, const std::optional<PortRef>& from);
 
 }  // namespace chimera

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the shared objects behind a legal description can be components at all: seen without running them.
+// Checks that the shared objects of a legal description can be components, without running their code.
 #include <algorithm>
 #include <set>
 

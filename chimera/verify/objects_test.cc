@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a description says of shared objects that cannot be components. The objects themselves: load/shared_object_test.
+// Faults for shared objects that cannot be components. load/shared_object_test.cc tests the objects themselves.
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 fs::path test_object(const std::string& name) { return build_path("chimera/load/test_objects/" + name); }
 
-/// A folder with the descriptor of `counter`, and beside it what the test writes.
+/// A folder with the descriptor of `counter` and the files that a test writes.
 class FaultyObjects : public ::testing::Test {
  protected:
   FaultyObjects() {
@@ -43,7 +43,7 @@ class FaultyObjects : public ::testing::Test {
     EXPECT_TRUE(verdict.configuration) << verdict.report.text();
     return verdict.configuration ? faulty_objects(*verdict.configuration, library).text() : "";
   }
-  /// The one line that a faulty object earns, however many tasks are made of it.
+  /// The single line for a faulty object, even if several tasks use it.
   std::string line(const std::string& what) {
     return "app.yaml:3:22: error: task 'first': counter.so " + what +
            " [component-object]\n  rebuild the component: " + (folder_ / "counter.so").string() +

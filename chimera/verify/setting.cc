@@ -14,7 +14,7 @@
 namespace chimera {
 namespace {
 
-/// "[1 2] rad" as people are shown it becomes "[1 rad, 2 rad]".
+/// "[1 2] rad", the form of output, becomes "[1 rad, 2 rad]".
 std::string spread_unit(const std::string& text) {
   const std::size_t end = text.rfind(']');
   if (text.empty() || text[0] != '[' || end == std::string::npos) return text;
@@ -49,7 +49,7 @@ NamedNode* named(std::vector<NamedNode>& list, const std::string& name) {
   return found == list.end() ? nullptr : &*found;
 }
 
-/// Puts settings into a draft, and knows afterwards where.
+/// Puts settings into a draft, and remembers their places.
 class AppliedSettings {
  public:
   /// `keeps_units`: in_unit(), by these.
@@ -84,7 +84,7 @@ class AppliedSettings {
     return nullptr;
   }
 
-  /// The errors of a report as one, each behind the settings that it is about.
+  /// The errors of a report as one error, each after the settings that caused it.
   Error refusal(const Report& report) const {
     std::string text;
     Place first;
@@ -110,7 +110,7 @@ class AppliedSettings {
     return those.empty() ? all : those;
   }
 
-  /// A text for a port of texts is taken as it is; anything else is read as the description would read it.
+  /// A text for a port of texts stays unchanged; any other text is parsed like a description.
   Node node_of(const Setting& setting) const {
     const ConfiguredVariable* known = variable(setting.name);
     if (known == nullptr || known->type != "string" || !known->shape.empty()) {
@@ -204,7 +204,7 @@ Result<void> knows(const Configuration& configuration, std::span<const Setting> 
 }
 
 Node in_unit(Node value, const std::string& unit, const UnitSystem& units) {
-  if (value.is_map()) return value;  // the fields of a struct have units of their own
+  if (value.is_map()) return value;  // each field of a struct has its own unit
   for (Node& item : value.items) item = in_unit(std::move(item), unit, units);
   if (!value.is_scalar() || value.quoted) return value;
   const auto quantity = parse_quantity(value.text, units);
@@ -212,7 +212,7 @@ Node in_unit(Node value, const std::string& unit, const UnitSystem& units) {
   if (!quantity || !wanted || quantity->unit_text == unit) return value;
   const auto number = value_in(*quantity, *wanted, unit);
   if (!number && number.error().code != ErrorCode::kRefused) return value;
-  char text[40] = "inf";  // what is none in this unit: the rules say so
+  char text[40] = "inf";  // not finite in this unit: the rules report it
   if (number) std::snprintf(text, sizeof text, "%.17g", *number);
   value.text = unit == "1" ? text : text + (" " + unit);
   return value;

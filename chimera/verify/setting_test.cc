@@ -74,7 +74,7 @@ TEST_F(SettingTest, PutsValuesInThePlaceOfThoseOfTheFile) {
   EXPECT_EQ(numbers(made->spec().operators[1].value), (std::vector<double>{3000, 4000}));
   EXPECT_EQ(numbers(made->spec().constants[0].value), (std::vector<double>{0.7}));
   EXPECT_EQ(numbers(made->spec().tasks[0].ports[3].value), (std::vector<double>{2000}));
-  // What it was made from stands as it was.
+  // The original configuration is unchanged.
   EXPECT_EQ(numbers(verdict_.configuration->spec().operators[1].value), (std::vector<double>{1, 2}));
 }
 

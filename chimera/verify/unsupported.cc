@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `check` accepts and the executors cannot do yet: refused by name, never passed over.
+// Refuses, by name, all parts of a description that `check` accepts but the executors do not support yet.
 #include <algorithm>
 
 #include "chimera/schedule/utilisation.h"
@@ -50,7 +50,7 @@ class Refusals {
     if (executor_ == Executor::kOneProcess) one_loop(index);
   }
 
-  // All tasks in one loop on the CPU of the first rtpu.
+  // In one process all tasks run in one loop on the CPU of the first rtpu.
   void one_loop(std::size_t index) {
     double sum = 0;
     for (const double utilisation : configuration_.utilisation()) sum += utilisation;
@@ -69,7 +69,7 @@ class Refusals {
     refuse(reaction->at, what, std::string(remedy) + ", or use another reaction");
   }
 
-  // A job behind a server is taken off the processor when the capacity is used up: one loop cannot do that.
+  // A job behind a server loses the processor when the capacity is used up; a single loop cannot do that.
   void server(const DraftTask& task, bool preempts, bool has_source) {
     if (task.server && has_source && is_virtual())
       refuse(task.server->at, "events of task '" + task.name.text + "' from a descriptor, in virtual time",

@@ -17,7 +17,7 @@
 namespace chimera {
 namespace {
 
-/// One plain element or one field of a struct: what a scalar has to become.
+/// The target of a scalar: a plain element or a field of a struct.
 struct Cell {
   std::uint32_t type;
   std::uint32_t size;
@@ -25,8 +25,8 @@ struct Cell {
   const std::string& unit_text;
   bool has_range = false;
   double min = 0, max = 0;
-  std::span<const std::string> words{};  ///< what a text may be; empty: anything
-  bool names_configuration = false;      ///< a text is one of the configurations, lists of tasks, or empty
+  std::span<const std::string> words{};  ///< the legal words of a text; empty: any
+  bool names_configuration = false;      ///< a text is a configuration, lists of tasks, or empty
 };
 
 template <class T>
@@ -65,7 +65,7 @@ class ValueWriter {
       std::memcpy(bytes_.data() + at, bytes_.data(), port_.element_bytes);
   }
 
-  /// Rows are packed by the elements that were written, as a component sees them.
+  /// Packs rows by the number of written elements, as a component sees them.
   void list(const Node& node, std::size_t dimension) {
     if (dimension >= port_.extents.size()) {
       refuse("value-shape", node.at, "found a list; expected " + shape(dimension), "a list", shape(dimension));
@@ -92,7 +92,7 @@ class ValueWriter {
       }
     }
   }
-  /// Lists for one constant extent have one length: a short one would leave elements zero without a word.
+  /// Lists for one constant extent must have one length; a short one would leave elements zero without a message.
   bool agrees(const Node& node, const SolvedExtent& extent) {
     const WrittenLength mine{node.items.size(), node.at};
     const WrittenLength& first = model_.written_lengths.try_emplace(extent.constant, mine).first->second;
@@ -260,7 +260,7 @@ class ValueWriter {
       real(node, cell, *value, to);
   }
 
-  /// A constant whose component declares a range that ends there: it says what it does with it.
+  /// True for a constant with a declared range that ends at infinity: its component handles it.
   bool may_be_infinite(const Cell& cell, double value) const {
     if (!port_.is(CHIMERA_IN_CONST) || !cell.has_range) return false;
     return value == cell.min || value == cell.max;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Written values as the bytes of a port: converted to its unit, broadcast to its shape, held against its range.
+// Converts written values to the bytes of a port: to its unit and its shape, checked against its range.
 #pragma once
 
 #include <cstddef>
@@ -13,22 +13,22 @@
 
 namespace chimera {
 
-/// What a value has to fit: one port, solved.
+/// The target of a value: a solved port.
 struct ValueTarget {
   const LinkedPort& port;
   std::string what;      ///< for messages: "constant 'scale' of task 'left'"
-  bool is_step = false;  ///< the largest step of a value: above 0, the declared range does not count
+  bool is_step = false;  ///< the largest step of a value: above 0; the declared range does not count
 };
 
-/// The bytes of `node` for the target: its elements at their maxima, those beyond the written ones zero; a value
-/// that is not a list fills all. nullopt, with every fault added, when it does not fit. Requires: the port's type,
-/// unit and shape are solved. Context: setup.
+/// The bytes of `node` for the target: elements at their maxima, zero beyond the written ones. A value that is not a
+/// list fills all elements. nullopt, after adding all faults, if it does not fit. Requires: type, unit and shape of the
+/// port are solved. Context: setup.
 std::optional<std::vector<std::byte>> value_bytes(Model& model, const Node& node, const ValueTarget& target);
 
 /// A declared initial value or default, broadcast to the port's solved shape. Context: setup.
 std::vector<std::byte> declared_bytes(const LinkedPort& port);
 
-/// Whether the port's type, unit and shape are all known. Context: setup.
+/// True if type, unit and shape of the port are all known. Context: setup.
 bool is_solved(const LinkedPort& port);
 
 /// Elements at the maxima. Context: setup.

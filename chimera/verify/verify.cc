@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stage 2 as one walk: link, ask every rule, and only then make the configuration.
+// Stage 2 in one pass: links, calls every rule, and only then makes the configuration.
 #include "chimera/verify/verify.h"
 
 #include "chimera/catalogue/library.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stage 2 of the walk: a draft and the descriptors of the library become a Configuration, or a report of all faults.
+// Stage 2: a draft and the descriptors of the library become a Configuration, or a report of all faults.
 #pragma once
 
 #include <optional>
@@ -12,35 +12,35 @@ namespace chimera {
 
 class Library;
 
-/// `configuration` is there exactly when the report has no error. Warnings may come with it.
+/// `configuration` exists exactly if the report has no error. It may come with warnings.
 struct Verdict {
   std::optional<Configuration> configuration;
   Report report;
 };
 
-/// Budgets that take more of a CPU than there is: an error, or, for whoever wants to know what fits instead, a warning.
+/// The result for budgets that exceed a CPU: an error, or a warning for commands that show what would fit.
 enum class Overload : std::uint8_t { kRefused, kTold };
 
-/// Judges a draft by every legality rule. Faults that follow from another are left out.
-/// The configuration needs neither draft nor library afterwards. Context: setup.
+/// Judges a draft by every legality rule. Faults that follow from another fault are omitted. The configuration needs
+/// neither draft nor library afterwards. Context: setup.
 Verdict verify(const Draft& draft, const Library& library);
 
-/// Judges what was read, faults of the text included: the one call of `check`, `run` and `schedule`. Context: setup.
+/// Judges a reading, including faults of the text; `check`, `run` and `schedule` call only this. Context: setup.
 Verdict verify(const ReadDescription& reading, const Library& library, Overload overload = Overload::kRefused);
 
-/// The shared objects of its components that cannot be loaded, as far as can be seen without running code of them;
-/// empty: none. `library` is the one it was verified with. Context: setup; may block.
+/// The shared objects of its components that cannot be loaded, as far as visible without running their code; empty:
+/// none. `library` is the library of its verification. Context: setup; may block.
 Report faulty_objects(const Configuration& configuration, const Library& library);
 
 enum class Executor : std::uint8_t {
   kProcesses,
   kOneProcess,
-  kVirtual,            ///< as its rtpu says: preemptive or not
-  kPreemptiveVirtual,  ///< preemptive, whatever it says
+  kVirtual,            ///< as its rtpu states: preemptive or not
+  kPreemptiveVirtual,  ///< always preemptive
 };
 
-/// What the executor does not have yet and this configuration asks for, each by name and place;
-/// empty: it can run. Context: setup.
+/// Parts of this configuration that the executor does not support yet, each by name and place; empty: it can run.
+/// Context: setup.
 Report unsupported(const Configuration& configuration, Executor executor);
 
 }  // namespace chimera

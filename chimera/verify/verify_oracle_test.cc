@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verifier against the two set equations of the 1994 paper, written down as they stand there, on random graphs.
+// Compares the verifier with the two set equations of the 1994 paper, on random graphs.
 #include <gtest/gtest.h>
 
 #include <random>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The hosted half of chimera/base/assert.h; a microcontroller image brings its own.
+// Prints the broken condition and calls abort(). A microcontroller image supplies its own version of this function.
 #include "chimera/base/assert.h"
 
 #include <cstdio>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that others may have put there. A pipe would let the reader wait for ever, a device never end: only an ordinary
-// file is read, and no more of it than its reader asks for.
+// Reads ordinary files only, and no more bytes than the caller allows. A pipe could block the reader for ever, and a
+// device may have no end.
 #pragma once
 
 #include <fcntl.h>
@@ -17,7 +17,7 @@
 
 namespace chimera {
 
-/// "a pipe", "a folder": what stands where an ordinary file should, for a mode that is none. Context: any.
+/// "a pipe", "a folder": the kind of file that `mode` describes, if the file is not an ordinary one. Context: any.
 inline const char* file_kind(mode_t mode) noexcept {
   if (S_ISDIR(mode)) return "a folder";
   if (S_ISFIFO(mode)) return "a pipe";
@@ -25,13 +25,14 @@ inline const char* file_kind(mode_t mode) noexcept {
   return "a device";
 }
 
-/// Opens `path` to read, without waiting and without taking a terminal. Refuses, with the path in `where`: what cannot
-/// be opened (kNotFound when it is not there), what is no ordinary file, and one of more than `most` bytes. The caller
-/// closes. Context: setup; may block on the disk only.
+/// Opens `path` to read; does not block, and does not make a terminal the controlling one. Refuses, with the path in
+/// `where`: a file that open() cannot open (kNotFound if it does not exist), a file that is not ordinary, a file of
+/// more than `most` bytes. The caller closes the descriptor. Context: setup; may block on the disk only.
 inline Result<int> open_ordinary(const std::string& path, std::size_t most) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   struct stat status {};
-  // A socket and a device that is not there are refused by open already, with words that nobody understands.
+  // open() itself refuses a socket or a missing device with a text that misleads the user. stat() names the kind of
+  // file.
   const bool is_seen = file >= 0 ? ::fstat(file, &status) == 0 : errno == ENXIO && ::stat(path.c_str(), &status) == 0;
   if (file < 0 && !is_seen)
     return (Message() << "cannot be opened: " << std::strerror(errno))
@@ -45,8 +46,8 @@ inline Result<int> open_ordinary(const std::string& path, std::size_t most) {
       .error(ErrorCode::kRefused, path);
 }
 
-/// The first `most` bytes of an ordinary file, all of it when it is shorter. Refuses as open_ordinary() does, but for
-/// the size. Context: setup; may block on the disk only.
+/// The first `most` bytes of an ordinary file, or the whole file if it is shorter. Refuses the same files as
+/// open_ordinary(), but accepts any size. Context: setup; may block on the disk only.
 inline Result<std::string> read_ordinary(const std::string& path, std::size_t most) {
   const auto file = open_ordinary(path, static_cast<std::size_t>(-1));
   if (!file) return file.error();
@@ -65,8 +66,9 @@ inline Result<std::string> read_ordinary(const std::string& path, std::size_t mo
   return (Message() << "cannot be read: " << std::strerror(why)).error(ErrorCode::kSystem, path);
 }
 
-/// Why `path` is not read: "is no ordinary file but a pipe"; "" for an ordinary file of at most `most` bytes, and for
-/// one that cannot be opened: its reader says so. Context: setup; may block on the disk only.
+/// The reason why `path` cannot be read: "is no ordinary file but a pipe". "" for an ordinary file of at most `most`
+/// bytes. "" also for a file that cannot be opened, because its reader reports that error. Context: setup; may block on
+/// the disk only.
 inline std::string not_ordinary(const std::string& path, std::size_t most) {
   const auto file = open_ordinary(path, most);
   if (file) ::close(*file);

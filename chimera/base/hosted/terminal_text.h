@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texts on their way to a terminal. Names, sentences, units and faults of components are strangers' words: none of
-// them may move the cursor, set a title, or turn the direction of what stands beside it.
+// Makes texts safe to print on a terminal. Names, sentences, units and faults of components come from outside the
+// framework. Such a text must not move the cursor, set a title, or change the direction of the text beside it.
 #pragma once
 
 #include <string>
@@ -18,8 +18,8 @@ std::string plain_line(std::string_view text);
 /// Context: setup.
 std::string plain_json(std::string_view json);
 
-/// What a command prints: a JSON object as plain_json() makes it; of any other text line ends and tabs stay, and the
-/// rest is as in plain_line(). Context: setup.
+/// `text` in the form that a command prints. A JSON object is changed as plain_json() does. Other text is changed as
+/// plain_line() does, but keeps its line ends and tabs. Context: setup.
 std::string for_terminal(std::string_view text);
 
 }  // namespace chimera

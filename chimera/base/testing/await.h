@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests with real threads and processes: how they wait, and what they do with durations.
+// Helpers for tests with real threads and processes: waiting, and recording of durations.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 namespace chimera {
 
-/// A test that waits longer than this hangs. A busy machine can miss any shorter limit.
+/// A test that waits longer than this hangs. On a busy machine a shorter limit could fail without a fault.
 inline constexpr Nanoseconds kHangLimit = seconds(60);
 
 /// Polls `holds` every millisecond. Returns true as soon as it holds, false after kHangLimit.
@@ -27,7 +27,8 @@ template <class Holds>
   return true;
 }
 
-/// Prints a duration and adds it to the results of the test. No test judges it: it depends on the machine.
+/// Prints a duration and adds it to the results of the test. No test checks the duration, because it depends on the
+/// machine.
 inline void record_duration(const std::string& what, Nanoseconds time) {
   std::printf("%s: %lld us\n", what.c_str(), static_cast<long long>(time.count / 1000));
   ::testing::Test::RecordProperty(what + "_us", std::to_string(time.count / 1000));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For fuzz targets: what must hold of every input.
+// Checks properties in fuzz targets that must hold for every input.
 #pragma once
 
 #include <cstdio>
@@ -7,7 +7,7 @@
 
 namespace chimera {
 
-/// Aborts, and so tells the fuzzer that it has found something, when `kept` is false. Context: setup.
+/// Aborts if `kept` is false, so that the fuzzer records the input. Context: setup.
 inline void require(bool kept, const char* property) {
   if (kept) return;
   std::fprintf(stderr, "property broken: %s\n", property);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The main() of a fuzz target where no fuzzer runs: gives every file of a corpus folder to the target once.
+// The main() of a fuzz target without a fuzzer: runs the target once for each file of a corpus folder.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -27,7 +27,7 @@ bool replay(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   if (!file) return false;
-  // A block of exactly this size: the address sanitizer sees a read behind the last byte.
+  // A block of exactly this size, so that the address sanitizer sees a read behind the last byte.
   const std::vector<std::uint8_t> bytes(text.begin(), text.end());
   LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
   return true;
@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
   const std::vector<std::string> files = files_of(argv[1]);
   if (files.empty()) return std::fprintf(stderr, "no inputs in %s\n", argv[1]), 1;
   for (const std::string& path : files) {
-    // Printed first: if the target aborts, the last line of standard error before its message names the input.
+    // Prints the path first. If the target aborts, the last line before its message names the input.
     std::fprintf(stderr, "%s\n", path.c_str());
     if (!replay(path)) return std::fprintf(stderr, "%s cannot be read\n", path.c_str()), 1;
   }

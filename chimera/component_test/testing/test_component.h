@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Components for the tests of this folder that are nothing but a descriptor.
+// For the tests of this folder: components that have only a descriptor.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ inline PortDescriptor ranged(PortDescriptor made, double low, double high) {
   return made;
 }
 
-/// Asserts that the descriptor is legal.
+/// Asserts that the descriptor is legal and returns its library entry.
 inline LibraryEntry component(std::vector<PortDescriptor> ports) {
   LibraryEntry entry;
   entry.descriptor.name = "thing";
@@ -42,7 +42,7 @@ inline LibraryEntry component(std::vector<PortDescriptor> ports) {
   return entry;
 }
 
-/// The form of its inputs when everything is made up.
+/// The form of its inputs with a generated setup.
 inline InputForm form_of(const LibraryEntry& entry) {
   const Verdict verdict = arrange({}, entry, our_units());
   EXPECT_TRUE(verdict.configuration.has_value()) << verdict.report.text();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: declarations of components that nobody compiled.
+// For tests: declarations of components without code.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ inline chimera_port_decl port(const char* name, std::uint32_t kind, const char* 
   return p;
 }
 
-/// A legal component with the ports x (in) and dx (out), for tests to break.
+/// A legal component with ports x (in) and dx (out), for tests that make it illegal.
 struct Sample {
   double zero = 0;
   std::vector<chimera_port_decl> ports{port("x", CHIMERA_IN_VAR, "U"), port("dx", CHIMERA_OUT_VAR, "U/s")};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rules on the component of a task: the component is known, built and of a kind that can be run; each key of the task
-// names a port of the component, of the kind that the key takes.
+// Rules on the component of a task. The component must be known, built and of a supported kind. Each key of the task
+// names a port of the component, of the kind that the key accepts.
 #include <optional>
 #include <string_view>
 
@@ -28,7 +28,7 @@ void refuse_streams(Model& model, const TaskModel& task) {
                   port.name, "a component without streams");
 }
 
-/// Why the file that should describe the component is not in the library; nullptr: there is none.
+/// The reason why the descriptor of the component is not in the library; nullptr: none.
 const Error* fault_of(const Model& model, const std::string& component) {
   for (const Error& fault : model.library.faults())
     if (fault.where.view().ends_with("/" + component + ".component.json")) return &fault;
@@ -66,7 +66,7 @@ bool is_in_const(std::uint32_t kind) { return kind == CHIMERA_IN_CONST; }
 bool is_out_var(std::uint32_t kind) { return kind == CHIMERA_OUT_VAR; }
 bool is_resource(std::uint32_t kind) { return kind == CHIMERA_RESOURCE; }
 
-/// What a key of a task may name.
+/// The ports that a key of a task may name.
 struct Wanted {
   const char* key;
   bool (*fits)(std::uint32_t kind);
@@ -75,7 +75,7 @@ struct Wanted {
 
 std::string with_article(const std::string& noun) { return (noun[0] == 'i' || noun[0] == 'o' ? "an " : "a ") + noun; }
 
-/// `name` under a key has to be a port of a kind that fits.
+/// Checks that `name` under a key is a port of a fitting kind.
 void check_key(Model& model, TaskModel& task, const Word& name, const Wanted& wanted) {
   const PortDescriptor* port = task.component->port(name.text);
   if (port != nullptr && wanted.fits(port->kind)) return;
@@ -121,7 +121,7 @@ const NamedNode* named(const std::vector<NamedNode>& values, std::string_view na
   return nullptr;
 }
 
-/// The value that the task's own keys give to `port`, or nullptr.
+/// The value of `port` under the own keys of the task, or nullptr.
 const Node* own_value(const DraftTask& draft, const PortDescriptor& port) {
   const std::vector<NamedNode>* values = port.kind == CHIMERA_IN_CONST   ? &draft.constants
                                          : port.kind == CHIMERA_OUT_VAR  ? &draft.initial
@@ -131,8 +131,8 @@ const Node* own_value(const DraftTask& draft, const PortDescriptor& port) {
   return value != nullptr ? &value->value : nullptr;
 }
 
-/// How many instances the description gives to a repeated port, and where: its alias, else the list under
-/// `constants` or `resources`. A constant with a default may have none.
+/// The number of instances of a repeated port, and its place: the alias, otherwise the list under `constants` or
+/// `resources`. A constant with a default may have none.
 struct Instances {
   std::size_t count = 0;
   Place at;
@@ -142,14 +142,14 @@ Instances count_instances(const TaskModel& task, const PortDescriptor& port, con
   if (alias != nullptr) return {alias->variables.size(), alias->port.at};
   const Node* own = port.kind == CHIMERA_OUT_VAR ? nullptr : own_value(*task.draft, port);
   if (own != nullptr) return {own->is_list() ? own->items.size() : 1, own->at};
-  return {port.kind == CHIMERA_RESOURCE ? 1u : 0u, task.draft->name.at};  // require_resources asks for the text
+  return {port.kind == CHIMERA_RESOURCE ? 1u : 0u, task.draft->name.at};  // require_resources requires the text
 }
 
-/// The number of instances of the port, or nullopt and a fault when it is not legal.
+/// The number of instances of the port, or nullopt and a fault if it is illegal.
 std::optional<std::size_t> instances(Model& model, const TaskModel& task, const PortDescriptor& port,
                                      const DraftAlias* alias) {
   const Instances found = count_instances(task, port, alias);
-  // An empty list says that none is wanted; a port that is not mentioned may have been forgotten.
+  // An empty list means that no instance is wanted; a missing port may be an oversight.
   const bool may_have_none = port.kind == CHIMERA_IN_CONST && !port.initial.empty();
   const bool is_said_none = alias != nullptr && alias->variables.empty();
   const std::size_t least = may_have_none || is_said_none ? 0 : 1;

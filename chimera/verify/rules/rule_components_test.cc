@@ -23,7 +23,7 @@ Descriptor component(const std::string& name) {
   return d;
 }
 
-/// A folder under the test's own temporary one.
+/// A folder under the temporary folder of the test.
 struct RuleComponents : ::testing::Test {
   std::string root = testing::TempDir() + "chimera_rule_components_" + std::to_string(::getpid()) + "/";
   void SetUp() override { std::filesystem::create_directories(root + "one"); }

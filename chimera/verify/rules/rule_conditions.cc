@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rules on `safe_when`: what a condition compares is one number or truth value that is there when a switch begins.
+// Rules on `safe_when`: a condition compares one number or truth value that exists when a switch begins.
 #include <algorithm>
 
 #include "chimera/description/draft_values.h"
@@ -11,10 +11,10 @@
 namespace chimera {
 namespace {
 
-// Above it not every whole number is a double.
+// Above this value some whole numbers are not doubles.
 constexpr double kLargestWhole = 9007199254740992.0;
 
-/// One condition and where it stands.
+/// A condition and its place.
 class ConditionJudge {
  public:
   ConditionJudge(Model& model, const DraftSet& draft, SetModel& set)
@@ -61,7 +61,7 @@ class ConditionJudge {
     return nullptr;
   }
 
-  /// By the operator, or in a configuration that a switch to this one can begin in.
+  /// True if the operator produces it, or a configuration from which a switch to this one can begin.
   bool is_produced(const VariableModel& variable) {
     if (variable.given != nullptr && !variable.consumers.empty()) return true;
     if (model_.is_incomplete()) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two set equations over constants, and the order in which tasks are initialised.
+// The two set equations of the 1994 paper for constants, and the order in which tasks are initialised.
 #include <algorithm>
 
 #include "chimera/verify/rules/rules.h"
@@ -48,14 +48,14 @@ void refuse_two(Model& model, const VariableModel& variable) {
   }
 }
 
-/// A standby has the constants of its task, and its own are those of nobody but itself.
+/// True if several primaries produce the constant. A standby uses the constants of its primary, so it does not count.
 bool has_several(const Model& model, const VariableModel& variable) {
   std::size_t n = 0;
   for (const PortRef ref : variable.producers) n += model.tasks[ref.task].draft->standby_for ? 0 : 1;
   return n > 1;
 }
 
-/// "in-const 'mass' of task 'need'", or a port that has the constant for an extent; "": the task does not use it.
+/// "in-const 'mass' of task 'need'", or a port with the constant as an extent; "": the task does not use it.
 std::string user_of(const Model& model, const TaskModel& task, const VariableModel& constant) {
   for (const LinkedPort& port : task.ports) {
     if (port.is(CHIMERA_IN_CONST) && port.source == ConstSource::kVariable && port.variable == constant.name)
@@ -66,7 +66,7 @@ std::string user_of(const Model& model, const TaskModel& task, const VariableMod
   return {};
 }
 
-/// Of several producers one is in each configuration that has a user.
+/// If a constant has several producers, each configuration with a user must contain one of them.
 void require_one(Model& model, const VariableModel& variable) {
   for (const SetModel& set : model.sets) {
     if (!set.is_whole || model.draft.is_partial || !producers_of(model, variable, set).empty()) continue;
@@ -87,7 +87,7 @@ bool is_producer(const VariableModel& variable, std::size_t task) {
   return std::ranges::any_of(variable.producers, [task](const PortRef from) { return from.task == task; });
 }
 
-/// A port whose extent a constant gives waits for that constant, whether or not its task has a port for it.
+/// A port whose extent a constant gives waits for that constant, even if its task has no port for it.
 void add_extent_users(const Model& model, const LinkedPort& port, std::vector<std::vector<std::size_t>>& users) {
   for (const SolvedExtent& extent : port.extents) {
     const auto constant = model.variable_index.find(extent.constant);
@@ -98,8 +98,8 @@ void add_extent_users(const Model& model, const LinkedPort& port, std::vector<st
   }
 }
 
-/// users[a] has b when b needs a constant that a produces, in whichever configuration: every task is initialised. Who
-/// produces a constant has its own, not that of the producer of another configuration.
+/// users[a] has b if b needs a constant of a, in any configuration, because every task is initialised. A producer of a
+/// constant uses its own value, not that of a producer of another configuration.
 std::vector<std::vector<std::size_t>> users_of(const Model& model) {
   std::vector<std::vector<std::size_t>> users(model.tasks.size());
   for (const VariableModel& variable : model.variables) {
@@ -113,7 +113,7 @@ std::vector<std::vector<std::size_t>> users_of(const Model& model) {
   return users;
 }
 
-/// One circle among tasks that all wait for another: follow a producer backwards until one comes twice.
+/// Finds a circle among tasks that all wait for others: follows producers backwards until one repeats.
 std::vector<std::size_t> find_circle(const std::vector<std::vector<std::size_t>>& users,
                                      const std::vector<bool>& done) {
   std::size_t at = static_cast<std::size_t>(std::find(done.begin(), done.end(), false) - done.begin());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two set equations of the 1994 paper, per configuration, and who produces what.
+// The two set equations of the 1994 paper, per configuration, and the producers of each variable.
 #include <algorithm>
 #include <set>
 
@@ -56,7 +56,7 @@ void add_port(Model& model, PortRef ref) {
   port.variable.clear();
 }
 
-/// An in-const is linked only to a constant that somebody produces; else it falls back (settle_constants).
+/// Links an in-const only to a constant with a producer; otherwise its default counts (settle_constants).
 void add_in_const(Model& model, PortRef ref) {
   LinkedPort& port = model.port(ref);
   if (!port.is(CHIMERA_IN_CONST) || port.own != nullptr) return;
@@ -75,7 +75,7 @@ std::vector<PortRef> producers_in(const VariableModel& variable, const SetModel&
   return out;
 }
 
-/// "'q' by 'arm', 'tau' by 'pid'": the products of a configuration, for the message of an unmet input.
+/// "'q' by 'arm', 'tau' by 'pid'": the outputs of a configuration, for the message of an unmet input.
 std::string products(const Model& model, const SetModel& set, std::vector<std::string>& names) {
   std::string out;
   std::size_t count = 0;
@@ -113,7 +113,7 @@ void report_unmet(Model& model, const LinkedPort& port, const VariableModel& var
               unmet_remedy(model, port, variable, set, near));
 }
 
-/// Without the standbys of tasks that are producers too: rule_standby.cc speaks of a task and its own standby.
+/// The producers without the standbys of other producers, because rule_standby.cc judges a task and its standby.
 std::vector<PortRef> without_standbys(const Model& model, const std::vector<PortRef>& producers) {
   const auto stands_in_for = [&](const TaskModel& standby, const TaskModel& primary) {
     return standby.draft->standby_for && standby.draft->standby_for->task.text == primary.name();
@@ -142,7 +142,7 @@ std::vector<Members> members_of_sets(const Model& model) {
   return all;
 }
 
-/// Those that are ON when the set is ON, or in place of one that is: a standby's inputs have to be met too.
+/// Tasks that may be ON in the set: its members, and standbys of members. The inputs of standbys must be met too.
 Members readers(const Model& model, const Members& on) {
   Members tasks = on;
   for (std::size_t t = 0; t < tasks.size(); ++t) {

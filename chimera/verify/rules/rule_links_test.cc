@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two producers of a variable in one configuration, where tasks with a standby are among them.
+// Two producers of a variable in one configuration, including tasks with a standby.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -21,7 +21,7 @@ Library valves() {
   return Library::of({d}, our_units());
 }
 
-/// Codes of the faults of one configuration among a valve, its two standbys and one more valve.
+/// Codes of the faults of a configuration of a valve, its two standbys and one more valve.
 std::string faults_of(const std::string& members) {
   const std::string text =
       "subsystem: demo\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order in which the tasks of a configuration go ON, and the loops that it has to cut.
+// Computes the order in which the tasks of a configuration go ON, and cuts its loops.
 #include <algorithm>
 #include <bitset>
 #include <map>
@@ -12,7 +12,7 @@
 namespace chimera {
 namespace {
 
-/// Where a loop may be cut, best first.
+/// The kinds of places where a loop may be cut, best first.
 enum class Cut : std::uint8_t { kByDescription, kByComponent, kNot };
 
 /// `from` produces `variable`, `to` reads it.
@@ -25,13 +25,13 @@ struct Arc {
 /// One bit for each task of a set: a description has at most kMaxTasks.
 using Tasks = std::bitset<kMaxTasks>;
 
-/// The arcs of one variable from one producer: what one cut takes out, as far as it lies in one loop.
+/// The arcs of one variable from one producer. One cut removes those within one loop.
 struct VariableArcs {
   std::pair<Cut, std::size_t> rank;  ///< the variable by its name; the least is cut first
-  Tasks consumers;                   ///< positions in the set; those that were cut are gone
+  Tasks consumers;                   ///< positions in the set, without those that were cut
 };
 
-/// Does `from` reach all of `among` within it?
+/// True if `from` reaches all of `among` inside `among`.
 bool reaches_all(const std::vector<Tasks>& next, std::size_t from, const Tasks& among) {
   Tasks seen, edge;
   seen.set(from);
@@ -46,8 +46,8 @@ bool reaches_all(const std::vector<Tasks>& next, std::size_t from, const Tasks& 
   return seen == among;
 }
 
-/// The strong components of the tasks `among`, along `next` and back along `previous`: `tell(Tasks)` once for each.
-/// Takes time in proportion to the tasks, times the words of a set of them: whole sets are followed at once.
+/// Calls `tell(Tasks)` once for each strong component of the tasks `among`, along `next` and back along `previous`. Its
+/// time is proportional to the tasks, times the words of a bit set, because it follows whole sets at once.
 template <class Tell>
 void for_each_component(const std::vector<Tasks>& next, const std::vector<Tasks>& previous, const Tasks& among,
                         const Tell& tell) {
@@ -86,7 +86,7 @@ void for_each_component(const std::vector<Tasks>& next, const std::vector<Tasks>
 
 class SetOrder {
  public:
-  /// `by_name[v]` is the place of variable v when they are sorted by name.
+  /// `by_name[v]` is the place of variable v in the order of names.
   SetOrder(Model& model, SetModel& set, const std::vector<std::size_t>& by_name)
       : model_(model),
         set_(set),
@@ -184,14 +184,14 @@ class SetOrder {
     }
   }
 
-  /// The best to cut first.
+  /// Sorts the links of each task, the best cut first.
   void rank_links() {
     for (std::vector<VariableArcs>& of : links_)
       std::stable_sort(of.begin(), of.end(),
                        [](const VariableArcs& a, const VariableArcs& b) { return a.rank < b.rank; });
   }
 
-  /// The shortest loop that starts with `first`, all of it in `component`; `arcs` by producer.
+  /// The shortest loop that starts with `first` inside `component`; `arcs` by producer.
   std::vector<Arc> loop_through(const std::vector<std::vector<Arc>>& arcs, const Tasks& component,
                                 const Arc& first) const {
     std::vector<const Arc*> by(set_.tasks.size(), nullptr);
@@ -227,21 +227,21 @@ class SetOrder {
     return model_.tasks[0].ports[0];
   }
 
-  /// Which of `tasks` wait for nobody?
+  /// Marks the tasks of `tasks` without a waiting producer as ready.
   void look_at(const Tasks& tasks) {
     for (std::size_t i = tasks._Find_first(); i < kMaxTasks; i = tasks._Find_next(i))
       if ((previous_[i] & left_).none()) ready_.set(i);
   }
 
-  /// The first link of `from` that is part of a loop; nullptr: none is, and none will be, because components only fall
-  /// apart.
+  /// The first link of `from` that is part of a loop. nullptr: none is, and none will be, because components only
+  /// become smaller.
   const VariableArcs* best_link(std::size_t from) {
     std::size_t& at = first_link_[from];
     while (at < links_[from].size() && (links_[from][at].consumers & component_[from]).none()) ++at;
     return at < links_[from].size() ? &links_[from][at] : nullptr;
   }
 
-  /// By a task outside of it that is not placed either.
+  /// True if a task outside of it that is not placed either feeds it.
   bool is_fed(const Tasks& component) const {
     const Tasks outside = left_ & ~component;
     for (std::size_t i = component._Find_first(); i < kMaxTasks; i = component._Find_next(i))
@@ -249,7 +249,7 @@ class SetOrder {
     return false;
   }
 
-  /// Takes one variable out of a loop that waits for nothing but itself.
+  /// Cuts one variable in a loop that waits only for itself.
   void cut_a_loop() {
     const VariableArcs* best = nullptr;
     std::size_t from = kMaxTasks;
@@ -281,7 +281,7 @@ class SetOrder {
     split(from);
   }
 
-  /// The component of `from`, after a cut behind it: mostly that task falls off, or nothing.
+  /// Splits the component of `from` after a cut behind it. Usually only that task leaves it, or none does.
   void split(std::size_t from) {
     Tasks rest = component_[from];
     if ((next_[from] & rest).none() && rest.count() > 1) {
@@ -297,16 +297,16 @@ class SetOrder {
   Model& model_;
   SetModel& set_;
   const std::vector<std::size_t>& by_name_;
-  std::vector<std::size_t> position_;  // of a task in the set; kMaxTasks: it is not in it
+  std::vector<std::size_t> position_;  // of a task in the set; kMaxTasks: not in the set
   std::vector<Arc> arcs_;
   std::vector<std::vector<VariableArcs>> links_;  // by producer
-  std::vector<std::size_t> first_link_;   // of those the first that may still be part of a loop
-  std::vector<Tasks> next_, previous_;    // consumers and producers, cut arcs left out
-  std::vector<Tasks> component_;          // of those that are not placed
-  std::vector<std::uint16_t> between_;    // links from a task to another, cut ones left out
-  Tasks hardware_;                        // inputs from it: they come first
-  Tasks left_, ready_;                    // not placed yet; those of them that wait for nobody
-  Tasks looping_;                         // whose outputs may be part of a loop
+  std::vector<std::size_t> first_link_;   // of these the first that may be part of a loop
+  std::vector<Tasks> next_, previous_;    // consumers and producers, without cut arcs
+  std::vector<Tasks> component_;          // of tasks that are not placed
+  std::vector<std::uint16_t> between_;    // links from one task to another, without cut ones
+  Tasks hardware_;                        // hardware inputs, which come first
+  Tasks left_, ready_;                    // not placed yet; those of them without a waiting producer
+  Tasks looping_;                         // tasks whose outputs may be part of a loop
 };
 
 }  // namespace
@@ -315,7 +315,7 @@ void order_sets(Model& model) {
   std::vector<std::size_t> by_name(model.variables.size());
   std::size_t place = 0;
   for (const auto& [name, index] : model.variable_index) by_name[index] = place++;
-  std::map<std::vector<std::size_t>, const SetModel*> ordered;  // by its tasks: the order depends on nothing else
+  std::map<std::vector<std::size_t>, const SetModel*> ordered;  // key: tasks, because the order depends only on them
   for (SetModel& set : model.sets) {
     SetOrder order(model, set, by_name);
     order.report_loops();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order of a configuration against the plain statement of the rule, on random graphs full of loops.
+// Compares the order of a configuration with a direct statement of the rule, on random graphs with loops.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -90,7 +90,7 @@ std::string described(const Graph& graph) {
   return text;
 }
 
-/// The rule as docs/formats/description.md says it, with nothing remembered from one step to the next.
+/// The rule as docs/formats/description.md states it, without stored state between steps.
 class Plain {
  public:
   explicit Plain(const Graph& graph) : graph_(graph), placed_(graph.inputs.size(), false) {
@@ -112,7 +112,7 @@ class Plain {
     }
     return names;
   }
-  /// Loops of which no variable has an initial value, those that share a task counted once.
+  /// Number of loops without an initial value; loops that share a task count once.
   std::size_t bare_loops() {
     std::erase_if(arcs_, [this](const Graph::Arc& arc) { return graph_.initial[arc.variable] != Initial::kNone; });
     std::size_t n = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the component says of two of its constants together: that the one is never above the other.
+// Checks a declared order between two constants of a component: the lower one is never above the other.
 #include <algorithm>
 #include <charconv>
 
@@ -15,21 +15,21 @@ const LinkedPort* port_named(const TaskModel& task, const std::string& name) {
   return found == task.ports.end() ? nullptr : &*found;
 }
 
-/// Where the value was written, or nullptr: it is the component's own.
+/// The node with the written value, or nullptr: it is a default of the component.
 const Node* written(Model& model, const LinkedPort& port) {
   if (port.own != nullptr) return port.own;
   const VariableModel* variable = model.variable(port);
   return variable != nullptr && variable->given != nullptr ? &variable->given->value : nullptr;
 }
 
-/// Elements that the value has for certain: those that the shape settles, else those of the list; a single value fills
-/// whatever there is.
+/// The number of elements that the value has for certain: from the shape, otherwise from the list. A single value fills
+/// any number.
 std::size_t certain(Model& model, const LinkedPort& port) {
   const bool is_settled = std::ranges::all_of(port.extents, [](const SolvedExtent& e) { return e.known == e.max; });
   if (is_settled) return element_count(port.extents);
   const Node* node = written(model, port);
   if (node == nullptr || !node->is_list()) return element_count(port.extents);
-  return port.extents.size() == 1 ? node->items.size() : 0;  // how the rows of a matrix are padded is not settled
+  return port.extents.size() == 1 ? node->items.size() : 0;  // the padding of the rows of a matrix is not settled
 }
 
 std::string number_text(const LinkedPort& port, double value) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What room the variables take in the table, once their shapes are settled.
+// Computes the memory of the variables in the table, after their shapes are settled.
 #include <algorithm>
 #include <map>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rules on real-time units: each task has one, and the priority bands of those on one CPU do not overlap.
+// Rules on rtpus: each task has one, and the priority bands of rtpus on one CPU do not overlap.
 #include <algorithm>
 
 #include "chimera/description/criticality.h"
@@ -33,7 +33,7 @@ void place(Model& model, TaskModel& task) {
               listed(names), near, near.empty() ? "there are: " + listed(names) : "");
 }
 
-/// The task of `rtpu` whose criticality is extreme by `better`, or nullptr.
+/// The task of `rtpu` with the highest or lowest criticality, or nullptr.
 const TaskModel* extreme(const Model& model, std::size_t rtpu, bool highest) {
   const TaskModel* best = nullptr;
   for (const TaskModel& task : model.tasks) {
@@ -45,7 +45,7 @@ const TaskModel* extreme(const Model& model, std::size_t rtpu, bool highest) {
   return best;
 }
 
-/// `above` has the higher band.
+/// Requires: `above` has the higher band.
 void compare_bands(Model& model, std::size_t above, std::size_t below) {
   const TaskModel* low = extreme(model, above, false);
   const TaskModel* high = extreme(model, below, true);

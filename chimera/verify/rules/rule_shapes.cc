@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Extents are compared as symbols; numbers count where the description settles them. What cannot be proved unequal
-// here is compared by init.
+// Compares extents as symbols, and as numbers if the description settles them. init compares extents that cannot be
+// proved unequal here.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -13,9 +13,9 @@
 namespace chimera {
 namespace {
 
-using ExtentBindings = Bindings<std::vector<SolvedExtent>>;  // one, but for shape variables
+using ExtentBindings = Bindings<std::vector<SolvedExtent>>;  // one extent, except for shape variables
 
-/// The constant port of the component that is called like the extent, or nullptr: then it is an extent variable.
+/// The constant port of the component with the name of the extent, or nullptr: then it is an extent variable.
 const PortDescriptor* giver(const TaskModel& task, const std::string& symbol) {
   const PortDescriptor* port = task.component->port(symbol);
   return port != nullptr && port->is_constant() ? port : nullptr;
@@ -29,7 +29,7 @@ SymbolKey key_of(const TaskModel& task, const LinkedPort& port, const std::strin
   return symbol_key(task, port, symbol, uses_shape);
 }
 
-/// A written or default number of elements; nullopt when it is none (check_values says so).
+/// A written or default number of elements; nullopt if it is none (check_values reports that).
 std::optional<std::uint32_t> whole(double value) {
   if (!(value >= 1 && value <= kMaxExtent) || value != std::floor(value)) return std::nullopt;
   return static_cast<std::uint32_t>(value);
@@ -72,7 +72,7 @@ bool is_too_large(Model& model, const LinkedPort& port, const std::string& symbo
   return true;
 }
 
-/// Extents that need no neighbour. False while a variable is open.
+/// Solves extents that need no neighbour. False while a variable is open.
 bool try_shape(Model& model, LinkedPort& port, const ExtentBindings& bindings) {
   const TaskModel& task = model.tasks[port.task];
   std::vector<SolvedExtent> extents;
@@ -103,7 +103,7 @@ void settle_shape(Model& model, VariableModel& variable, PortRef ref) {
   variable.shape_from = ref;
 }
 
-/// A shape variable takes the dimensions of the variable as they are.
+/// A shape variable gets the dimensions of the variable unchanged.
 void bind_shape(Model& model, PortRef ref, const LinkedPort& port, const VariableModel& variable,
                 ExtentBindings& bindings) {
   const Extent& declared = port.declared->extents[0];
@@ -125,7 +125,7 @@ void bind_extents(Model& model, PortRef ref, const LinkedPort& port, const Varia
                   ExtentBindings& bindings) {
   const TaskModel& task = model.tasks[port.task];
   const std::vector<Extent>& declared = port.declared->extents;
-  const std::vector<SolvedExtent> one{{.constant = {}, .max = 1, .known = 1}};  // a scalar is a vector of one
+  const std::vector<SolvedExtent> one{{.constant = {}, .max = 1, .known = 1}};  // a scalar is a vector of one element
   const std::vector<SolvedExtent>& theirs = variable.extents.empty() ? one : variable.extents;
   if (declared.size() == 1 && declared[0].is_shape && variable.extents.size() != 1)
     return bind_shape(model, ref, port, variable, bindings);
@@ -176,7 +176,7 @@ void take_from_values(Model& model, ExtentBindings& bindings) {
     variable.has_extents = true;
     spread(model, bindings);
   }
-  // A single value fills any extent: it settles one only where no list does, here or at a neighbour.
+  // A single value fills any extent. So it settles an extent only if no list does, here or at a neighbour.
   for (const bool is_list : {true, false})
     for_each_port(model, [&](PortRef ref, LinkedPort& port) {
       if (port.has_extents || port.own == nullptr || !port.is(CHIMERA_IN_CONST)) return;
@@ -189,7 +189,7 @@ void take_from_values(Model& model, ExtentBindings& bindings) {
     });
 }
 
-/// Two extents that can be proved to differ.
+/// True if two extents provably differ.
 bool differ(const SolvedExtent& a, const SolvedExtent& b) {
   if (a.known && b.known) return *a.known != *b.known;
   return (a.known && *a.known > b.max) || (b.known && *b.known > a.max);
@@ -239,7 +239,7 @@ void compare(Model& model, const VariableModel& variable, const LinkedPort& port
 
 void report_unsolved_shape(Model& model, const LinkedPort& port) {
   const VariableModel* variable = model.variable(port);
-  if (variable != nullptr && variable->has_extents && variable->shape_from) return;  // compare() said it
+  if (variable != nullptr && variable->has_extents && variable->shape_from) return;  // compare() reported it
   model.error("extent-unsolved", port.at,
               "nothing settles the shape " + port.declared->shape + " of " + model.say(port), port.declared->shape,
               "a linked port or a value of a known shape", {},
@@ -260,7 +260,7 @@ void agree_on_shapes(Model& model) {
   spread(model, bindings);
   for (const VariableModel& variable : model.variables)
     for_each_port_of(variable, [&](PortRef ref) { compare(model, variable, model.port(ref), bindings); });
-  if (!model.is_incomplete() && !model.has_unmet)  // what is missing would settle it
+  if (!model.is_incomplete() && !model.has_unmet)  // the missing part would settle it
     for_each_port(model, [&](PortRef, const LinkedPort& port) {
       if (!port.has_extents) report_unsolved_shape(model, port);
     });

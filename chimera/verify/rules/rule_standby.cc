@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rules on standby tasks: the outputs of the primary and of nobody else, and never in one configuration with it.
+// Rules on standby tasks: exactly the outputs of the primary, and never in one configuration with it.
 #include <algorithm>
 #include <set>
 
@@ -21,7 +21,7 @@ std::string text(const std::set<std::string>& names) {
   return listed(std::vector<std::string>(names.begin(), names.end()));
 }
 
-/// The task that `standby` stands in for; nullopt, with a fault, when there is none such.
+/// The primary of `standby`; nullopt, with a fault, if it does not exist.
 std::optional<std::size_t> primary_of(Model& model, std::size_t standby) {
   const Word& name = model.tasks[standby].draft->standby_for->task;
   const std::string who = "'standby_for' of task '" + model.tasks[standby].name() + "'";
@@ -39,7 +39,7 @@ std::optional<std::size_t> primary_of(Model& model, std::size_t standby) {
   return std::nullopt;
 }
 
-/// A task that is neither the primary nor one of its standbys and produces the variable; nullptr: there is none.
+/// A task that produces the variable and is neither the primary nor one of its standbys; nullptr: none.
 const TaskModel* produced_elsewhere(const Model& model, const VariableModel& variable, std::size_t primary) {
   for (const PortRef ref : variable.producers) {
     const auto& stands_in_for = model.tasks[ref.task].draft->standby_for;
@@ -50,7 +50,7 @@ const TaskModel* produced_elsewhere(const Model& model, const VariableModel& var
   return nullptr;
 }
 
-/// A standby produces what its primary does, so that nobody misses anything; and what nobody else does.
+/// A standby produces the same outputs as its primary, so that no reader lacks one, and no output of another task.
 void check_outputs(Model& model, std::size_t standby, std::size_t primary, Place at) {
   const TaskModel &task = model.tasks[standby], &other = model.tasks[primary];
   if (task.component == nullptr || other.component == nullptr) return;
@@ -72,7 +72,7 @@ void check_outputs(Model& model, std::size_t standby, std::size_t primary, Place
   }
 }
 
-/// Why nobody could kill the primary for its silence alone; and what to do.
+/// The reason why the primary must not be killed for its silence alone, and the remedy.
 std::pair<std::string, std::string> why_not_stale(const Model& model, const TaskModel& task, const TaskModel& other) {
   const Nanoseconds after = task.draft->standby_for->stale_after->value;
   const std::string rtpu = model.rtpus[task.rtpu].name.text;
@@ -97,7 +97,7 @@ void check_stale(Model& model, const TaskModel& task, const TaskModel& other) {
                 {}, {}, remedy);
 }
 
-/// A hot standby cycles beside its primary: nobody may notice.
+/// A hot standby cycles beside its primary, so no other task may see its effects.
 void check_hot(Model& model, const TaskModel& task) {
   const DraftStandby& written = *task.draft->standby_for;
   if (!written.is_hot() || task.component == nullptr) return;

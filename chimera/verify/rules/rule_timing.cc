@@ -50,7 +50,7 @@ void read_rate(Model& model, TaskModel& task) {
   task.rate_hz = hz;
 }
 
-/// One duration of one task against its bounds: above (or from) zero, and up to (or below) another.
+/// Checks one duration of one task against its bounds: above (or from) zero, and up to (or below) another.
 void check_time(Model& model, const TaskModel& task, const char* key, const std::optional<Located<Nanoseconds>>& time,
                 bool may_be_zero, const char* limit_name, std::optional<Nanoseconds> limit, bool may_be_limit) {
   if (!time) return;
@@ -116,7 +116,7 @@ void check_task(Model& model, TaskModel& task) {
   task.criticality = draft.criticality ? draft.criticality->value : 0;
 }
 
-/// Of each period; behind a server its capacity, when that can be.
+/// The execution time in each period: the budget, or the capacity of a server if it is legal.
 Nanoseconds time_of(const TaskModel& task) {
   const auto& server = task.draft->server;
   if (!server) return task.budget;
@@ -131,7 +131,7 @@ double load(const TaskModel& task) {
   return task.period ? static_cast<double>(time_of(task).count) / static_cast<double>(task.period->count) : 0;
 }
 
-/// Work that finds no time is gone at its deadline, by the task's own word.
+/// True if the task drops work that finds no time before its deadline (on_miss: abort).
 bool gives_way(const TaskModel& task) { return task.draft->on_miss && task.draft->on_miss->kind == OnMiss::kAbort; }
 
 /// Tasks that cycle together.
@@ -152,7 +152,7 @@ std::vector<std::size_t> with_hot(const Model& model, const std::vector<std::siz
   return all;
 }
 
-/// The set, and with each standby in the place of its primary.
+/// The set itself, and the set with each standby in place of its primary.
 std::vector<Together> all_together(const Model& model, const SetModel& set) {
   const std::string name = "configuration '" + set.name + "'";
   std::vector<Together> all{{name, with_hot(model, set.tasks)}};
@@ -174,13 +174,13 @@ void warn_of_overload(Model& model, const Together& set, const TaskModel& task, 
              "run it in virtual time");
 }
 
-/// The first three digits.
+/// Rounds to the first three digits.
 Nanoseconds first_digits(double ns) {
   const double unit = std::max(1.0, std::pow(10.0, std::floor(std::log10(std::max(ns, 1.0))) - 2));
   return {std::llround(std::floor(ns / unit * (1 + 1e-12)) * unit)};
 }
 
-/// A load that the task could have.
+/// Describes a load that the task could have.
 std::string what_fits(const TaskModel& task, double load) {
   const Nanoseconds time = first_digits(load * static_cast<double>(task.period->count));
   const double period_ns = static_cast<double>(time_of(task).count) / load;
@@ -191,7 +191,7 @@ std::string what_fits(const TaskModel& task, double load) {
   return "budget: " + say(time) + " or rate: " + room + " Hz";
 }
 
-/// False: they take too much of it.
+/// False: the tasks exceed the limit of the CPU.
 bool limit(Model& model, const Together& set, std::uint32_t cpu) {
   double sum = 0;
   bool all_give_way = true;
@@ -232,7 +232,7 @@ void limit_utilisation(Model& model) {
       bool is_first = true;
       for (std::size_t j = 0; j < i; ++j) is_first = is_first && model.rtpus[j].cpu.value != model.rtpus[i].cpu.value;
       if (!is_first) continue;
-      // What is too much without a standby is told once.
+      // An excess without a standby is reported only once.
       for (const Together& together : all_together(model, set))
         if (!limit(model, together, model.rtpus[i].cpu.value)) break;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rules on types: linked ports agree, and type variables of generic ports are solved.
+// Rules on types: linked ports agree, and the type variables of generic ports are solved.
 #include "chimera/verify/rules/rules.h"
 
 namespace chimera {
@@ -17,7 +17,7 @@ SymbolKey key_of(const Model& model, const LinkedPort& port) {
 
 bool is_scalar(std::uint32_t type) { return type <= CHIMERA_FLOAT64; }
 
-/// What a type variable becomes when only a written value says something.
+/// The type for a type variable if only a written value decides.
 std::optional<std::uint32_t> type_of(const Node& node) {
   if (node.is_list()) return node.items.empty() ? std::nullopt : type_of(node.items[0]);
   if (!node.is_scalar() || node.quoted) return std::nullopt;
@@ -45,7 +45,7 @@ void start_with_concrete(Model& model) {
     });
 }
 
-/// Carries what is known through generic ports until nothing moves. Each round settles at least one port.
+/// Carries known types through generic ports until nothing changes. Each round settles at least one port.
 void spread(Model& model, TypeBindings& bindings) {
   for (bool moved = true; moved;) {
     moved = false;
@@ -65,12 +65,12 @@ void spread(Model& model, TypeBindings& bindings) {
   }
 }
 
-/// Where no port says a type, a written value does.
+/// If no port gives a type, a written value does.
 void take_from_values(Model& model, TypeBindings& bindings) {
   for (VariableModel& variable : model.variables) {
     if (variable.type || variable.given == nullptr) continue;
     variable.type = type_of(variable.given->value);
-    spread(model, bindings);  // before the next value: it is converted rather than asked
+    spread(model, bindings);  // before the next value: a known type wins over a value
   }
   for_each_port(model, [&](PortRef ref, LinkedPort& port) {
     if (port.type || port.own == nullptr || !port.is(CHIMERA_IN_CONST)) return;
@@ -133,7 +133,7 @@ bool is_refused(const VariableModel* variable) {
   return variable != nullptr && variable->type && !is_scalar(*variable->type);
 }
 
-/// Another port of the same type variable is linked to something that it cannot take.
+/// True if another port of the same type variable is linked to a variable that it cannot accept.
 bool follows_from_another(Model& model, const LinkedPort& port) {
   for (const LinkedPort& other : model.tasks[port.task].ports)
     if (&other != &port && uses_type(*other.declared, port.declared->type_name) && is_refused(model.variable(other)))
@@ -167,7 +167,7 @@ void agree_on_types(Model& model) {
   spread(model, bindings);
   for (const VariableModel& variable : model.variables)
     for_each_port_of(variable, [&](PortRef ref) { compare(model, variable, ref, bindings); });
-  if (model.is_incomplete() || model.has_unmet) return;  // what is missing would settle it
+  if (model.is_incomplete() || model.has_unmet) return;  // the missing part would settle it
   for_each_port(model, [&](PortRef, const LinkedPort& port) {
     if (!port.type) report_unsolved_type(model, port);
   });

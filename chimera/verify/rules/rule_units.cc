@@ -14,7 +14,7 @@ struct NamedUnit {
   std::string text;
 };
 
-/// The bindings, and every unit expression of the ports parsed once.
+/// The bindings, and all unit expressions of the ports, each parsed once.
 struct UnitTable {
   Bindings<NamedUnit> bindings;
   std::map<std::string, UnitExpression, std::less<>> expressions;
@@ -24,7 +24,7 @@ struct UnitTable {
     const auto known = expressions.find(unit);
     if (known != expressions.end()) return known->second;
     const Result<UnitExpression> parsed = system.parse_expression(unit);
-    return expressions.emplace(unit, parsed ? *parsed : UnitExpression{}).first->second;  // the library parsed it
+    return expressions.emplace(unit, parsed ? *parsed : UnitExpression{}).first->second;  // the library has parsed it
   }
 };
 
@@ -59,7 +59,7 @@ void start_with_concrete(Model& model, UnitTable& table) {
     });
 }
 
-/// The unit as a person would write it: the declared text with the variable replaced, if that stays one word.
+/// The unit in the form that a person would write: the declared text with the variable replaced, if it stays one word.
 std::string written_unit(const std::string& declared, char letter, const NamedUnit& solved, const Unit& unit) {
   if (declared.size() == 1) return solved.text;
   const bool one_word = solved.text.find_first_of("./^ 0123456789") == std::string::npos;
@@ -68,7 +68,7 @@ std::string written_unit(const std::string& declared, char letter, const NamedUn
   return std::string(declared).replace(at, 1, solved.text);
 }
 
-/// Puts the bindings into the port's expression; sets its unit when nothing is left open.
+/// Puts the bindings into the expression of the port; sets its unit if no variable is left open.
 UnitExpression substituted(const Model& model, UnitTable& table, LinkedPort& port) {
   UnitExpression expression = table.expression(port.declared->unit);
   const bool single = expression.unknowns() == 1;
@@ -128,7 +128,7 @@ void take_from_values(Model& model, UnitTable& table) {
     if (const auto unit = unit_of(model, variable.given->value)) {
       variable.unit = unit->unit;
       variable.unit_text = unit->text;
-      spread(model, table);  // before the next value: it is converted rather than asked
+      spread(model, table);  // before the next value: a known unit wins over a value
     }
   }
   // A value settles one unknown: "X/U" waits until another value has settled one of its two.
@@ -144,7 +144,7 @@ void take_from_values(Model& model, UnitTable& table) {
   }
 }
 
-/// A default is a plain number: where nothing else settles its unit, it has none.
+/// A default is a plain number: if no other source settles its unit, it has none.
 void take_from_defaults(Model& model, UnitTable& table) {
   for_each_port(model, [&](PortRef ref, LinkedPort& port) {
     if (port.unit || !has_unit(port) || port.source != ConstSource::kDefault) return;
@@ -153,10 +153,10 @@ void take_from_defaults(Model& model, UnitTable& table) {
   });
 }
 
-/// Of our library: y = factor x, for any two units that measure the same.
+/// A component of the library of the framework: y = factor x, for any two units of one dimension.
 constexpr const char* kAnyConverter = "unit_convert";
 
-/// The component of the library that turns `from` into `to`, or "".
+/// The component of the library that converts `from` to `to`, or "".
 std::string converter(const Model& model, UnitTable& table, const Unit& from, const Unit& to) {
   for (const LibraryEntry& entry : model.library.entries()) {
     std::size_t fits = 0, others = 0;
@@ -240,7 +240,7 @@ void agree_on_units(Model& model) {
   take_from_defaults(model, table);
   for (const VariableModel& variable : model.variables)
     for_each_port_of(variable, [&](PortRef ref) { compare(model, table, variable, model.port(ref)); });
-  if (model.is_incomplete() || model.has_unmet) return;  // what is missing would settle it
+  if (model.is_incomplete() || model.has_unmet) return;  // the missing part would settle it
   for_each_port(model, [&](PortRef, const LinkedPort& port) {
     if (!port.unit && has_unit(port)) report_unsolved_unit(model, port);
   });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Warnings about values, tasks and real-time units that nothing uses.
+// Warnings about values, tasks and rtpus without a use.
 #include <algorithm>
 
 #include "chimera/verify/rules/rules.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every written value is parsed here, once: its bytes stay in the model for the specs of the runtime.
+// Parses every written value once; its bytes stay in the model for the specs of the runtime.
 #include "chimera/verify/rules/rules.h"
 #include "chimera/verify/values.h"
 
@@ -14,7 +14,7 @@ void check_own(Model& model, LinkedPort& port) {
   if (bytes) port.value = *std::move(bytes);
 }
 
-/// A given value must fit everybody who uses it; the first who refuses it speaks.
+/// A given value must fit all its readers; the first reader that refuses it gives the fault.
 void check_given(Model& model, VariableModel& variable) {
   const char* key = variable.is_constant ? "constant" : "operator variable";
   for (const PortRef ref : variable.consumers) {
@@ -59,8 +59,8 @@ const LinkedPort* same_resource(const LinkedPort& port, const TaskModel& other) 
   return nullptr;
 }
 
-/// Tasks that are never ON together take turns with a resource (runtime/switch/rivals.h). Tasks of one set open it
-/// beside each other.
+/// Tasks that are never ON together use a resource in turn (runtime/switch/rivals.h). Tasks of one set open it at the
+/// same time.
 void check_users(Model& model, std::size_t a, std::size_t b) {
   const auto names_both = [&](const SetModel& set) { return set.has(a) && set.has(b); };
   const auto set = std::ranges::find_if(model.sets, names_both);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The legality rules, in the order in which verify() asks them. Each adds its faults to the model's report and
-// fills in what later rules read. docs/formats/description.md, "What makes a description legal".
+// The legality rules, in the order in which verify() calls them. Each adds its faults to the report of the model and
+// sets data for later rules. docs/formats/description.md, "What makes a description legal".
 #pragma once
 
 #include "chimera/schedule/utilisation.h"
@@ -9,7 +9,7 @@
 namespace chimera {
 
 // rule_components.cc
-/// Every task's component is in the library; no streams; ports within the limits of a group.
+/// The component of every task is in the library; no streams; ports within the limits of a group.
 void find_components(Model& model);
 /// Names under alias, constants, resources, initial and max_step are ports of the right kind; repeated ports have
 /// instances. Makes TaskModel::ports.
@@ -24,7 +24,7 @@ void make_sets(Model& model);
 // rule_links.cc
 /// Makes Model::variables; no name stands for a state variable and a constant.
 void collect_variables(Model& model);
-/// Who produces the variable or constant in that configuration, without the standbys of tasks that do.
+/// The producers of the variable or constant in that configuration, without the standbys of other producers.
 std::vector<PortRef> producers_of(const Model& model, const VariableModel& variable, const SetModel& set);
 /// 1994 paper, equation 1: in each configuration no variable has two producers.
 void refuse_two_producers(Model& model);
@@ -32,9 +32,9 @@ void refuse_two_producers(Model& model);
 void refuse_unmet_inputs(Model& model);
 
 // rule_constants.cc
-/// Every in-const has one source: of several producers of a constant just one is in each configuration that needs it.
+/// Every in-const has one source. If a constant has several producers, each configuration with a user has just one.
 void settle_constants(Model& model);
-/// The producers of constants stand in no circle. Makes Model::init_order.
+/// Producers of constants form no circle. Makes Model::init_order.
 void order_constants(Model& model);
 
 // rule_types.cc
@@ -48,7 +48,7 @@ void agree_on_units(Model& model);
 void agree_on_shapes(Model& model);
 
 // rule_room.cc
-/// Every port of a variable reserves the same room: the least of their maxima, which no legal extent exceeds.
+/// Every port of a variable reserves the same memory: the least of their maxima, which no legal extent exceeds.
 void share_maxima(Model& model);
 /// The largest table that a description may ask for.
 void limit_table(Model& model);
@@ -58,11 +58,11 @@ void limit_table(Model& model);
 void check_values(Model& model);
 
 // rule_conditions.cc
-/// What `safe_when` compares is one number or truth value that another configuration produces, or the operator.
+/// `safe_when` compares one number or truth value that another configuration or the operator produces.
 void check_conditions(Model& model);
 
 // rule_order.cc
-/// No element of a constant is below that of the constant which its component names as the lower one.
+/// No element of a constant is below the constant that its component names as the lower one.
 void check_order_of_constants(Model& model);
 
 // rule_loops.cc
@@ -70,18 +70,18 @@ void check_order_of_constants(Model& model);
 void order_sets(Model& model);
 
 // rule_timing.cc
-/// "1.5 ms": a duration as people write it, in the largest unit that gives a number of at least 1.
+/// "1.5 ms": a duration in the largest unit that gives a number of at least 1.
 std::string say(Nanoseconds t);
 /// Rates, deadlines, offsets, budgets and minimum times fit each other; servers stand on aperiodic components.
 void check_times(Model& model);
-/// The budgets of a configuration take at most kMaxUtilisation of each CPU, also with a standby in the place of its
-/// primary, and those of hot standbys beside their primaries.
+/// The budgets of a configuration use at most kMaxUtilisation of each CPU. This also holds with a standby in place of
+/// its primary, and with hot standbys beside their primaries.
 void limit_utilisation(Model& model);
 
 // rule_rtpus.cc
 /// Tasks name declared rtpus.
 void place_tasks(Model& model);
-/// On a CPU with several rtpus no task stands in a higher band than a more critical one.
+/// On a CPU with several rtpus no task has a higher band than a more critical task.
 void check_bands(Model& model);
 
 // rule_standby.cc
@@ -89,7 +89,7 @@ void check_bands(Model& model);
 void check_standbys(Model& model);
 
 // rule_unused.cc
-/// Warns of what is declared and never used.
+/// Warns of declared parts without a use.
 void warn_of_unused(Model& model);
 
 }  // namespace chimera
