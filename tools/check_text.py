@@ -50,6 +50,15 @@ C_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:[^"\\\n]|\\.)*"', re.DOTALL)
 TEST_NAME = re.compile(r"\b(?:TEST|TEST_F|TEST_P|TYPED_TEST)\(\w+,\s*(\w+)\)|\bdef (test_\w+)")
 # Folders whose words are not put right yet. This list only gets shorter.
 NOT_YET = (
+    "chimera/runtime/hosted/variables_test.cc", "chimera/runtime/illegal_flag_test.cc",
+    "chimera/runtime/job_cycle_test.cc", "chimera/runtime/miss_cause_test.cc",
+    "chimera/runtime/miss_history_test.cc", "chimera/runtime/miss_policy_test.cc",
+    "chimera/runtime/preemptive/label_list_test.cc", "chimera/runtime/standbys_test.cc",
+    "chimera/runtime/switch/switch_agreement_test.cc", "chimera/runtime/task_host.cc",
+    "chimera/runtime/task_host_test.cc", "chimera/runtime/task_methods_test.cc", "chimera/runtime/task_set.cc",
+    "chimera/runtime/task_set_background_test.cc", "chimera/runtime/task_set_test.cc",
+    "chimera/runtime/virtual/virtual_peers_test.cc", "chimera/runtime/virtual/virtual_slow_switches_test.cc",
+    "chimera/runtime/virtual/virtual_standbys_test.cc", "chimera/runtime/virtual/virtual_switches_test.cc",
     "README.md", "apps/chimera", "apps/chimera-rtpu", "bench/bench.h", "bench/one_way.h", "bench/preemptive.h",
     "bench/row_04_one_way_peer.cc", "bench/row_10_breakdown.cc", "bench/row_11_overrun.cc", "bench/row_12_switch.py",
     "bench/row_13_detection.py", "bench/row_13_takeover.py", "bench/row_15_four_units.py",
@@ -58,7 +67,7 @@ NOT_YET = (
     "chimera/control", "chimera/description/yaml_fault_test.cc", "chimera/description/yaml_reader.cc",
     "chimera/draw/graph_text.cc", "chimera/draw/timeline.cc", "chimera/draw/timeline_test.cc", "chimera/guard",
     "chimera/keeper", "chimera/load/declaration_rules_test.cc", "chimera/manager", "chimera/platform",
-    "chimera/record", "chimera/rtpu", "chimera/runtime", "chimera/schedule/policy_test.cc",
+    "chimera/record", "chimera/rtpu", "chimera/schedule/policy_test.cc",
     "chimera/schedule/worst_window_test.cc", "chimera/subsystem", "chimera/task/method_check.h", "chimera/text",
     "chimera/verify/objects_test.cc", "chimera/verify/setting_test.cc", "docs/formats", "docs/glossary.md",
     "docs/howto", "docs/security.md", "docs/walk.md",
