@@ -25,8 +25,8 @@ constexpr const char* kSignals[] = {signal_name(Signal::kSpawn), signal_name(Sig
                                     signal_name(Signal::kOff),   signal_name(Signal::kKill),
                                     signal_name(Signal::kClear), signal_name(Signal::kReinit)};
 
-/// The slow method in which the rtpu hangs, and what a person can do; "" if none is known. A hang in `cycle` is part of
-/// the data of the error.
+/// The slow method in which the rtpu hangs, and what a person can do; "" if none is known. For a hang in `cycle`, the
+/// data of the error names the method.
 std::string under_way(const ManagerState& world, RtpuId rtpu) {
   const RtpuRecord& record = world.rtpus[rtpu.index];
   const PeerSegment& segment = world.peers[rtpu];

@@ -26,8 +26,9 @@ class MethodWatch {
   explicit MethodWatch(Nanoseconds told = milliseconds(1500), Nanoseconds head_start = {}) noexcept
       : told_(told), head_start_(head_start) {}
 
-  /// Requires samples in the order of time, a few each second; a gap longer than kWatchGap resets it. `progress` grows
-  /// when an equal word means another call of the method.
+  /// Requires samples in the order of time, a few each second. A gap longer than kWatchGap is not time of the
+  /// method; a method not yet reported then starts from zero. `progress` grows when an equal word means another
+  /// call of the method.
   MethodVerdict look(std::uint32_t word, std::uint64_t progress, Nanoseconds at) noexcept;
 
  private:
