@@ -9,7 +9,7 @@
 
 namespace chimera::control {
 
-/// What the answer of `hello` says of a subsystem (docs/formats/control.md). Plain value.
+/// Parts of the answer of `hello` that say where a subsystem belongs (docs/formats/control.md). Plain value.
 struct Home {
   std::string subsystem;
   std::int64_t keeper_pid = 0;
