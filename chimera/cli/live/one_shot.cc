@@ -81,7 +81,7 @@ Result<Json> with_wait(const Call& call, Json parameters) {
   return parameters;
 }
 
-/// Asks on the terminal; nobody there has agreed to nothing.
+/// Asks on the terminal. False without a terminal, and for every answer but "yes".
 bool has_agreed(const std::string& question) {
   if (!is_terminal(kStandardInput)) return false;
   std::fprintf(stderr, "%s [yes/no] ", plain_line(question).c_str());

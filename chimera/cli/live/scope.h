@@ -77,7 +77,7 @@ class Scope {
     std::size_t channel = 0;
     std::string part;
   };
-  /// What the tap tells of one task.
+  /// The rows that the tap brings of one task.
   struct Stream {
     std::string rtpu, task;
     std::vector<Column> columns;
