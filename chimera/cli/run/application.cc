@@ -175,7 +175,7 @@ bool is_in_force(const Task* producer) {
 }  // namespace
 
 bool Probe::read(std::vector<std::byte>& value) const {
-  std::vector<bool> in_force;  // looked at once: it may change meanwhile
+  std::vector<bool> in_force;  // read once: a state may change during this call
   for (const Task* producer : producers) in_force.push_back(is_in_force(producer));
   const bool has_one = std::find(in_force.begin(), in_force.end(), true) != in_force.end();
   std::int64_t latest = INT64_MIN;

@@ -19,7 +19,7 @@ class ControlLine {
   /// the code is kSystem and the place the socket.
   Result<Json> ask(std::string_view method, const Json& parameters, Nanoseconds limit = control::kCallLimit);
   /// The parameters of the next notification; nothing when none comes until `instant` (CLOCK_MONOTONIC), or when the
-  /// connection is lost: is_connected() tells.
+  /// connection is lost: then is_connected() is false.
   std::optional<Json> notification(Nanoseconds instant);
   bool is_connected() const noexcept { return client_.is_connected(); }
 

@@ -8,7 +8,7 @@
 
 namespace chimera::cli {
 
-/// "log (csv_log): its `init` is under way", from the answer of `status`; a sentence also when nobody stands out.
+/// "log (csv_log): its `init` is under way", from the answer of `status`; a sentence also when no task stands out.
 /// Context: setup.
 std::string not_ready(const Json& status);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Work that runs components, in a process of its own: whatever they do to it, somebody is left who says what it was.
+// Runs components in a process of its own. If a component ends that process, its parent reports how it ended.
 #pragma once
 
 #include <cstdio>
@@ -23,7 +23,8 @@ struct BrokenRun {
 
 /// Runs `work` in a child and returns its exit code; both write to the same files. When the child did not return from
 /// its work (a signal, exit() in a component, an object that is not loaded or a method that does not return in time: it
-/// is killed), `died` is told how and what was under way, and gives the code. SIGINT and SIGTERM reach the child once.
+/// is killed), `died` gets how it ended and the method under way, and returns the code. SIGINT and SIGTERM reach the
+/// child once.
 /// Under a debugger, and when there is no memory or process, `work` runs in this process.
 /// Requires: one thread, handlers of both signals set. Context: setup; may block.
 int in_own_process(const std::function<int()>& work, const std::function<int(const BrokenRun&)>& died);

@@ -34,7 +34,7 @@ constexpr Nanoseconds kDrainEvery = milliseconds(10);
 constexpr Nanoseconds kWatchEvery = milliseconds(100);  // of the run, to see whether it ended or a line is due
 constexpr Nanoseconds kTellEvery = seconds(3);          // of wall time
 
-/// Lines of progress, each over the one before; silent unless somebody can see them.
+/// Lines of progress, each over the one before; silent unless `err` is a terminal.
 class ProgressLine {
  public:
   ProgressLine(const RunRequest& request, std::FILE* err)
@@ -130,7 +130,7 @@ Result<void> LocalTarget::start() {
   if (!request_.svg.empty())
     for (const std::string& name : request_.watch) drawn_.push_back(*application_.probe(name));
   if (!request_.json) std::fprintf(out_, "%s\n", loop_->description().c_str());
-  if (request_.virtual_time) print_notes();  // else the loop runs by now: they are told at the end
+  if (request_.virtual_time) print_notes();  // in real time the loop already runs: notes come at the end
   if (sink_ != nullptr) sink_->begin(application_.spec(), loop_->origin(), loop_->origin());
   return {};
 }

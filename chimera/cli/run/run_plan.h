@@ -46,7 +46,7 @@ Result<void> admit_below(const Configuration& configuration, double share);
 
 /// Prints a refusal as the request wants it, and answers `code`.
 int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, std::FILE* err, int code = 1);
-/// Tells of a run that did not come to its end, by the task whose method was under way, else by its file.
+/// Reports a run that did not come to its end, by the task whose method was under way, else by its file.
 int report_broken_run(const RunRequest& request, const BrokenRun& broken, std::FILE* out, std::FILE* err);
 
 }  // namespace chimera::cli

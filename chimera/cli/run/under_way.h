@@ -44,7 +44,7 @@ struct UnderWay {
   std::uint64_t words() const noexcept { return std::uint64_t{running} << 32 | serving; }
 };
 
-/// Where this process writes; memory of its own that nobody reads, until a parent has passed another to its child.
+/// The memory that this process writes to. It is private, and has no reader, until write_under_way_to() replaces it.
 UnderWay& under_way() noexcept;
 void write_under_way_to(UnderWay& place) noexcept;
 
