@@ -53,7 +53,7 @@ struct CpuSchedule {
   std::vector<ScheduleRow> rows;      ///< in the order of levels
   std::vector<std::size_t> give_way;  ///< rows, in order: without these tasks the rest fits; empty when it does
   std::vector<Remedy> remedies;       ///< the smallest of each kind that was found
-  double scale = 0;                   ///< all times may be so many times as long and it fits; 0: none was found
+  double scale = 0;                   ///< greatest factor of all times with which it fits; 0: none was found
   WorstWindow window;
   std::vector<WindowRun> runs;  ///< `task` as in Configuration::tasks()
 
