@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said about a command line that cannot be read: the nearest option, a quote that is missing, an example.
+// Messages about a command line that cannot be read: the nearest option, a missing quote, an example.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tasks were seen to cost, in a file: `chimera profile --save` writes it, `chimera schedule --profile` reads it.
+// Measured times of tasks in a file: `chimera profile --save` writes it, `chimera schedule --profile` reads it.
 // The format is docs/formats/profile.md.
 #pragma once
 

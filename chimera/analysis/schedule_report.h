@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the analysis (schedule/analysis.h) says of a configuration, with the names that people know: for each set of
-// tasks and each CPU who keeps its deadlines, who would have to give first, what would fit, and how old data gets.
+// The result of the analysis (schedule/analysis.h) of a configuration, with the names of the description. For each set
+// of tasks and each CPU: the tasks that keep their deadlines, the tasks that would have to give way first, the changes
+// that would make the set fit, and the age of data.
 #pragma once
 
 #include <cstddef>

@@ -65,7 +65,7 @@ Result<OwnedDescriptor> connected(const std::string& path, Nanoseconds limit) {
   return refusal(is_closed ? "you have no right to connect to this subsystem" : "no subsystem listens here", path);
 }
 
-/// Those of `names` that were started from this terminal or folder.
+/// The subsystems among `names` that were started from this terminal or folder.
 std::vector<std::string> those_here(const std::string& folder, const std::vector<std::string>& names) {
   std::vector<std::string> here;
   for (const std::string& name : names) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a subsystem was started: from which session (all that one terminal started) and in which folder.
+// The session (all processes that one terminal started) and the folder in which a subsystem was started.
 #pragma once
 
 #include <cstdint>

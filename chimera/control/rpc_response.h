@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a request leads to: a result, or an error of docs/formats/control.md.
+// The response to a request: a result, or an error of docs/formats/control.md.
 #pragma once
 
 #include <functional>

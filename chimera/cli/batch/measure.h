@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is measured of a variable over a whole run in virtual time: "max |error|", "rms tau[2]", "settling error <= 2
-// mrad".
+// Measures a variable over a whole run in virtual time: "max |error|", "rms tau[2]", "settling error <= 2 mrad".
 #pragma once
 
 #include <cstdint>

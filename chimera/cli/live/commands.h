@@ -17,7 +17,7 @@ namespace chimera::cli {
 inline constexpr const char* kWhichOne =
     "name of the subsystem; needed to act on one that was started in another terminal and folder";
 
-/// Where the result of a command is shown.
+/// The screen that shows the result of a command.
 struct Screen {
   std::size_t width = 0;     ///< in columns; 0: it is no terminal
   std::size_t height = 24;   ///< in lines

@@ -27,7 +27,7 @@ CommandResult wrong(const std::string& message, bool json) {
   return refused(Error{ErrorCode::kBadInput, std::string_view(message), {}}, json, kUsage);
 }
 
-/// Those of `tasks` that are not ON so far.
+/// The tasks among `tasks` that are not ON yet.
 std::vector<std::string> still_off(Session& session, std::vector<std::string> tasks) {
   const control::RpcResponse status = session.ask("status");
   if (!status.is_good()) return tasks;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `chimera scope` records: rows of the tap round a trigger, any number of channels, with every gap counted.
+// The record of `chimera scope`: rows of the tap around a trigger, any number of channels, with every gap counted.
 #pragma once
 
 #include <cstdint>

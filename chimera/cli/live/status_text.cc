@@ -47,7 +47,7 @@ Columns rtpu_table(const Json& status) {
   return table;
 }
 
-/// Those of `keys` that count something in some task.
+/// The keys among `keys` whose count is not zero in at least one task.
 std::vector<std::string> that_count(const Json& answer, std::initializer_list<const char*> keys) {
   std::vector<std::string> found;
   for (const char* key : keys)

@@ -43,7 +43,7 @@ std::vector<TopLine> top_lines(const Json& status, const Json& previous, const T
 /// The meaning of the columns and keys: exactly `height` lines. Context: setup.
 std::vector<TopLine> help_lines(const TopView& view);
 
-/// How far one can scroll: the largest `skipped` that still shows a task on every line.
+/// The end of scrolling: the largest `skipped` that still shows a task on every line.
 std::size_t most_skipped(const Json& status, const TopView& view);
 
 }  // namespace chimera::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run asks of its own subsystem, as results; a lost connection is control::Client's affair.
+// The questions of a run to its own subsystem, answered as results. control::Client deals with a lost connection.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run must have reached at its end, so that its exit code says whether it was good: "error <= 2 mrad".
+// A condition at the end of a run, "error <= 2 mrad", on which its exit code depends.
 #pragma once
 
 #include <string>

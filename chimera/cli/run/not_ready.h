@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who holds up the start of a subsystem, as far as it is known.
+// Names the tasks and rtpus that hold up the start of a subsystem, as far as they are known.
 #pragma once
 
 #include <string>

@@ -13,7 +13,7 @@ inline constexpr int kMakingLimitSeconds = 10;
 /// The longest that `off` and `kill` may take at the end, as in real time, and any method of a run told to end.
 inline constexpr int kEndingLimitSeconds = 2;
 
-/// How a run ended that did not come to its end.
+/// The cause why a run did not come to its end.
 struct BrokenRun {
   std::string task;  ///< whose method was under way; "": none was
   /// "the run ended by signal 11 (SIGSEGV) while it loaded /lib/gain.so, the component of task 'amp'",

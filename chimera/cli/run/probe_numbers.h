@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the numbers of a variable are called, one by one, in the order of Seen::numbers.
+// The names of the numbers of a variable, one by one, in the order of Seen::numbers.
 #pragma once
 
 #include <string>

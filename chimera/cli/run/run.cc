@@ -135,7 +135,7 @@ Result<void> LocalTarget::start() {
   return {};
 }
 
-// Of the rtpus that the script had die, or that a standby had killed because their tasks were silent.
+// The fates of rtpus that the script let die, or that a standby had killed because their tasks were silent.
 std::vector<UnitFate> LocalTarget::fates() {
   std::vector<UnitFate> fates;
   const VirtualPeers* const peers = application_.peers();
@@ -147,7 +147,7 @@ std::vector<UnitFate> LocalTarget::fates() {
   return fates;
 }
 
-// What components have to say beside their values, once each.
+// Prints the notes of components, each once.
 void LocalTarget::print_notes() {
   const auto tasks = application_.all_tasks();
   notes_told_.resize(tasks.size());
@@ -220,7 +220,7 @@ void LocalTarget::finish(RunReport& report) {
     report.receipts += (report.receipts.empty() || json.empty() ? "" : ", ") + json;
   }
   report.receipts_left_out = loop_->receipts().left_out();
-  // What `off` and `kill` cost, and their faults, too.
+  // The profiles contain the cost and the faults of `off` and `kill`, too.
   report.profiles = profiles_of(tasks, states, application_.configuration(), now);
   const std::vector<UnitFate> units = fates();
   report.verdict = judge_run({report.profiles, faults_before, units, report.is_flag_up, request_.strict});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `chimera run` finds out before anything starts: is the description legal, can it be run, and does every word
-// of the command line mean something in it.
+// Checks of `chimera run` before the start: the description is legal and can be run, and every word of the command line
+// means something in it.
 #pragma once
 
 #include <cstdio>

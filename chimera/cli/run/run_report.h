@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run says at its end, however it was run: docs/formats/run.md.
+// The report at the end of every run, in virtual or real time: docs/formats/run.md.
 #pragma once
 
 #include <cstdio>

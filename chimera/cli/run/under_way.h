@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a process that runs an application is doing, in memory that its parent reads when it is dead: which object it
-// loads, which method runs.
+// The object that a process loads, or the method that it runs, in shared memory. Its parent reads it when the process
+// is dead.
 #pragma once
 
 #include <atomic>
