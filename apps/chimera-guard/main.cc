@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The process that writes safe frames; started by the keeper only. It ends when the keeper is gone and no real-time
-// unit lives any more.
+// The process that writes safe frames; started by the keeper only. It ends when the keeper is gone and no rtpu lives
+// any more.
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
     std::fputs("chimera-guard is started by `chimera run`\n", stderr);
     return 2;
   }
-  std::signal(SIGTERM, SIG_IGN);  // NOLINT: sent to everybody by who ends a service; it ends after the last unit
+  std::signal(SIGTERM, SIG_IGN);  // NOLINT: a service manager sends it to all; the guard ends after the last rtpu
   const auto ended = guard(argc, argv);
   if (ended) return 0;
   std::fprintf(stderr, "chimera-guard: %s\n", ended.error().message.c_str());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The process of a real-time unit; started by the keeper only. Knows no YAML, JSON or HTTP.
+// The process of an rtpu; started by the keeper only. Knows no YAML, JSON or HTTP.
 #include <unistd.h>
 
 #include <cstdio>

@@ -33,7 +33,7 @@ Result<FrozenBytes> make_image(const cli::RunPlan& plan, const RunSettings& sett
   return FrozenBytes::create("chimera-image", encode(plan.configuration.spec(), places, settings));
 }
 
-/// What every unit loads from: the files may change from now on.
+/// The shared objects that every rtpu loads, in memory: the files may change from now on.
 Result<FrozenBytes> make_objects(const cli::RunPlan& plan) {
   std::vector<std::string> paths;
   for (const ConfiguredTask& task : plan.configuration.tasks())
@@ -81,7 +81,7 @@ std::vector<std::string> face_of(const KeepRequest& request, const cli::RunPlan&
   return words;
 }
 
-/// Somebody is to act on the death, or the silence, of a unit.
+/// True if the guard must act on the death of an rtpu, or on its silence.
 bool needs_guard(const cli::RunPlan& plan) {
   const auto is_limit = [](const StandbySpec& standby) { return standby.stale_after.count > 0; };
   return std::ranges::any_of(plan.configuration.tasks(), &ConfiguredTask::is_hardware) ||
@@ -130,7 +130,7 @@ Result<int> keep(const KeepRequest& request, const cli::RunPlan& plan) {
                            .listening = place->descriptor()},
                  .face = face_of(request, plan, place->path()),
                  .ending_limit = settings.method_limit * (n_rtpus + 1) + seconds(1)});
-  (void)flush_and_look(stdout);  // what the face prints comes after it
+  (void)flush_and_look(stdout);  // the run client prints after it
   if (auto started = keeper.start(); !started) return started.error();
   const int code = keeper.run();
   if (!keeper.output_is_lost()) return code;

@@ -9,7 +9,7 @@
 #include "chimera/cli/files/workplace.h"
 #include "chimera/cli/run/run.h"
 
-/// What the keeper needs to know beside the request.
+/// The request of a run, and the other settings of the keeper.
 struct KeepRequest {
   chimera::cli::RunRequest run;
   std::vector<std::string> face;  ///< the arguments of `chimera attend` that stand on the command line of `run`

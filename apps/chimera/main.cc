@@ -28,7 +28,7 @@ bool memory_is_limited() {
 }
 
 /// The last words of a program that gets no memory, or no thread. Under a limit there may be no memory for an exception
-/// either; without one it is a thread of a component that nobody joined, or the like.
+/// either. Without a limit the cause is a defect, such as a thread of a component that was never joined.
 [[noreturn]] void give_up() {
   const char* why = "out of memory: Cannot allocate memory";
   if (!std::current_exception() && !memory_is_limited()) tell_defect();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `chimera run` makes of the tap's records: a trace file and a timeline.
+// The outputs that `chimera run` makes from the records of the tap: a trace file and a timeline.
 #pragma once
 
 #include <cstdio>

@@ -31,7 +31,7 @@ using Repeats = cli::Option::Repeats;
 
 namespace {
 
-/// What the process that prints a run does, and so what `run` and `attend` both know.
+/// The options of the process that prints a run, which `run` and `attend` share.
 const std::vector<Option>& printing_options() {
   static const std::vector<Option> kOptions = {
       {.name = "--for", .value = "DURATION", .help = "how long, such as '10 s'; without it until Ctrl-C"},
@@ -167,7 +167,7 @@ struct AskedRun {
   cli::RunRequest run;
   Nanoseconds unit;
 
-  /// What both commands know. False when it cannot be read, which was printed then.
+  /// Reads the options that both commands share. False after printing that one cannot be read.
   bool read_printing(const Call& call) {
     run.at = call.values("--at");
     run.watch = call.values("--watch");
@@ -276,7 +276,7 @@ std::vector<double> bounds_of(const Call& call) {
 
 int attend(const Call& call, const cli::Workplace&) {
   std::signal(SIGTERM, [](int) { cli::request_stop(); });
-  sigset_t held;  // by the keeper, until somebody listens
+  sigset_t held;  // the keeper blocked it until this handler was set
   ::sigemptyset(&held);
   ::sigaddset(&held, SIGTERM);
   ::sigprocmask(SIG_UNBLOCK, &held, nullptr);

@@ -204,7 +204,7 @@ class ModeWriter {
     return spec.constants[constant.index].producers[producer_for(spec, constant, user, set)].task.index;
   }
 
-  /// Of lists that lead to no legal set from a configuration in which the task asks for them.
+  /// Warns of lists that lead to no legal set from a configuration in which the task asks for them.
   void warn_of_lists(const ModeWish& wish) {
     const ApplicationSpec& spec = configuration_.spec();
     for (std::size_t from = 0; from < configuration_.sets().size(); ++from) {
@@ -217,7 +217,7 @@ class ModeWriter {
     }
   }
 
-  /// Of a task that fails and is to go on in the set that its failure leads to.
+  /// Warns of a task that asks, by a reaction, for a configuration that contains the task itself.
   void warn(const ModeWish& wish) {
     if (!wish.asker.is_reaction() || !has(wish.set, wish.asker.task)) return;
     const bool leaves_any = std::ranges::any_of(report_.edges, [&](const ModeEdge& edge) {
@@ -231,7 +231,7 @@ class ModeWriter {
                                            : "it goes on there as it is"));
   }
 
-  /// Of reactions that would raise the flag when they are needed, if the values differ.
+  /// Warns of reactions whose switch goes the slow way, under the flag; some only if the values of constants differ.
   void warn(const ModeEdge& edge) {
     std::string names;
     for (const ModeConstant& each : edge.constants) names += (names.empty() ? "'" : ", '") + each.name + "'";

@@ -14,10 +14,10 @@
 
 namespace chimera {
 
-/// What asks for a switch without a person.
+/// Causes of a switch that no user asks for.
 enum class ModeCause : std::uint8_t { kMiss, kOverrun, kFault, kConstant };
 
-/// A task of the configuration before, and by which of its reactions or constants.
+/// A task of the configuration before that asks for a switch, and the reaction or constant by which it asks.
 struct ModeAsker {
   ModeCause cause = ModeCause::kMiss;
   std::size_t task = 0;  ///< in Configuration::tasks()
@@ -29,17 +29,17 @@ struct ModeAsker {
 /// A constant of tasks that stay, which another task makes after a switch than before. Only `init` makes the values.
 struct ModeConstant {
   std::string name;
-  std::size_t before = 0, after = 0;  ///< who makes it, in Configuration::tasks()
-  std::vector<std::size_t> users;     ///< those that stay
+  std::size_t before = 0, after = 0;  ///< task that makes it, in Configuration::tasks()
+  std::vector<std::size_t> users;     ///< tasks that stay
 };
 
 /// A resource that changes hands: runtime/switch/rivals.h.
 struct ModeResource {
   std::string text;
-  std::size_t before = 0, after = 0;  ///< who has it, in Configuration::tasks()
+  std::size_t before = 0, after = 0;  ///< task that has it, in Configuration::tasks()
 };
 
-/// What may be ON: a configuration, or one with a standby in the place of its primary.
+/// Tasks that may be ON together: a configuration, or one with a standby in the place of its primary.
 struct ModeNode {
   std::string name;           ///< "run", "run with spare for main"
   std::size_t set = 0;        ///< in Configuration::sets()
@@ -71,7 +71,7 @@ struct ModeEdge {
 struct ModeReport {
   std::vector<ModeNode> nodes;           ///< the configurations in order, then those with a standby
   std::vector<ModeEdge> edges;           ///< from each configuration to each other; then each takeover and what follows
-  std::vector<std::size_t> by_operator;  ///< configurations that are not the start and that nobody else asks for
+  std::vector<std::size_t> by_operator;  ///< configurations that are not the start and that only an operator asks for
   std::vector<std::string> warnings;
 
   /// No switch that a reaction asks for is slow because of a deadline.

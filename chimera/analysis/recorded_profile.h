@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tasks were seen to cost, in a file: `chimera profile --save` writes it, `chimera schedule --profile` reads it.
+// Measured times of tasks in a file: `chimera profile --save` writes it, `chimera schedule --profile` reads it.
 // The format is docs/formats/profile.md.
 #pragma once
 
@@ -32,7 +32,7 @@ struct RecordedProfile {
   const RecordedTask* find(std::string_view task) const;
 };
 
-/// What was measured; a task whose cycles took no time that can be told has no samples. Context: setup.
+/// The measured times of the tasks. A task whose cycles took no measurable time has no samples. Context: setup.
 RecordedProfile recorded(const std::string& subsystem, std::span<const TaskProfile> tasks);
 
 /// The file's text, with a line end. Context: setup.
@@ -42,8 +42,8 @@ std::string to_json(const RecordedProfile& profile);
 /// repeated key or task, another version, a number out of range, a mean above the worst. Context: setup.
 Result<RecordedProfile> parse_recorded_profile(std::string_view json);
 
-/// Puts the profile into the place of what is at `path`, in one step: nobody finds half of it. Refuses, leaving there
-/// what was: a folder that cannot be written, what is no ordinary file. Context: setup; may block.
+/// Replaces the file at `path` by the profile, in one step: no reader finds half of it. Refuses, and leaves the file as
+/// it was: a folder that cannot be written, a path that is no ordinary file. Context: setup; may block.
 Result<void> write_recorded_profile(const std::string& path, const RecordedProfile& profile);
 /// Whether that would be refused, as far as can be told before. Context: setup; may block.
 Result<void> may_write_recorded_profile(const std::string& path);

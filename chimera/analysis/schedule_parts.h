@@ -25,11 +25,11 @@ struct SetWorks {
 CpuVerdict analyse(const SetWorks& set, std::uint32_t cpu, std::vector<WorkVerdict>& verdicts);
 /// Whether all that has a time on that CPU keeps its deadlines within kMaxUtilisation.
 bool fits(const SetWorks& set, std::uint32_t cpu);
-/// Who would have to give first, as indices into the set: without them the rest of the CPU fits.
+/// Tasks that would have to give way first, as indices into the set: without them the rest of the CPU fits.
 std::vector<std::size_t> give_way(const SetWorks& set, std::uint32_t cpu, const std::vector<WorkVerdict>& verdicts);
 /// The smallest change of each kind with which the CPU fits; `Remedy::task` as an index into the set.
 std::vector<Remedy> remedies(const SetWorks& set, std::uint32_t cpu, const std::vector<WorkVerdict>& verdicts);
-/// All times of that CPU may be so many times as long and it still fits (three digits); 0: no factor was found.
+/// The greatest factor of all times of that CPU with which it still fits (three digits); 0: no factor was found.
 double most_scale(const SetWorks& set, const CpuVerdict& verdict, const std::vector<WorkVerdict>& verdicts);
 /// Every way from a task with a resource port to one, over the variables that they link, with its worst data age.
 void find_paths(const Configuration& configuration, const SetWorks& set, const std::vector<WorkVerdict>& verdicts,

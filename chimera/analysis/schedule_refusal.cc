@@ -13,7 +13,7 @@ bool is_broken(const ScheduleRow& row) {
   return row.is_hard && (row.verdict.guarantee == Guarantee::kNo || row.verdict.guarantee == Guarantee::kTooLong);
 }
 
-/// Of what makes everything fit.
+/// The first change that makes all tasks of the CPU fit; "": none is known.
 std::string what_helps(const Configuration& configuration, const CpuSchedule& cpu) {
   for (const Remedy& remedy : cpu.remedies)
     if (!remedy.is_for_others) return remedy_text(configuration, remedy);

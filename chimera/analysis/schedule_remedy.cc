@@ -196,8 +196,8 @@ class Search {
     return fits_moved(changed, task);
   }
 
-  /// Under `muf`: one of those without a promise among the more critical, so that everything fits; else one made less
-  /// critical, so that all others are promised, where somebody no less critical is without a promise.
+  /// Under `muf`: makes a task without a promise more critical, so that everything fits. Else makes a task less
+  /// critical, so that all others are promised, if a task at least as critical is without a promise.
   std::optional<Remedy> criticality() {
     std::uint32_t most = 0;  // of those without a promise
     for (std::size_t i = 0; i < set_.works.size(); ++i)

@@ -59,7 +59,7 @@ class ReportWriter {
     note_measured();
   }
 
-  /// What a measured time says of the budget, and how much it is worth.
+  /// Notes measured times above their budgets, and tasks with too few measured cycles.
   void note_measured() {
     std::string few;
     for (const TaskSpec& task : configuration_.spec().tasks) {

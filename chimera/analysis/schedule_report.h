@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the analysis (schedule/analysis.h) says of a configuration, with the names that people know: for each set of
-// tasks and each CPU who keeps its deadlines, who would have to give first, what would fit, and how old data gets.
+// The result of the analysis (schedule/analysis.h) of a configuration, with the names of the description. For each set
+// of tasks and each CPU: the tasks that keep their deadlines, the tasks that would have to give way first, the changes
+// that would make the set fit, and the age of data.
 #pragma once
 
 #include <cstddef>
@@ -53,7 +54,7 @@ struct CpuSchedule {
   std::vector<ScheduleRow> rows;      ///< in the order of levels
   std::vector<std::size_t> give_way;  ///< rows, in order: without these tasks the rest fits; empty when it does
   std::vector<Remedy> remedies;       ///< the smallest of each kind that was found
-  double scale = 0;                   ///< all times may be so many times as long and it fits; 0: none was found
+  double scale = 0;                   ///< greatest factor of all times with which it fits; 0: none was found
   WorstWindow window;
   std::vector<WindowRun> runs;  ///< `task` as in Configuration::tasks()
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the schedule analysis advises, in words.
+// The advice of the schedule analysis, in words.
 #pragma once
 
 #include <string>

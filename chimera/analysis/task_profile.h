@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The profile of a task as it is told: what it costs, how punctual it is, its last fault. The JSON of
-// docs/formats/run.md, written and read back here alone.
+// The reported profile of a task: its cost, its punctuality, its last fault. The JSON of docs/formats/run.md is written
+// and read back only here.
 #pragma once
 
 #include <optional>

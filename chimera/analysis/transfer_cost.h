@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a task copies at each cycle between its own memory and tables that others write meanwhile.
+// The data that a task copies at each cycle between its own memory and tables that other tasks write concurrently.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A token bucket: so many a second on average, so many at once.
+// A token bucket: bounds the average rate and the number at once.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ class Allowance {
   constexpr Allowance(Nanoseconds interval, std::int64_t burst) noexcept
       : interval_(interval), burst_(burst), left_(burst) {}
 
-  /// Takes `n`, at most the burst; takes nothing and is false when there are not so many left at `now`.
+  /// Takes `n` tokens; `n` is at most the burst. False, and takes none, if fewer than `n` are left at `now`.
   constexpr bool try_take(Nanoseconds now, std::int64_t n = 1) noexcept {
     if (now > filled_) {
       const std::int64_t gained = (now - filled_).count / interval_.count;
@@ -28,7 +28,7 @@ class Allowance {
     left_ -= n;
     return true;
   }
-  /// After try_take(now, n) said no: how long until it will not.
+  /// Time until try_take(now, n) succeeds, after it returned false.
   constexpr Nanoseconds wait(Nanoseconds now, std::int64_t n = 1) const noexcept {
     return left_ >= n ? Nanoseconds{} : interval_ * (n - left_) - (now - filled_);
   }

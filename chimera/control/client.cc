@@ -48,7 +48,7 @@ Error refusal(const std::string& text, const std::string& where = {}) {
   return Message(text).error(ErrorCode::kRefused, where);
 }
 
-/// Of a method that this client does not know nothing is known.
+/// False for a method that this client does not know: it may be an act.
 bool may_be_sent_twice(std::string_view method) {
   const MethodRule* rule = find_method(method);
   return rule != nullptr && !rule->is_act;
@@ -65,7 +65,7 @@ Result<OwnedDescriptor> connected(const std::string& path, Nanoseconds limit) {
   return refusal(is_closed ? "you have no right to connect to this subsystem" : "no subsystem listens here", path);
 }
 
-/// Those of `names` that were started from this terminal or folder.
+/// The subsystems among `names` that were started from this terminal or folder.
 std::vector<std::string> those_here(const std::string& folder, const std::vector<std::string>& names) {
   std::vector<std::string> here;
   for (const std::string& name : names) {
@@ -112,7 +112,7 @@ void Client::drop() {
   has_subscribed_ = false;
 }
 
-/// The caller is told, and with that knows that its subscriptions are gone.
+/// Answers kNoConnection. The caller learns from it that its subscriptions are gone.
 RpcResponse Client::lost(const char* why) {
   socket_ = OwnedDescriptor();
   has_subscribed_ = false;
@@ -219,7 +219,8 @@ Client::Got Client::exchange(std::uint64_t id, std::string_view line, Nanosecond
 
 RpcResponse Client::call(std::string_view method) { return call(method, Json::object()); }
 
-/// After the door closed this connection without having carried out what it did not answer, or had no place: another.
+/// Connects anew after ControlServer closed this connection or had no place for it. ControlServer has then carried
+/// out no call that it did not answer.
 bool Client::comes_again(int code, Nanoseconds until) {
   if (code == kTooMany && until - now() > kTryAgain) await_readable({}, kTryAgain);
   return !has_subscribed_ && until - now() > kTryAgain && reconnect(until);

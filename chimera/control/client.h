@@ -3,7 +3,7 @@
 // be sent twice.
 //
 //   the connection is lost while a call waits      the call                  the next call
-//   the line was not read, or the door let go      is made again             -
+//   the line was not read, or the server let go    is made again             -
 //   it may have been read: a question              is made again             -
 //   it may have been read: an act (is_act)         answers kNoConnection     connects anew
 //   there were subscriptions                       answers kNoConnection     connects anew, without subscriptions
@@ -29,7 +29,7 @@ struct Note {
   std::shared_ptr<const Json> parameters;
 };
 
-/// Of a call, the connection included: long enough for a manager to be replaced meanwhile.
+/// Time limit of a call, the connection included. It is long enough for a restart of the manager.
 inline constexpr Nanoseconds kCallLimit = seconds(5);
 
 /// One connection at a time. Move-only. Context: setup; every call blocks, never longer than its limit.
@@ -37,18 +37,18 @@ class Client {
  public:
   /// To the subsystem of that name; "" takes CHIMERA_SUBSYSTEM, else the one that runs, of several the one of this
   /// terminal or folder (control/home.h). A name with a '/' is the path of a socket: another user's subsystem. Refuses,
-  /// saying what runs, when there is none or the choice is not clear; naming the manager when so many wait for it that
-  /// nobody could get through within `limit`.
+  /// saying what runs, when there is none or the choice is not clear. Refuses, naming the manager, if the queue of the
+  /// socket is full for all of `limit`.
   static Result<Client> connect(const std::string& subsystem, Nanoseconds limit = kCallLimit);
   /// To the socket at `path`.
   static Result<Client> connect_to(const std::string& path, Nanoseconds limit = kCallLimit);
   /// To the socket at `path`, connected by the first call.
   static Client at(std::string path) { return {OwnedDescriptor(), std::move(path)}; }
 
-  /// Calls and waits for the answer; a manager that is being restarted is waited for. What happens when the connection
-  /// is lost meanwhile stands above. Notifications that come meanwhile are kept for next().
-  /// `silence`: a manager that says nothing at all for so long, though it is asked for a sign of life, is not waited
-  /// for until `limit`. kNoAnswer names its process and says what to do.
+  /// Calls and waits for the answer, also while the manager restarts. The table above says what happens if the
+  /// connection is lost during the call. Notifications that arrive before the answer are kept for next().
+  /// `silence`: if the manager sends nothing for this time, even when asked for a sign of life, the call ends before
+  /// `limit`. kNoAnswer names the process of the manager and says what to do.
   RpcResponse call(std::string_view method, const Json& parameters, Nanoseconds limit = kCallLimit,
                    Nanoseconds silence = kNever);
   RpcResponse call(std::string_view method);
@@ -80,7 +80,7 @@ class Client {
   std::deque<Note> notes_;
   std::uint64_t last_id_ = 0;
   bool has_subscribed_ = false;
-  bool is_turned_out_ = false;  // the last answer was for no call: the door closed the connection
+  bool is_turned_out_ = false;  // the last answer was for no call: ControlServer closed the connection
 };
 
 }  // namespace chimera::control

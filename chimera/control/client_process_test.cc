@@ -15,7 +15,7 @@
 namespace chimera::control {
 namespace {
 
-/// Serves the door until it is stopped.
+/// Runs ControlServer in a thread until stop().
 struct ClientTest : DoorTest {
   void start() {
     done = false;
@@ -57,7 +57,7 @@ TEST_F(ClientTest, CallsAndHearsNotifications) {
 }
 
 TEST_F(ClientTest, WaitsForAManagerThatIsBeingRestarted) {
-  auto client = Client::connect_to(path);  // the socket is the keeper's: somebody will look
+  auto client = Client::connect_to(path);  // the keeper holds the socket: a new manager will serve it
   ASSERT_TRUE(client);
   std::thread later([this] {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -222,7 +222,7 @@ struct LimitTest : ClientTest {
 };
 
 TEST_F(LimitTest, HoldsForAConnectionThatNobodyTakes) {
-  std::vector<int> fds;  // nobody serves: the queue fills
+  std::vector<int> fds;  // no server accepts them: the queue fills
   for (int i = 0; i < 1000; ++i) {
     fds.push_back(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     const sockaddr_un address = address_of(path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts closed connections by user and tells of each user at most once in a while.
+// Counts closed connections by user and limits the rate of reports about each user.
 #include "chimera/control/closings.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells of connections that the door closed. A crowd of one user is told in one sentence, or it would push
+// Reports connections that ControlServer closed. Many closings of one user share one sentence, so that they do not push
 // everything else out of the log.
 #pragma once
 
@@ -19,11 +19,11 @@ class Closings {
   using Tell = std::function<void(const std::string&)>;
 
   void report_to(Tell tell) { tell_ = std::move(tell); }
-  /// The first sixteen of a user are told at once, then one in 10 s, with the number of those that were not.
+  /// The first sixteen closings of a user are reported at once, then one in 10 s, with the number of unreported ones.
   void add(uid_t user, std::string text, Nanoseconds now);
-  /// Tells of those that wait, when it is time.
+  /// Reports the waiting closings that are due.
   void report_due(Nanoseconds now);
-  /// When report_due() has something to tell; kNever: nothing waits.
+  /// Time at which report_due() has a report; kNever: nothing waits.
   Nanoseconds next_due() const noexcept;
 
  private:
@@ -36,7 +36,7 @@ class Closings {
   void report_due(OfUser& one, Nanoseconds now);
 
   Tell tell_;
-  std::map<uid_t, OfUser> users_;  // who has a role: few
+  std::map<uid_t, OfUser> users_;  // only users with a role: few
 };
 
 }  // namespace chimera::control

@@ -64,8 +64,8 @@ class Connection {
 
   /// Queues a line that has its end.
   void queue(const std::string& line, Nanoseconds now);
-  /// Queues a line that begins with `begin`, goes on with `pieces` and ends with `end`. It is made by go_on(), as the
-  /// peer takes it; what is said meanwhile goes behind it.
+  /// Queues a line that begins with `begin`, goes on with `pieces` and ends with `end`. go_on() makes it, as the peer
+  /// takes it; lines queued before it is finished go behind it.
   void queue_in_pieces(const std::string& begin, std::shared_ptr<Pieces> pieces, const std::string& end,
                        Nanoseconds now);
   /// Makes the next piece of such a line and sends what can be sent. False: there is none, or no room for it.
@@ -90,7 +90,7 @@ class Connection {
   Nanoseconds active_at;       ///< when the peer last said a line or was answered, kept by the server
   std::size_t open_calls = 0;  ///< whose answers are still to come
   std::size_t open_acts = 0;   ///< those of them that change something
-  bool is_gone = false;        ///< the peer closed: nobody will read
+  bool is_gone = false;        ///< the peer closed and reads nothing more
   std::uint32_t watched = 0;   ///< what the server asks its DescriptorSet for
   /// The request that is read and not carried out yet: what it is decides whether it waits. Null: none.
   std::unique_ptr<const Request> next;

@@ -54,7 +54,7 @@ void ControlServer::serve(Nanoseconds now) {
     if (ready[i].has_ended) found->second->is_gone = true;
   }
   dispatcher_.run_turn(now);
-  if (has_callers) accept(now);  // when those inside have been heard: who has just asked is not idle
+  if (has_callers) accept(now);  // after run_turn(): a connection that has just asked does not count as idle
   subscriptions_.notify([this](std::uint64_t number) -> Connection& { return *connections_.at(number); }, now);
   settle(now);
 }
@@ -101,7 +101,7 @@ std::string ControlServer::idle_text(Connection& connection, Nanoseconds now) co
   return "";
 }
 
-/// Tells the peer, if that can be done at once, and whoever wants to know what was closed.
+/// Sends the reason to the peer, if that is possible at once, and adds it to `closings_`.
 void ControlServer::evict(Connection& connection, const std::string& why, Nanoseconds now) {
   connection.queue(answer_line(nullptr, RpcResponse::error(kClosed, "closed: " + why)), now);
   (void)connection.flush(now);
@@ -130,7 +130,7 @@ void ControlServer::accept(Nanoseconds now) {
 
 void ControlServer::enter(OwnedDescriptor connected, const PeerIdentity& peer, Nanoseconds now) {
   auto connection = std::make_unique<Connection>(++last_connection_, std::move(connected), peer, now);
-  if (peer.role != Role::kNone) connection->receive(now);  // whoever has only one question has asked it by now
+  if (peer.role != Role::kNone) connection->receive(now);  // a peer with only one question has already sent it
   if (connection->has_ended() && !connection->has_line()) return;
   if (const RpcResponse refusal = admit(peer, now); !refusal.is_good()) {
     connection->queue(answer_line(nullptr, refusal), now);
@@ -144,8 +144,8 @@ void ControlServer::enter(OwnedDescriptor connected, const PeerIdentity& peer, N
   (void)entered.flush(now);
 }
 
-/// What a peer said before it went is still carried out. One that says nothing more but listens is told what it asked
-/// for and subscribed to.
+/// Lines that a peer sent before it went are still carried out. A peer that has ended its side but still reads gets
+/// its answers and notifications.
 bool ControlServer::is_over(Connection& connection, Nanoseconds now) {
   if (connection.is_gone && !connection.has_line()) return true;
   const bool wants_more =

@@ -70,7 +70,7 @@ class ControlServer {
   std::uint64_t last_connection_ = 0;
   Closings closings_;
   Nanoseconds now_;                     // of the last serve()
-  Nanoseconds accepts_again_ = kNever;  // while nobody can be let in for lack of descriptors
+  Nanoseconds accepts_again_ = kNever;  // time of the next accept(), after descriptors ran out
   bool has_more_ = false;               // to do at once
 };
 

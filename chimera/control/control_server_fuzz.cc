@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes from several peers, interleaved, into the real door before a model of a subsystem. Whatever they are: nobody
-// gets beyond its role, every well-formed request is answered exactly once, what is answered is JSON-RPC.
+// Feeds bytes from several peers, interleaved, to the real ControlServer with a model of a subsystem. For all bytes: no
+// peer gets beyond its role, every well-formed request has exactly one answer, and every answer is JSON-RPC.
 //
 // The input is a program: an opcode, then what it takes. Well-formed requests have ids of their own, so that their
 // answers are known among those to garbage.

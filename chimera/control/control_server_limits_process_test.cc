@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The limits of the door, each to the letter.
+// Tests each limit of ControlServer at its exact value.
 #include <poll.h>
 #include <sys/resource.h>
 

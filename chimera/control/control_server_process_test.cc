@@ -117,7 +117,7 @@ TEST_F(DoorTest, AnAnswerMayComeLaterAndOnlyOnce) {
   ::close(fd);
   serve();
   EXPECT_EQ(door->connections(), 0u);
-  backend.later[1](RpcResponse::good(Json::object()));  // nobody there any more: harmless
+  backend.later[1](RpcResponse::good(Json::object()));  // the connection is gone: harmless
   door.reset();
   backend.later[1](RpcResponse::good(Json::object()));
   backend.later.clear();
@@ -253,7 +253,7 @@ TEST_F(DoorTest, NewsWithoutPeriodComeAllOfThemInOrder) {
   ::close(fd);
 }
 
-/// What a child of another user and group gets to read at the door; "" when it cannot connect.
+/// The bytes that a child of another user and group reads from ControlServer; "" when it cannot connect.
 std::string as_stranger(const std::string& path, gid_t group, const std::string& text,
                         const std::function<void()>& serve) {
   int pipe[2];

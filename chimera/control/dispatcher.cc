@@ -14,7 +14,7 @@ namespace {
 
 bool is_open(const Connection& connection) { return !connection.is_closing() && connection.has_room(); }
 
-/// May change something: somebody may depend on it being done.
+/// True if the request may change something, so that its caller may depend on it being done.
 bool is_act(const Request& request) {
   const MethodRule* rule = find_method(request.method);
   return rule != nullptr && rule->is_act;
@@ -41,8 +41,8 @@ RpcResponse no_method(const std::string& name) {
 
 }  // namespace
 
-/// The one answer of a call that was handed to the backend: the first one counts, and if its reply is dropped without
-/// any, the caller is told.
+/// The one answer of a call that was handed to the backend. The first answer counts. If the reply is dropped without
+/// an answer, the caller gets kNoAnswer.
 struct Dispatcher::Call {
   Call(Dispatcher& made_by, Connection& from, const Request& asked, bool does_act)
       : dispatcher(&made_by), is_alive(made_by.is_alive_), connection(from.number()), request(asked), acts(does_act) {
@@ -178,7 +178,7 @@ RpcResponse Dispatcher::judge(Connection& connection, const Request& request, co
   return check_parameters(*rule, *request.parameters);
 }
 
-/// Of a user's places some are kept for who comes with one question or act.
+/// Some places of a user are kept for connections without subscriptions, which bring one question or act.
 RpcResponse Dispatcher::subscribe(Connection& connection, const Json& parameters, Nanoseconds now) {
   const auto is_one = [&](const auto& one) {
     return one.second->peer().user == connection.peer().user && subscriptions_.count_of(one.first) > 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands of one terminal have one session, whose number nobody else gets while a process of it lives.
+// Commands of one terminal have one session. No other session gets its number while a process of it lives.
 #include "chimera/control/home.h"
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a subsystem was started: from which session (all that one terminal started) and in which folder.
+// The session (all processes that one terminal started) and the folder in which a subsystem was started.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace chimera::control {
 
-/// What the answer of `hello` says of a subsystem (docs/formats/control.md). Plain value.
+/// Parts of the answer of `hello` that say where a subsystem belongs (docs/formats/control.md). Plain value.
 struct Home {
   std::string subsystem;
   std::int64_t keeper_pid = 0;

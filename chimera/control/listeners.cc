@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "socket:[4711]", as the descriptors of its holders are called; "" when nobody listens there.
+/// "socket:[4711]", as the descriptors of its holders are called; "" when no process listens there.
 std::string link_of(const std::string& path) {
   constexpr unsigned kAccepts = 0x10000;  // __SO_ACCEPTCON
   std::ifstream sockets("/proc/net/unix");
@@ -48,7 +48,7 @@ bool holds(const fs::path& process, const std::string& link) {
 std::pair<std::string, char> name_and_state(const fs::path& process) {
   std::ifstream in(process / "stat");
   std::string text;
-  std::getline(in, text);  // no iterators: they throw when the process ends meanwhile
+  std::getline(in, text);  // no iterators: they throw if the process ends during the read
   const std::size_t from = text.find('('), to = text.rfind(')');
   if (from == std::string::npos || to == std::string::npos || to + 2 >= text.size()) return {"", '?'};
   return {text.substr(from + 1, to - from - 1), text[to + 2]};

@@ -14,7 +14,7 @@ struct Listeners {
   bool is_stopped = false;  ///< the manager, by a signal or a debugger
 };
 
-/// Those that hold the socket that listens at `path`. Context: setup; reads /proc of every process of the machine.
+/// The processes that hold the socket that listens at `path`. Context: setup; reads /proc of every process.
 Listeners listeners_at(const std::string& path);
 
 /// The sentence that the manager behind `path` did not answer for `limit`, with its process and what to do.

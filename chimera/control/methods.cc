@@ -102,7 +102,7 @@ RpcResponse bad(std::string message, const std::string& where, const std::string
   return RpcResponse::error(kBadParameters, std::move(message), data);
 }
 
-/// Of what a client sent: as much as a message needs.
+/// The beginning of a text that a client sent: as much as a message needs.
 std::string quotable(const std::string& text) { return text.substr(0, 40); }
 
 std::string near_of(const std::string& wrong, const std::vector<std::string>& names) {

@@ -23,7 +23,7 @@ struct Parameter {
   std::uint64_t least = 0, most = INT64_MAX;  ///< of a count
 };
 
-/// Which function carries a method out: the key of a ControlBackend's table.
+/// Number of the function that carries a method out: the key of a ControlBackend's table.
 enum class MethodId : unsigned char {
   kHello, kStatus, kDescribe, kGet, kProfile, kEvents, kReceipts, kWhy, kPlan, kSubscribe, kUnsubscribe, kCheck,
   kSchedule, kLibrary, kSignal, kRing, kSet, kFlag, kSwitch, kCancel, kDrill, kSave, kEnd

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who gets a place at the door, and who gives way when none is left: docs/formats/control.md, "Places".
+// Grants places to connections, and picks the one that gives way when none is left: docs/formats/control.md, "Places".
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace chimera::control {
 
-/// What a connection does, those first that give way first.
+/// Activity of a connection. Connections with a lower value give way first.
 enum class Standing : unsigned char {
   kHalfLine,  ///< began a line and has not ended it
   kIdle,      ///< nothing at all, or subscriptions that it does not read
@@ -34,14 +34,14 @@ struct Occupant {
 
 struct PlaceGrant {
   bool is_granted = false;
-  std::uint64_t in_place_of = 0;  ///< 0: nobody
+  std::uint64_t in_place_of = 0;  ///< connection that gives way; 0: none
   std::string refusal;            ///< which places are taken
 };
 
-/// A place for one more, of `user` and `rank`. Where the places of the user or of the rank are taken, somebody gives
-/// way who leaves the place that is wanted: never of a higher rank; whoever reads a subscription only to a higher one;
-/// first of all those who do nothing, of the lowest rank, half lines before whole ones, the longest first.
-/// Context: setup.
+/// A place for one more connection, of `user` and `rank`. If the places of the user or of the rank are taken, another
+/// connection gives way. A connection never gives way to a lower rank. A reader of subscriptions gives way only to a
+/// higher rank. Connections that do nothing give way first, among them the lowest rank, then half lines, then the one
+/// that does nothing for the longest time. Context: setup.
 PlaceGrant find_place(std::span<const Occupant> all, uid_t user, Rank rank);
 
 }  // namespace chimera::control

@@ -21,7 +21,7 @@ bool has_line(std::string_view lines, std::string_view key) {
   return false;
 }
 
-/// Whole lines; not what somebody else has written there.
+/// Whole lines of receipts, without lines that another program has written there.
 std::vector<std::string> receipts_in(const std::string& text) {
   std::vector<std::string> lines;
   for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {

@@ -34,7 +34,7 @@ class ReceiptFile {
   bool is_known_ = false;  // what it has of those that may be filed again
 };
 
-/// What tells a receipt from all others, as the line begins with it: its number and its run. Context: any.
+/// Number and run of a receipt, with which its line begins: no other receipt has both. Context: any.
 std::string_view receipt_key(std::string_view line) noexcept;
 
 }  // namespace chimera::control

@@ -68,7 +68,7 @@ std::string json_of(const VariablePart& part, const ApplicationSpec& spec) {
          ", \"beyond\": " + (step.is_beyond ? "true" : "false") + "}";
 }
 
-/// How long each phase took; null: it was not gone through.
+/// Duration of each phase; null: the switch did not go through it.
 std::string json_durations(const SwitchReceipt& receipt) {
   const auto between = [](Nanoseconds from, Nanoseconds to) {
     return from == kNever || to == kNever ? "null" : std::to_string((to - from).count);

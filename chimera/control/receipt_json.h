@@ -9,7 +9,7 @@
 
 namespace chimera::control {
 
-/// What a manager knows of a switch beside its receipt. Plain value.
+/// Facts of a switch that the manager knows and its receipt lacks. Plain value.
 struct ReceiptFrame {
   std::string asked_by = {};   ///< a role and a user, "operate:ann"; "": as the receipt says
   std::int64_t wall_ns = -1;   ///< nanoseconds since 1970 of the request; -1: virtual time

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the texts of receipts are put together from: names, units, steps, words.
+// Parts of the texts of receipts: names, units, steps, words.
 #pragma once
 
 #include <string>
@@ -15,16 +15,16 @@ std::string quoted(std::string_view name);
 std::string number_text(double value);
 const char* word(SwitchEnd end);
 const char* word(TaskMove move);
-/// Of a task that produces the variable, else of one that reads it; null: there is none.
+/// Port of a producer of the variable; if there is none, of a reader; null: there is neither.
 const PortSpec* port_of(const Variable& variable, const ApplicationSpec& spec);
-/// Of the variable, "1" without one.
+/// Unit of the variable, "1" without one.
 std::string unit_of(const VariablePart& part, const ApplicationSpec& spec);
-/// As it stands behind a number.
+/// The unit as it stands behind a number.
 std::string unit_text(const std::string& unit);
 std::string unit_text(const VariablePart& part, const ApplicationSpec& spec);
 /// "0.25 N.m, limit 5 N.m".
 std::string step_text(const ValueStep& step, const std::string& unit);
-/// What readers saw first: the first cycle of the producer after, else what its `on` wrote.
+/// The step that readers saw first: of the first cycle of the producer after the switch, else of its `on`.
 const ValueStep& seen(const VariablePart& part);
 
 }  // namespace chimera::control

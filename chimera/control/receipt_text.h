@@ -13,7 +13,7 @@ namespace chimera::control {
 /// Context: setup.
 std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin);
 
-/// Those further lines alone, without their ends: "bump: ...". Context: setup.
+/// The lines of moved variables alone, without their line ends: "bump: ...". Context: setup.
 std::vector<std::string> bump_lines(const SwitchReceipt& receipt, const ApplicationSpec& spec);
 
 }  // namespace chimera::control

@@ -25,16 +25,16 @@ struct Request {
 Request read_request(std::string_view line);
 /// The lines to send, each with its line end. Text that is no UTF-8 is sent with replacements.
 std::string answer_line(const Json& id, const RpcResponse& answer);
-/// What stands before and behind the text of a result.
+/// Text before a result in its line, and text behind it.
 std::string result_begin(const Json& id);
 inline constexpr const char* kResultEnd = "}\n";
 std::string note_line(std::string_view method, std::uint64_t subscription, const Json& parameters);
-/// What stands before and behind the text of the parameters of a notification.
+/// Text before the parameters of a notification in its line, and text behind them.
 std::string note_begin(std::string_view method);
 inline constexpr const char* kNoteEnd = "}\n";
 std::string request_line(std::uint64_t id, std::string_view method, const Json& parameters);
 
-/// What a text costs its reader, as far as brackets and commas outside of texts tell.
+/// Cost of parsing a text, estimated from brackets and commas outside of strings.
 struct TextCost {
   std::size_t depth = 0;   ///< how deep arrays and objects are nested
   std::size_t commas = 0;  ///< one less than the values of a list

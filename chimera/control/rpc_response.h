@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a request leads to: a result, or an error of docs/formats/control.md.
+// The response to a request: a result, or an error of docs/formats/control.md.
 #pragma once
 
 #include <functional>
@@ -39,7 +39,7 @@ struct RpcResponse {
   std::shared_ptr<Pieces> pieces = nullptr;           ///< in the place of `result`: the same, made while it is sent
 
   static RpcResponse good(const Json& result);
-  /// A result that is JSON already: whoever sends it has nothing to do but to copy it.
+  /// A result that is JSON already: the sender only copies it.
   static RpcResponse ready(std::shared_ptr<const std::string> text);
   /// A result that is made while it is sent.
   static RpcResponse in_pieces(std::shared_ptr<Pieces> pieces);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists the sockets of a folder at which somebody listens.
+// Lists the sockets of a folder at which a process listens.
 #include "chimera/control/running.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which subsystems of this user run, by their sockets (platform/socket_place.h): docs/formats/control.md, "The
+// Lists the running subsystems of this user by their sockets (platform/socket_place.h): docs/formats/control.md, "The
 // socket".
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace chimera::control {
 
-/// Where the subsystems are that the machine runs as services (debian/chimera@.service): in /run, where only root makes
+/// Folder of the subsystems that the machine runs as services (debian/chimera@.service): in /run, where only root makes
 /// folders.
 inline constexpr const char* kServiceFolder = "/run/chimera";
 

@@ -55,7 +55,7 @@ std::size_t Subscriptions::count_of(std::uint64_t connection) const noexcept {
 
 void Subscriptions::notify(const std::function<Connection&(std::uint64_t)>& connection_of, Nanoseconds now) {
   const Turn turn;
-  auto at = all_.upper_bound(last_told_);  // whoever had to wait in the last turn comes first
+  auto at = all_.upper_bound(last_told_);  // subscriptions that the last turn did not reach come first
   for (std::size_t n = all_.size(); n > 0 && !turn.is_over(); --n, ++at) {
     if (at == all_.end()) at = all_.begin();
     auto& [number, one] = *at;

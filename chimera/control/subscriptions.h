@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who wants to be told what, and when it is due.
+// The subscriptions of all connections, and the times at which their notifications are due.
 #pragma once
 
 #include <cstdint>
@@ -24,11 +24,11 @@ class Subscriptions {
   void end(std::uint64_t connection);
   std::size_t count_of(std::uint64_t connection) const noexcept;
 
-  /// Tells every connection what is due and it has room for. What has a period is made when the peer has taken all that
-  /// came before: who is slow skips to the latest. `connection_of` finds a connection by number. Ends with the turn:
-  /// who is left is due at once, and first next time.
+  /// Sends to every connection the notifications that are due and that it has room for. A periodic notification is made
+  /// after the peer has taken all earlier ones, so a slow peer skips to the latest. `connection_of` finds a connection
+  /// by number. Ends with the turn. Subscriptions that are left are due at once, and come first in the next turn.
   void notify(const std::function<Connection&(std::uint64_t)>& connection_of, Nanoseconds now);
-  /// When notify() is due; kNever: nobody wants anything.
+  /// Time at which notify() is due; kNever: there are no subscriptions.
   Nanoseconds next_due() const noexcept;
 
  private:

@@ -23,7 +23,7 @@ std::string unsafe_text(const SwitchReceipt& receipt, const ApplicationSpec& spe
          sign_of(asked.comparison) + " " + number_text(asked.limit) + unit;
 }
 
-/// Who would miss what, and where to see more.
+/// Names the transition that is not schedulable, and the task that would miss its deadline.
 std::string not_schedulable(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
   const TaskId late = receipt.way.deadline.task;
   if (!late.is_valid()) return reason_word(NoSwitch::kNotSchedulable);

@@ -13,7 +13,7 @@ namespace chimera::control {
 /// "'hand'"; of kNoSet "other tasks". Context of everything: setup.
 std::string set_text(std::uint32_t set, const ApplicationSpec& spec);
 
-/// Who asks, as receipts say it: "on_miss of pid".
+/// The origin of a request, as receipts say it: "on_miss of pid".
 std::string asked_by(const SwitchRequest& request, const ApplicationSpec& spec);
 
 /// Why a switch goes the slow way: the words of the format, and a sentence; empty: it does not.

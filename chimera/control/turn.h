@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long whoever serves many may go on before others come first again.
+// The time that one turn of work for many connections may take before other work comes first again.
 #pragma once
 
 #include <ctime>

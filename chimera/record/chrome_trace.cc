@@ -75,7 +75,7 @@ void ChromeTrace::event(const TapRecord& record, const char* phase, const std::s
   const std::uint32_t pid = kFirst + record.rtpu, tid = is_of_task ? kFirst + record.task.index : 0;
   const Nanoseconds at = record.at - origin_;
   const bool is_slice = *phase == 'X';
-  // What concerns no single task (the flag) spans the whole rtpu; the viewers then ignore its tid.
+  // An event of no single task (the flag) spans the whole rtpu; the viewers then ignore its tid.
   const char* scope = is_of_task ? ", \"s\": \"t\"" : ", \"s\": \"p\"";
   const std::string shape = is_slice ? ", \"dur\": " + microseconds_text(Nanoseconds{record.b}) : scope;
   constexpr const char* kEvent =

@@ -11,20 +11,20 @@
 
 namespace chimera {
 
-/// Writes one trace while records come in, sorted by their instants: those of the last two seconds are held back, since
-/// a release is told when its job starts. What is told later than that comes where it is told.
-/// Context: setup; may block.
+/// Writes one trace while records come in, sorted by their instants. The records of the last two seconds are held back,
+/// because the record of a release comes only when its job starts. A record that comes later than that is written
+/// out of order. Context: setup; may block.
 class ChromeTrace {
  public:
   /// `file` stays open and the caller's. Names by index; records refer to them.
   /// Times are written relative to `origin`.
   ChromeTrace(std::FILE* file, std::string subsystem, std::span<const std::string> rtpus,
               std::span<const std::string> tasks, Nanoseconds origin);
-  /// Adds records in the order in which they were told.
+  /// Adds records in the order in which they were written to the tap.
   void add(std::span<const TapRecord> records);
   /// Closes the JSON, saying how many records were lost, and `missed` before the first of all. Afterwards nothing more
   /// may be added. False when anything of the trace, now or before, could not be written: the file is cut short and
-  /// errno tells the last reason.
+  /// errno is the last reason.
   [[nodiscard]] bool end(std::uint64_t lost, std::uint64_t missed);
 
  private:

@@ -28,7 +28,7 @@ const Json& null_json() noexcept {
   throw JsonError(std::string("expected ") + expected + ", found " + what);
 }
 
-/// What the library says, without its own name and number.
+/// The message of the library, without its own name and number.
 std::string reason(std::string_view said) {
   const std::size_t end = said.starts_with('[') ? said.find("] ") : said.npos;
   return std::string(end == said.npos ? said : said.substr(end + 2));

@@ -19,7 +19,7 @@ struct JsonError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What kind of value a Json is.
+/// The kind of value that a Json is.
 class JsonKind {
  public:
   bool is_null() const noexcept { return kind_ == Kind::kNull; }
@@ -141,7 +141,8 @@ class Json : public JsonKind {
   } value_ = {};
 };
 
-/// For `for (const auto& [key, value] : json.items())`. The object outlives it and does not change meanwhile.
+/// For `for (const auto& [key, value] : json.items())`. The object outlives its Members and does not change during the
+/// loop.
 class Json::Members {
  public:
   class Iterator {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a person must learn of a task of which `off` or `kill` went wrong.
+// The warning to the user about a task whose `off` or `kill` failed.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a value in parts, so that nobody has to wait for a large one to be written whole.
+// Writes a value in parts, so that other work need not wait until a large value is written whole.
 #pragma once
 
 #include <cstddef>

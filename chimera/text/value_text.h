@@ -12,7 +12,7 @@
 
 namespace chimera {
 
-/// How the bytes of a variable are to be read.
+/// The layout of the bytes of a variable.
 struct ValueForm {
   std::uint32_t type = CHIMERA_FLOAT64;
   std::uint32_t element_bytes = 8;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What became of the cases of a folder: for people, for programs, and for build machines.
+// Reports the results of the cases of a folder: for people, for programs, and for build machines.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct CaseOutcome {
   bool strict = false;
   Nanoseconds wall;
 
-  /// What it says against the case, a line each; empty: it passes.
+  /// Reasons why the case fails, a line each; empty: it passes.
   std::vector<std::string> complaints() const;
 };
 

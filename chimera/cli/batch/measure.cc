@@ -66,7 +66,7 @@ Result<Measure> Measure::read(const std::string& text, const Configuration& conf
   return made;
 }
 
-// The bound in the unit of the variable: for an element or a field the whole variable is asked about in its place.
+// Reads the bound in the unit of the variable. An element or a field has the bound of the whole variable.
 Result<void> Measure::read_bound(const std::string& comparison, const Configuration& configuration,
                                  const UnitSystem& units) {
   const std::string bars = magnitude_ ? "|" : "";

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is measured of a variable over a whole run in virtual time: "max |error|", "rms tau[2]", "settling error <= 2
-// mrad".
+// Measures a variable over a whole run in virtual time: "max |error|", "rms tau[2]", "settling error <= 2 mrad".
 #pragma once
 
 #include <cstdint>
@@ -36,14 +35,14 @@ class Measure {
   /// The values at `at` since the start. Requires: bound; times grow.
   void add_sample(Nanoseconds at);
   std::vector<Number> numbers() const;
-  /// Of parse_expectation(): whether every number satisfies it; `said` tells them.
+  /// True if every number satisfies the expectation of parse_expectation(); `said` lists the numbers.
   bool holds(std::string& said) const;
 
   const std::string& text() const noexcept { return text_; }
   const std::string& variable() const noexcept { return variable_; }
 
  private:
-  /// Of one number.
+  /// The samples of one number, summed up.
   struct Sum {
     double last = 0, least = 0, greatest = 0, sum = 0, squares = 0;
     bool is_number = true;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::int64_t kMostSamples = 1'000'000;
 
-/// What is written to a FILE, as a text.
+/// A FILE in memory, whose content is a text.
 class TextFile {
  public:
   TextFile() : file_(::open_memstream(&text_, &size_)) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far many pieces of work are: a line on the terminal, for whoever waits.
+// Shows on the terminal how many pieces of work are done.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@ namespace chimera::cli {
 /// "12 of 100 runs, about 8 s to go"; without an estimate while nothing is done yet, and at the end. Context: setup.
 std::string pieces_text(std::size_t done, std::size_t all, const std::string& noun, Nanoseconds wall);
 
-/// Each line over the one before; silent unless somebody can see them. Context: setup.
+/// Writes each line over the one before; silent unless `err` is a terminal. Context: setup.
 class PieceProgress {
  public:
   PieceProgress(std::size_t all, std::string noun, std::FILE* err);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Many pieces of work in child processes, so many at a time as there are processors. A piece that crashes or hangs is
-// one that failed, and nothing else.
+// Many pieces of work in child processes, at most one a processor at a time. A piece that crashes or hangs has failed;
+// the other pieces go on.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace chimera::cli {
 
-/// What became of one piece.
+/// The result of one piece.
 struct PieceEnd {
   std::string said;     ///< what it answered
   std::string failure;  ///< why there is no answer: "ended by signal 11 (Segmentation fault)"; empty: there is one

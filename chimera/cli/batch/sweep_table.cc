@@ -22,7 +22,7 @@ std::string headed(const std::string& name, const std::string& unit) {
   return unit.empty() || unit == "1" ? name : name + " [" + unit + "]";
 }
 
-/// What was measured in any run: extents may differ.
+/// Every number that any run has measured: the runs may differ in extents.
 std::vector<Column> columns(const SweepTable& table) {
   std::vector<Column> all;
   for (const MeasuredRun& run : table.runs)

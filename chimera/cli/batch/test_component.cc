@@ -34,7 +34,7 @@ std::string beside(const LibraryEntry& entry, const char* ending) {
 
 bool is_path(const std::string& word) { return word.find('/') != std::string::npos || word.ends_with(".so"); }
 
-// A shared object that nobody installed: its descriptor beside it, else what it says of itself.
+// Reads a shared object that is not installed: from the descriptor beside it, else from the object itself.
 Result<LibraryEntry> entry_of_object(const std::string& path, Nanoseconds patience) {
   if (!fs::exists(path)) return (Message() << "no such file").error(ErrorCode::kNotFound, path);
   LibraryEntry entry;

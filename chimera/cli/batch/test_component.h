@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `chimera test COMPONENT...`: each component alone, in virtual time, judged by what nobody wrote a test for.
+// `chimera test COMPONENT...`: runs each component alone, in virtual time, and checks it without a written test.
 #pragma once
 
 #include <cstdint>

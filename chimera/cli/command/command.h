@@ -14,7 +14,7 @@
 
 namespace chimera::cli {
 
-/// What a word of a command line is, and so what completes it.
+/// The kind of a word of a command line, from which its completion follows.
 enum class WordKind : unsigned char {
   kText,         ///< nothing completes it
   kOneOf,        ///< one of the words listed in the row
@@ -67,14 +67,14 @@ struct Command {
   const char* footer = "";              ///< lines behind the options of the help
   const char* example = "";             ///< of several one a line
   const char* manual = nullptr;         ///< what the manual says in place of the help; `bold`
-  bool is_act = false;        ///< changes a running subsystem, or names a process of it to somebody who will signal it
+  bool is_act = false;        ///< changes a running subsystem, or names a process of it, which the user then signals
   bool is_shells = false;     ///< understood inside `chimera shell` only
   bool has_commands = false;  ///< is nothing without one of its own commands, such as `new`
   bool is_hidden = false;     ///< not for people: in no help, manual or completion
-  bool outlives_reader = false;  ///< goes on when nobody reads its output; the others end by SIGPIPE, as `cat` does
+  bool outlives_reader = false;  ///< goes on when its output has no reader; the others end by SIGPIPE, as `cat` does
 };
 
-/// A command as somebody gave it, however it was typed.
+/// A command as the user gave it, however it was typed.
 struct Call {
   const Command* command = nullptr;
   std::vector<std::string> operands;
@@ -105,7 +105,7 @@ Result<Call> read_call(Table table, const std::vector<std::string>& words);
 /// `call` as it is typed at a command line: "chimera set kp '[100 90] N.m/rad'".
 std::string command_line(const Call& call);
 
-/// What `help` of the shell prints: a line for each command, or more of one; "" when there is none of that name.
+/// The output of `help` of the shell: a line for each command, or more lines of one; "" when no command has that name.
 std::string help_text(Table table, std::string_view command = {});
 
 }  // namespace chimera::cli

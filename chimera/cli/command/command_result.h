@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a command prints and how it ends: the one result of every command of `chimera`.
+// The result of every command of `chimera`: its output and its exit code.
 #pragma once
 
 #include <cstdio>

@@ -111,7 +111,7 @@ std::string words(const Visible& rows) {
   return text;
 }
 
-/// What completes a word, as the functions of the script are called.
+/// The function of the script that completes a word, with its arguments.
 std::string completer(WordKind kind, const char* listed) {
   switch (kind) {
     case WordKind::kOneOf:

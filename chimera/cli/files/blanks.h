@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blanks around a text: added for columns, taken off what somebody wrote. Context: setup.
+// Blanks around a text: added for columns, taken off what the user wrote. Context: setup.
 #pragma once
 
 #include <cstddef>

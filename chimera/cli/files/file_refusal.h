@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the commands on files say an error.
+// The form in which the commands on files print an error.
 #pragma once
 
 #include <string>

@@ -49,7 +49,7 @@ class ModeLines {
 
   std::string cpu(const CpuTransition& cpu) const {
     const std::string settled =
-        cpu.settled == kNever || cpu.settled == Nanoseconds{}  // nobody was there before
+        cpu.settled == kNever || cpu.settled == Nanoseconds{}  // no job was released before
             ? ""
             : "; what was released before has ended " + time_text(cpu.settled) + " after the change";
     switch (cpu.guarantee) {

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestName = 40;
 
-/// What the templates call @NAME@ and so on.
+/// The values of @NAME@ and the other marks of the templates.
 struct Filling {
   std::string name, type, package, program, schema;
 };
@@ -46,7 +46,7 @@ void replace(std::string& text, const std::string& from, const std::string& to) 
     text.replace(at, from.size(), to);
 }
 
-/// Without the licence line: what is made belongs to whoever makes it.
+/// The text without the licence line: a new file belongs to the user who makes it.
 std::string without_licence(const std::string& text) {
   std::string kept;
   std::istringstream lines(text);

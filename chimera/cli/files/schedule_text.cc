@@ -15,7 +15,7 @@
 namespace chimera::cli {
 namespace {
 
-constexpr double kWindowLetters = 60;  // about so many in a picture
+constexpr double kWindowLetters = 60;  // approximate letters of a picture
 constexpr std::size_t kMostUnseen = 6;  // names in a line
 
 std::string number(const char* pattern, double value) {
@@ -45,7 +45,7 @@ class ScheduleLines {
   const std::string& name(std::size_t task) const { return configuration_.tasks()[task].name; }
   std::string rtpu(std::size_t index) const { return std::string(configuration_.rtpus()[index].name); }
 
-  /// Who takes a job that runs off the processor.
+  /// Names the rtpus that preempt a running job.
   std::string dispatch(const ScheduleReport& report) const {
     const std::string kind = report.dispatch_name();
     if (kind == "preemptive") return ", preemptive";
@@ -193,7 +193,7 @@ class ScheduleLines {
            window_text(draw::timeline(records, names, {}, unit, cpu.window.length));
   }
 
-  /// Whoever holds no unit for longest has no letter in the picture, and none in the legend.
+  /// A task without a letter in the picture has none in the legend: in no time unit does it hold the CPU for longest.
   static std::string window_text(draw::Timeline drawn) {
     std::vector<std::string> unseen;
     std::erase_if(drawn.legend, [&](const auto& entry) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the commands find what is installed: components, units, templates.
+// Places where the commands find the installed components, units and templates.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct Workplace {
   std::vector<std::string> unit_files;
   std::string documents{};  ///< where docs/ and examples/ are, which messages name
 
-  /// What belongs to the program at `program` (its own path): CHIMERA_PATH first, then the tree that it was built
+  /// The places of the program at `program` (its own path): CHIMERA_PATH first, then the tree that it was built
   /// or installed in (../components, ../lib/chimera/components; ../share/chimera/units.xml, or the source's).
   static Workplace around(const std::string& program);
   /// All installed components. Refuses when there is no unit file. May block.

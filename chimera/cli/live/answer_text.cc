@@ -44,7 +44,7 @@ std::string age_of(const Json& link) {
                                                                        : "-";
 }
 
-/// Who, when, from what: the head of `why`.
+/// The head of `why`: the value, its producer, its age and its inputs.
 std::string why_head(const Json& link) {
   std::string text = text_of(link, "variable") + " = " + text_of(link, "value") + "\n";
   text += "  produced by  " + producer_of(link);

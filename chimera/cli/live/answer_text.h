@@ -23,11 +23,11 @@ std::string ring_text(const Json& answer);
 std::string switch_text(const Json& answer);
 /// `drill`: a line for each hardware task, one about the flag.
 std::string drill_text(const Json& answer);
-/// What a switch would do, or why it would be refused.
+/// `plan`: the effect of a switch, or why it would be refused.
 std::string plan_text(const Json& answer);
 /// `flag`: "flag up" or "flag down".
 std::string flag_text(const Json& answer);
-/// `why` on one screen of `height` lines: who produces the variable, when, from what; then its ancestors, those in
+/// `why` on one screen of `height` lines: producer, age and inputs of the variable; then its ancestors, those in
 /// trouble before those that are well; the last line is the verdict.
 std::string why_text(const Json& answer, std::size_t height);
 /// A refusal: "pid: the words; the remedy (did you mean 'pid'?)" from the members of an error.

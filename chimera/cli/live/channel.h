@@ -11,7 +11,7 @@
 
 namespace chimera::cli {
 
-/// What somebody asked for. Plain value.
+/// The variable, or part of one, that the user asked for. Plain value.
 struct ChannelName {
   std::string variable;
   std::string part;  ///< "", "[2]", ".x", "[1].y[0]"

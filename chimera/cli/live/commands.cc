@@ -442,7 +442,7 @@ Table shell_words() {
 const RunningCommand& row_of(const Call& call) {
   for (const RunningCommand& row : running_commands())
     if (&row.words == call.command) return row;
-  CHIMERA_ASSERT(false);  // `help` and `quit` ask nobody
+  CHIMERA_ASSERT(false);  // `help` and `quit` send no request
   return running_commands().front();
 }
 

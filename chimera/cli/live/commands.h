@@ -17,14 +17,15 @@ namespace chimera::cli {
 inline constexpr const char* kWhichOne =
     "name of the subsystem; needed to act on one that was started in another terminal and folder";
 
-/// Where the result of a command is shown.
+/// The screen that shows the result of a command.
 struct Screen {
   std::size_t width = 0;     ///< in columns; 0: it is no terminal
   std::size_t height = 24;   ///< in lines
-  std::FILE* err = nullptr;  ///< learns what a command waits for; null: nobody
+  std::FILE* err = nullptr;  ///< gets a line about what a command waits for; null: no line is written
 };
 
-/// A row. What it does is one of: `method` with `parameters` and `show`; `once`; `live`. Plain value.
+/// A row of the table of commands. It works by `method` with `parameters` and `show`, or by `once`, or by `live`. Plain
+/// value.
 struct RunningCommand {
   Command words;
   const char* method = nullptr;  ///< what it asks of the control protocol; nullptr: nothing
@@ -34,10 +35,10 @@ struct RunningCommand {
   std::string (*show)(const Json& answer) = nullptr;
   /// In the place of `parameters` and `show`, for a command of more than one request.
   CommandResult (*once)(Session&, const Call&, const Screen&) = nullptr;
-  /// Prints until somebody ends it; returns the exit code.
+  /// Prints until the user ends it; returns the exit code.
   int (*live)(Session&, const Call&, std::FILE* out, std::FILE* err) = nullptr;
   const char* live_option = nullptr;  ///< `live` only with this option; nullptr: always
-  /// What it does when no such subsystem runs, of the name that is its operand; nullptr: it is refused.
+  /// Called if no subsystem runs whose name is the operand; nullptr: the command is refused.
   CommandResult (*without)(const Call&, const std::string& subsystem, const Error& why) = nullptr;
   bool names_its_subsystem = false;   ///< its answer for people begins with the name of the subsystem
 
@@ -46,7 +47,7 @@ struct RunningCommand {
 
 /// In the order of the alphabet. Context of all: setup.
 std::span<const RunningCommand> running_commands();
-/// Of the shell itself.
+/// The words `help` and `quit`, which the shell carries out itself.
 const Command& help_words();
 const Command& quit_words();
 /// The words of all of these.

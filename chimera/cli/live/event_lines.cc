@@ -25,7 +25,7 @@ constexpr std::array<std::string_view, 33> kKinds = {
     "memory",          "rights", "face-died", "output-lost", "switch", "bump", "drill", "safe",
     "takeover"};
 
-/// One incident is told at several ends: who was late, what held it up, how many in all.
+/// Kinds of events that one incident causes: the late task, the cause, the cycles over budget.
 constexpr std::array<std::string_view, 3> kOfAMiss = {"miss", "blame", "overrun"};
 constexpr std::int64_t kPause = milliseconds(100).count;  // that does not end an incident
 

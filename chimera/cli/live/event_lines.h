@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Events for people: a line each; deadlines that were missed one behind the other are one line, so that what somebody
-// did between them is seen.
+// Events for people, a line each. Consecutive missed deadlines are one line, so that the acts of users between them
+// stay visible.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace chimera::cli {
 
-/// What events can be, as docs/formats/control.md lists them.
+/// The kinds of events that docs/formats/control.md lists.
 std::span<const std::string_view> event_kinds() noexcept;
 
 /// The words of --kind, "miss,set"; none for "". Refuses an unknown one with the nearest. Context: setup.
@@ -23,7 +23,7 @@ Result<std::vector<std::string>> read_kinds(std::string_view text);
 /// Takes events in their order. Context: setup.
 class EventLines {
  public:
-  /// Of these kinds only; none: all. `each`: a line for every event.
+  /// Shows events of these kinds only; none: all. `each`: a line for every event.
   explicit EventLines(std::vector<std::string> kinds = {}, bool each = false) : kinds_(std::move(kinds)), each_(each) {}
 
   /// The lines that `event` completes; what may go on is kept back until end().

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading answers: a key that is missing, null or of another kind is the plain default, so that a face of one version
-// shows what it can of an answer of another.
+// Reads answers: a key that is missing, null or of another kind is the plain default. A client of one version so shows
+// the known part of an answer of another version.
 #pragma once
 
 #include <cstdint>

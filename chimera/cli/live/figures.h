@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures as the faces print them: short, with their unit, in columns of known width.
+// Figures as the commands print them: short, with their unit, in columns of known width.
 #pragma once
 
 #include <cstdint>

@@ -32,7 +32,8 @@ Result<std::int64_t> period_ms(const Call& call, std::int64_t otherwise) {
   return ms;
 }
 
-/// Somebody ended a command that goes on: a connection without subscriptions is what the next command of a shell wants.
+/// Ends a continuous command after the user stopped it. The next command of a shell needs a connection without
+/// subscriptions.
 int end_of_notes(Session& session) {
   session.client().drop();
   return kOk;
@@ -82,7 +83,7 @@ bool apply_key(int key, TopView& view, const Json& status) {
   return true;
 }
 
-/// Until somebody ends it; the error that ended it otherwise. A manager that is restarted is waited for.
+/// Shows `top` until the user ends it, or returns the error that ended it. Waits for a manager that restarts.
 std::optional<Error> top_on_screen(Session& session, const Json& first, const Json& subscription) {
   InputWait attention(true);
   FullScreen screen;
@@ -126,9 +127,8 @@ void redraw(const std::vector<std::string>& lines, bool is_first, std::FILE* out
   (void)flush_and_look(out);
 }
 
-/// Prints what a subscription brings until somebody ends it or nothing can be printed; a manager that is restarted is
-/// waited for. `show` prints one notification, and may change the subscription to what a new manager is to be asked
-/// for.
+/// Prints the notifications of a subscription until the user ends it or printing fails. Waits for a manager that
+/// restarts. `show` prints one notification, and may change the subscription that a new manager is asked for.
 template <class Show>
 int follow(Session& session, const Call& call, Json subscription, std::FILE* out, std::FILE* err, const Show& show) {
   const control::RpcResponse subscribed = session.ask("subscribe", subscription);
@@ -142,7 +142,7 @@ int follow(Session& session, const Call& call, Json subscription, std::FILE* out
     if (woken.by != By::kNote) continue;
     show(woken.note, subscription);
     if (call.json) std::fprintf(out, "%s\n", for_terminal(woken.note.parameters->dump()).c_str());
-    if (flush_and_look(out) != 0) return kRefused;  // nobody sees it any more
+    if (flush_and_look(out) != 0) return kRefused;  // the output is lost
   }
 }
 
@@ -211,7 +211,7 @@ int get_every(Session& session, const Call& call, std::FILE* out, std::FILE* err
   for (;;) {
     const CommandResult said = one_shot(session, call, {});
     if (print(said, out, err) != kOk) return said.code;
-    if (flush_and_look(out) != 0) return kRefused;  // nobody sees it any more
+    if (flush_and_look(out) != 0) return kRefused;  // the output is lost
     const Wakeup woken = attention.wait(nullptr, milliseconds(period.value()));
     if (woken.by == By::kStop) return kOk;
   }

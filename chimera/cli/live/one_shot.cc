@@ -27,7 +27,7 @@ CommandResult wrong(const std::string& message, bool json) {
   return refused(Error{ErrorCode::kBadInput, std::string_view(message), {}}, json, kUsage);
 }
 
-/// Those of `tasks` that are not ON so far.
+/// The tasks among `tasks` that are not ON yet.
 std::vector<std::string> still_off(Session& session, std::vector<std::string> tasks) {
   const control::RpcResponse status = session.ask("status");
   if (!status.is_good()) return tasks;
@@ -81,7 +81,7 @@ Result<Json> with_wait(const Call& call, Json parameters) {
   return parameters;
 }
 
-/// Asks on the terminal; nobody there has agreed to nothing.
+/// Asks on the terminal. False without a terminal, and for every answer but "yes".
 bool has_agreed(const std::string& question) {
   if (!is_terminal(kStandardInput)) return false;
   std::fprintf(stderr, "%s [yes/no] ", plain_line(question).c_str());

@@ -125,8 +125,8 @@ struct Editing {
   bool is_in_brackets;
 };
 
-/// What makes `words`, which say `now`, of `given`: in its place, or line by line where it has lines of its own. False
-/// when these are not as many as `now` has.
+/// Adds edits that replace the value `given` by `words`, whose value is `now`. A value in a block of lines is replaced
+/// item by item. False if the block and `now` differ in kind or number of items.
 bool add_edits(const Node& given, const Node& now, const std::string& words, const Editing& in,
                std::vector<Edit>& edits) {
   if (same_value(given, now, in.units)) return true;

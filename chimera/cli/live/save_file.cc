@@ -61,7 +61,7 @@ bool is_as_known(const DescriptionFile& file, std::int64_t started_wall_ns, cons
   return text.str() == own_record(file);
 }
 
-/// Where the keeper found the file: its name may be relative to the folder in which it was started.
+/// Path at which the keeper found the file. The name may be relative to the folder in which the keeper was started.
 std::string file_of(const Json& hello) {
   std::string file = text_of(hello, "file");
   if (file.empty() || file[0] == '/') return file;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `chimera scope` records: rows of the tap round a trigger, any number of channels, with every gap counted.
+// The record of `chimera scope`: rows of the tap around a trigger, any number of channels, with every gap counted.
 #pragma once
 
 #include <cstdint>
@@ -77,7 +77,7 @@ class Scope {
     std::size_t channel = 0;
     std::string part;
   };
-  /// What the tap tells of one task.
+  /// The rows that the tap brings of one task.
   struct Stream {
     std::string rtpu, task;
     std::vector<Column> columns;

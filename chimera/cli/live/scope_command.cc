@@ -37,7 +37,7 @@ Result<Nanoseconds> duration(const Call& call, const char* option, Nanoseconds o
   return *value;
 }
 
-/// What `describe` knows of a variable.
+/// Facts of a variable from the answer of `describe`.
 struct Known {
   std::string unit;
   bool is_scalar = true;
@@ -115,7 +115,7 @@ Result<Asked> read(const Call& call, const Json& described, const Surroundings& 
   return asked;
 }
 
-/// Feeds `scope` until it is complete, somebody ends it, or the time is over. An error only when the other end is gone.
+/// Feeds `scope` until it is complete, the user ends it, or the time is over. An error only when the other end is gone.
 std::optional<Error> record(Session& session, Scope& scope, const Asked& asked) {
   LinuxClock clock;
   InputWait attention(false);

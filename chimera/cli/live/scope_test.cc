@@ -125,7 +125,7 @@ TEST(Scope, WhatWasPublishedBeforeTheWindowHoldsIntoIt) {
   EXPECT_EQ(scope.rows(), 2u);
 }
 
-/// That many rows of one channel, from the first one on.
+/// A request for `rows` rows of one channel, from the first one on.
 ScopeRequest of_error(std::size_t rows) {
   ScopeRequest asked = request("", 0, rows);
   asked.channels.pop_back();

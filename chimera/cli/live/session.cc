@@ -120,7 +120,7 @@ control::RpcResponse Session::ask(std::string_view method, const Json& parameter
 int carry_out(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
   if (call.is_act())
     if (const auto may = session.may_act(); !may) return print(refused(may.error(), call.json), out, err);
-  (void)session.subsystem();  // known before the act: after an `end` nobody can be asked
+  (void)session.subsystem();  // asked before the act: after an `end` the manager is gone
   const RunningCommand& row = row_of(call);
   if (row.is_live(call)) return row.live(session, call, out, err);
   const ScreenSize size = screen_size(kStandardOutput);
@@ -137,10 +137,10 @@ int carry_out(const Surroundings& surroundings, const Call& call, std::FILE* out
   auto session = Session::open(known);
   if (!session && row.without != nullptr) return print(row.without(call, known.subsystem, session.error()), out, err);
   if (!session) return print(refused(session.error(), call.json), out, err);
-  // Whoever does not answer now will not answer the command either: one limit, not one for each question of it.
+  // A manager that does not answer now does not answer the command either: one limit, not one for each question.
   if (const control::RpcResponse hello = session->hello(); !hello.is_good())
     return print(refused(hello, call.json), out, err);
-  // Who did not say which one learns which one it is; status and top head with it, an act says it in every line.
+  // A user who named no subsystem learns its name; status and top begin with it, an act says it in every line.
   const bool says_itself = call.json || call.is_act() || row.names_its_subsystem;
   if (!session->is_named() && !says_itself) std::fprintf(err, "[%s]\n", session->subsystem().c_str());
   return carry_out(*session, call, out, err);

@@ -17,7 +17,7 @@
 
 namespace chimera::cli {
 
-/// What a session needs to know of its surroundings.
+/// The surroundings of a session.
 struct Surroundings {
   std::string subsystem;                ///< as asked for; "" when the choice is clear
   std::vector<std::string> unit_files;  ///< in the order in which they are tried
@@ -40,7 +40,7 @@ class Session {
 
   control::Client& client() noexcept { return client_; }
   const Surroundings& surroundings() const noexcept { return surroundings_; }
-  /// Did somebody name the subsystem, by option or by CHIMERA_SUBSYSTEM?
+  /// True if the user named the subsystem, by option or by CHIMERA_SUBSYSTEM.
   bool is_named() const noexcept { return is_named_; }
   /// Asks who it is: what every command begins with. The answer of `hello`.
   control::RpcResponse hello();

@@ -103,7 +103,7 @@ struct FakeSubject final : control::ControlBackend {
   bool is_legal = true;
 };
 
-/// A door on a thread of its own, a folder for everything, and what commands print.
+/// A ControlServer on a thread of its own, a folder for all files, and the output of commands.
 struct ShellTest : ::testing::Test {
   void SetUp() override {
     char made[] = "/tmp/chimera-shell-XXXXXX";
@@ -124,7 +124,7 @@ struct ShellTest : ::testing::Test {
     keepers = ::dup(listening);
     open(listening);
   }
-  /// As a keeper does: another door behind the same socket.
+  /// Starts another ControlServer on the same socket, as a keeper does.
   void restart() {
     stop();
     is_over = false;
@@ -177,7 +177,7 @@ struct ShellTest : ::testing::Test {
   }
 
   std::string folder;
-  int keepers = -1;  ///< the listening socket, which outlives a door
+  int keepers = -1;  ///< the listening socket, which outlives a ControlServer
   FakeSubject subject;
   std::unique_ptr<control::ControlServer> door;
   std::thread server;
@@ -342,7 +342,7 @@ TEST_F(ShellTest, SaveWritesTheFileOnceAndOnlyWhenItIsAsItWas) {
 /// A command in a process of its own, on a terminal of 80 by 24.
 class OnTerminal {
  public:
-  /// Starts before the door's thread does: what is forked has one thread.
+  /// Starts before the thread of ControlServer does: the forked process has one thread.
   template <class Run>
   explicit OnTerminal(const Run& run) {
     winsize size{24, 80, 0, 0};

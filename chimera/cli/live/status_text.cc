@@ -47,7 +47,7 @@ Columns rtpu_table(const Json& status) {
   return table;
 }
 
-/// Those of `keys` that count something in some task.
+/// The keys among `keys` whose count is not zero in at least one task.
 std::vector<std::string> that_count(const Json& answer, std::initializer_list<const char*> keys) {
   std::vector<std::string> found;
   for (const char* key : keys)
@@ -193,7 +193,7 @@ std::string headline(const Json& status) {
          (text_of(status["face"], "lost_output").empty() ? "" : ", OUTPUT LOST");
 }
 
-/// Of the process in whose terminal the run was typed: lines only when something happened to it.
+/// Lines about the run client, the process that prints the run; "" when nothing happened to it.
 static std::string face_text(const Json& face) {
   std::string text;
   if (const std::string lost = text_of(face, "lost_output"); !lost.empty())

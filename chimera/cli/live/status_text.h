@@ -12,7 +12,7 @@ namespace chimera::cli {
 std::string headline(const Json& status);
 /// "flag down", or "flag UP by servo, operator".
 std::string flag_words(const Json& flag);
-/// How much of the capacity of its server (an object as in docs/formats/run.md) a task with this load uses.
+/// Share of the capacity of its server (an object as in docs/formats/run.md) that a task with this load uses.
 double share_of_server(const Json& server, double load);
 /// "servo serving, restarted 2 times, running pid.cycle, FLAG; last end: ...".
 std::string rtpu_remarks(const Json& rtpu);

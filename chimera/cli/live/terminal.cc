@@ -25,7 +25,7 @@ InputWait::InputWait(bool keys) : keys_(keys) {
 }
 
 InputWait::~InputWait() {
-  // What has come but was not read would act as soon as it may: it has been obeyed by ending.
+  // A pending signal would act as soon as it is unblocked. The command has obeyed it by ending.
   while (read_signal()) {}
 }
 

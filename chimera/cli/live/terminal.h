@@ -28,7 +28,7 @@ class FullScreen {
   SingleKeys keys_;
 };
 
-/// What a wait ended with.
+/// The event that ended a wait.
 struct Wakeup {
   enum class By : char { kNote, kKey, kResize, kStop, kTime, kLost };
   By by = By::kTime;

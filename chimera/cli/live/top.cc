@@ -60,7 +60,7 @@ std::string remarks_on(const Json& task) {
   return text;
 }
 
-/// What happened between two looks at the same incarnation of a task.
+/// Adds the changes between two polls of the same incarnation of a task.
 void add_recent(Row& row, const Json& task, const Json& before, double seconds) {
   const std::int64_t cycles = whole_of(task, "cycles"), earlier = whole_of(before, "cycles");
   if (!before.is_object() || seconds <= 0 || cycles < earlier ||
@@ -123,7 +123,7 @@ std::size_t name_width(std::size_t width) {
   return 12 + (width > kNarrow ? std::min<std::size_t>((width - kNarrow) / 3, 20) : 0);
 }
 
-/// What a narrow screen leaves out first: the columns that others follow from, never the missed deadlines.
+/// True for a column that a screen of this width leaves out. The column of missed deadlines is never left out.
 bool is_left_out(std::size_t column, std::size_t width) {
   constexpr std::size_t kBudget = 5, kJitter = 7, kRate = 2, kMean = 3;
   return (column == kBudget && width < kNarrow) || (column == kJitter && width < kNarrow - 8) ||

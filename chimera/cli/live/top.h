@@ -15,7 +15,7 @@ enum class TopOrder : char {
   kFile = 'o', kName = 'n', kExecution = 'e', kBudget = 'b', kJitter = 'j', kMissed = 'm', kAge = 'a'
 };
 
-/// How somebody looks at it.
+/// The view that the user has chosen.
 struct TopView {
   std::size_t width = 80, height = 24;
   TopOrder order = TopOrder::kFile;
@@ -40,10 +40,10 @@ std::optional<TopOrder> order_of_key(int key);
 /// setup.
 std::vector<TopLine> top_lines(const Json& status, const Json& previous, const TopView& view);
 
-/// What the columns and keys mean: exactly `height` lines. Context: setup.
+/// The meaning of the columns and keys: exactly `height` lines. Context: setup.
 std::vector<TopLine> help_lines(const TopView& view);
 
-/// How far one can scroll: the largest `skipped` that still shows a task on every line.
+/// The end of scrolling: the largest `skipped` that still shows a task on every line.
 std::size_t most_skipped(const Json& status, const TopView& view);
 
 }  // namespace chimera::cli

@@ -27,7 +27,7 @@ class Trigger {
   /// The level in the unit of the variable; refuses a unit that measures something else.
   Result<double> settle(std::string_view unit, const UnitSystem& units);
   double level() const noexcept { return level_; }
-  /// True at the edge. A value that is not a number holds no comparison. Requires: settled.
+  /// True when the comparison becomes true. A value that is not a number holds no comparison. Requires: settled.
   bool fires(double value) noexcept;
 
  private:

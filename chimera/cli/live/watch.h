@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `chimera watch` shows: one line a variable with its value and its recent course.
+// The lines of `chimera watch`: one for each variable, with its value and its recent course.
 #pragma once
 
 #include <cstddef>

@@ -22,7 +22,7 @@ std::vector<std::string> names_in(Table table) {
   return names;
 }
 
-/// What the word behind `words` may be.
+/// Candidates for the word behind `words`.
 std::vector<std::string> candidates(Table table, const std::vector<std::string>& words, const Names& names) {
   if (words.empty()) return names_in(table);
   const Command* command = command_named(table, words[0]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A line as somebody types it, cut into words; and what could stand where the cursor is.
+// A typed line, cut into words; and the words that could stand at the cursor.
 #pragma once
 
 #include <string>
@@ -22,8 +22,8 @@ struct Names {
 };
 Names names_of(const Json& described);
 
-/// What the last word of `before` (the line up to the cursor) could become, whole words in order: commands at the
-/// beginning, then what the command takes.
+/// Completions of the last word of `before` (the line up to the cursor), whole words in order: commands at the
+/// beginning, then words that the command takes.
 std::vector<std::string> completions(Table table, std::string_view before, const Names& names);
 /// The longest beginning that all of them share.
 std::string shared_beginning(const std::vector<std::string>& words);

@@ -165,8 +165,8 @@ Result<Probe> Application::probe(const std::string& variable) const {
 
 namespace {
 
-// What a task writes that is armed for a switch, or has left by one, is not in force. Relaxed, pairs with nothing: it
-// chooses between values that both were written.
+// True if the values of the producer count: a task that is armed for a switch, or has left by one, is not ON. Relaxed,
+// pairs with nothing: it chooses between values that both were written.
 bool is_in_force(const Task* producer) {
   if (producer == nullptr) return true;
   return std::atomic_ref(const_cast<State&>(producer->state)).load(std::memory_order_relaxed) == State::kOn;
@@ -175,7 +175,7 @@ bool is_in_force(const Task* producer) {
 }  // namespace
 
 bool Probe::read(std::vector<std::byte>& value) const {
-  std::vector<bool> in_force;  // looked at once: it may change meanwhile
+  std::vector<bool> in_force;  // read once: a state may change during this call
   for (const Task* producer : producers) in_force.push_back(is_in_force(producer));
   const bool has_one = std::find(in_force.begin(), in_force.end(), true) != in_force.end();
   std::int64_t latest = INT64_MIN;

@@ -17,11 +17,11 @@
 
 namespace chimera::cli {
 
-/// One state variable to look at, from any thread.
+/// One state variable that any thread may read.
 class Probe {
  public:
-  /// The latest publication of a producer that is ON, or of the operator; of nobody in force, the latest of all. False
-  /// when nobody has written it yet. Context: any thread; bounded.
+  /// The latest publication of the operator and of the producers that are ON; if there are none, the latest of all.
+  /// False when the variable was never written. Context: any thread; bounded.
   bool read(std::vector<std::byte>& value) const;
   /// The latest publication as text and numbers.
   Seen sample() const;
@@ -48,7 +48,7 @@ class Application {
 
   const Configuration& configuration() const noexcept { return configuration_; }
   const ApplicationSpec& spec() const noexcept { return configuration_.spec(); }
-  /// What the contexts see of each other; null: there is one context.
+  /// The parts of the contexts that the others see; null: there is one context.
   VirtualPeers* peers() noexcept { return peers_.get(); }
   /// Requires: one context.
   TaskSet& tasks() noexcept { return *contexts_[0]; }

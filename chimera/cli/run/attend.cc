@@ -35,8 +35,8 @@ constexpr Nanoseconds kStartLook = milliseconds(5);
 constexpr Nanoseconds kStartPatience = seconds(20), kStartAnswer = milliseconds(500);  // of a manager that starts
 constexpr Nanoseconds kSwitchLimit = seconds(15);  // what is not committed within 10 s is aborted
 constexpr std::size_t kEventsAtOnce = 1000;
-constexpr Nanoseconds kLastOutput = seconds(1);  // half of what the keeper waits for a face to finish
-constexpr Nanoseconds kEndLimit = seconds(600);  // the keeper ends whoever takes too long: that is not judged here
+constexpr Nanoseconds kLastOutput = seconds(1);  // half of the time that the keeper waits for the run client to finish
+constexpr Nanoseconds kEndLimit = seconds(600);  // the keeper ends a process that takes too long: not judged here
 
 std::string limit_text(Nanoseconds time) {
   char text[32];
@@ -121,12 +121,12 @@ class RemoteTarget final : public RunTarget {
   std::string grants_, refused_, switches_;
   FacePage own_page_;  // of one that has no predecessors
   FacePage& page_;
-  const bool is_resumed_;         // a face that died had begun
+  const bool is_resumed_;         // an earlier run client, which died, had begun
   std::optional<Error> failure_;  // of the start
   Json failed_;                   // its event
   Nanoseconds started_ = kNever, next_look_;
   std::uint64_t next_event_ = 0;
-  bool has_answered_ = false;  // the manager, once: else nobody waits for its last words
+  bool has_answered_ = false;  // the manager has answered once: only then its status at the end is awaited
   bool task_stopped_ = false;
   std::string stopped_by_;
   std::vector<NotOff> not_off_;
@@ -141,7 +141,7 @@ Result<void> RemoteTarget::start() {
     is_last = stop_is_requested();  // also then: it may have started long ago
     auto status = await_status();
     if (!status) return status.error();
-    // What went wrong before the start comes first, also when the start was told meanwhile.
+    // A failure before the start wins, even if the start event arrived in the same poll.
     started_ = instant((*status)["started_ns"]);
     poll_events();
     if (failure_ && started_ == kNever) {  // it may have started, and failed only then, since the status was asked
@@ -238,7 +238,7 @@ void RemoteTarget::poll_events() {
   page_.events_seen = std::max<std::uint64_t>(page_.events_seen, next_event_);
 }
 
-/// What is printed may be lost: that is told, and nothing else changes.
+/// Reports once that standard output is lost; the run goes on.
 void RemoteTarget::check_output() {
   const int why = request_.outlet == nullptr ? 0 : request_.outlet->why_lost();
   if (why == 0 || page_.lost_output != 0) return;
@@ -281,7 +281,7 @@ std::string RemoteTarget::since_start(Nanoseconds at) const {
   return text;
 }
 
-/// One that was begun by a face that died is not done twice.
+/// Carries out the next act. An act that an earlier run client began before it died is not repeated.
 void RemoteTarget::act_next() {
   const TimedAct& timed = acts_[page_.acts_begun++];
   act(timed);
@@ -394,7 +394,7 @@ bool any_lives(const Json& status) {
   return std::any_of(rtpus.begin(), rtpus.end(), [](const Json& rtpu) { return truth_at(rtpu, "alive"); });
 }
 
-/// Has the tasks turned off and killed, and hears of everything that happens meanwhile: the status after that.
+/// Asks the keeper to turn the tasks off and kill them, and reads all events until then. Returns the status after it.
 std::optional<Json> RemoteTarget::await_end() {
   if (request_.keeper > 0) (void)signal_parent(request_.keeper, SIGUSR1);
   if (!has_answered_) return std::nullopt;
@@ -438,7 +438,7 @@ void RemoteTarget::judge_end(RunReport& report, const Json& before) {
     report.verdict.failures.emplace_back("the manager did not answer at the end: how the tasks ended is not known");
 }
 
-/// What was made is turned off and killed all the same, and that is judged.
+/// Prints the refusal. The tasks that were made are turned off and killed nevertheless, and that is judged.
 int RemoteTarget::refuse(const Error& error) {
   const CommandResult output = file_refusal(error, run_.json);
   std::fputs(output.out.c_str(), out_);
@@ -449,7 +449,8 @@ int RemoteTarget::refuse(const Error& error) {
   return output.code;
 }
 
-/// Of the run that began at `origin_ns`, whoever asked: switches and takeovers. The manager gives the last ones out.
+/// Adds the switches and takeovers of the run that began at `origin_ns`, of all origins. The manager returns the last
+/// 200.
 void RemoteTarget::add_receipts(const Json& origin_ns, RunReport& report) {
   const auto answer = line_.ask("receipts", {{"last", 200}});
   if (!answer) return;
@@ -482,7 +483,7 @@ bool RemoteTarget::is_output_complete(const RunReport& report) {
   if (request_.outlet == nullptr) return true;
   request_.outlet->finish(kLastOutput);
   check_output();
-  if (page_.lost_output != 0) std::fputs(report.verdict.text().c_str(), err_);  // what somebody must know
+  if (page_.lost_output != 0) std::fputs(report.verdict.text().c_str(), err_);  // the verdict must reach the user
   return page_.lost_output == 0;
 }
 

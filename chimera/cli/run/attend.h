@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The face of one `chimera run` in real time: watches, acts at stated times, judges, prints. It is a process of its
-// own that talks the control protocol and nothing else, so a run goes on without it.
+// The run client of one `chimera run` in real time: watches, acts at stated times, judges, prints. It is a process of
+// its own that talks the control protocol and nothing else, so a run goes on without it.
 #pragma once
 
 #include <cstdio>
@@ -17,9 +17,9 @@ struct AttendRequest {
   std::string socket;          ///< path of the subsystem's
   RunRequest run;              ///< of these: duration, every, watch, at, expect, json
   std::vector<double> bounds;  ///< of run.expect, each in the unit of its variable
-  int keeper = 0;              ///< process that ends the tasks when it is told so by SIGUSR1; 0: nobody
-  FacePage* page = nullptr;    ///< what faces before this one have done; null: there was none, and none will be
-  Outlet* outlet = nullptr;    ///< of `out`: asked for losses, of which SIGUSR2 tells the keeper; may be null
+  int keeper = 0;              ///< process that ends the tasks when it gets SIGUSR1; 0: none
+  FacePage* page = nullptr;    ///< progress of earlier run clients; null: there was none, and none will follow
+  Outlet* outlet = nullptr;    ///< of `out`: asked for losses, which SIGUSR2 reports to the keeper; may be null
 };
 
 /// Waits for the start, attends until the end of the duration or request_stop(), reports; answers the exit code of the

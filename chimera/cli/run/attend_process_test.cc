@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The face of a run before a door that opens to a made-up subsystem.
+// Tests the run client with a ControlServer of a made-up subsystem.
 #include "chimera/cli/run/attend.h"
 
 #include <gtest/gtest.h>
@@ -125,7 +125,7 @@ class Attend : public ::testing::Test {
   }
   void open_door() { door_ = *control::ControlServer::open(::dup(listening_), backend_, ::geteuid(), {}); }
 
-  /// The exit code; out_ and err_ are what it printed. `meanwhile` is called again and again on the door's thread.
+  /// The exit code; out_ and err_ are what it printed. The thread of ControlServer calls `meanwhile` repeatedly.
   int attend(RecordSink* sink = nullptr, std::function<void()> meanwhile = [] {}) {
     std::atomic<bool> is_over{false};
     std::thread serving([&] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run asks of its own subsystem, as results; a lost connection is control::Client's affair.
+// The questions of a run to its own subsystem, answered as results. control::Client deals with a lost connection.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ class ControlLine {
   /// the code is kSystem and the place the socket.
   Result<Json> ask(std::string_view method, const Json& parameters, Nanoseconds limit = control::kCallLimit);
   /// The parameters of the next notification; nothing when none comes until `instant` (CLOCK_MONOTONIC), or when the
-  /// connection is lost: is_connected() tells.
+  /// connection is lost: then is_connected() is false.
   std::optional<Json> notification(Nanoseconds instant);
   bool is_connected() const noexcept { return client_.is_connected(); }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run must have reached at its end, so that its exit code says whether it was good: "error <= 2 mrad".
+// A condition at the end of a run, "error <= 2 mrad", on which its exit code depends.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace chimera::cli {
 
-/// The present value of a state variable, wherever it was looked at.
+/// The present value of a state variable, read in this or in another process.
 struct Seen {
   bool is_written = false;
   std::string text;             ///< "27.7778 m/s"
@@ -33,12 +33,12 @@ class Expectation {
   /// One that parse() has accepted elsewhere, whose bound was `bound`. Refuses what is no comparison. Context: setup.
   static Result<Expectation> with_bound(const std::string& text, double bound);
 
-  /// True when the value satisfies it; `said` tells the value. One that was never written, or is NaN, satisfies
-  /// nothing.
+  /// True when the value satisfies the expectation; `said` contains the value. A value that was never written, or is
+  /// NaN, satisfies no expectation.
   bool holds(const Seen& seen, std::string& said) const;
   const std::string& text() const noexcept { return text_; }
   const std::string& variable() const noexcept { return variable_; }
-  /// In the unit of the variable.
+  /// The bound in the unit of the variable.
   double bound() const noexcept { return bound_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names the tasks and units that a starting subsystem waits for.
+// Names the tasks and rtpus that a starting subsystem waits for.
 #include "chimera/cli/run/not_ready.h"
 
 #include <vector>
@@ -15,7 +15,7 @@ std::string joined(const std::vector<std::string>& texts) {
   return all;
 }
 
-/// The names of the tasks of a real-time unit.
+/// The names of the tasks of an rtpu.
 std::string tasks_of(const Json& status, const std::string& rtpu) {
   std::string names;
   for (const Json& task : status["tasks"])

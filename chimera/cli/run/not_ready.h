@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who holds up the start of a subsystem, as far as it is known.
+// Names the tasks and rtpus that hold up the start of a subsystem, as far as they are known.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace chimera::cli {
 
-/// "log (csv_log): its `init` is under way", from the answer of `status`; a sentence also when nobody stands out.
+/// "log (csv_log): its `init` is under way", from the answer of `status`; a sentence also when no task stands out.
 /// Context: setup.
 std::string not_ready(const Json& status);
 

@@ -48,7 +48,7 @@ static int write_bytes(int descriptor, const std::string& text) {
     const ssize_t n = ::write(descriptor, text.data() + at, text.size() - at);
     if (n > 0) {
       at += static_cast<std::size_t>(n);
-    } else if (n < 0 && errno == EAGAIN) {  // somebody else made it so
+    } else if (n < 0 && errno == EAGAIN) {  // another holder made the descriptor non-blocking
       pollfd room{descriptor, POLLOUT, 0};
       ::poll(&room, 1, -1);
     } else if (n == 0 || errno != EINTR) {
@@ -78,7 +78,7 @@ Outlet::Outlet(int descriptor) : queue_(std::make_shared<Queue>(descriptor)) {
   const cookie_io_functions_t calls = {.read = nullptr,
                                        .write = [](void* queue, const char* text, std::size_t n) -> ssize_t {
                                          static_cast<Queue*>(queue)->put(text, n);
-                                         return static_cast<ssize_t>(n);  // a loss is told by why_lost()
+                                         return static_cast<ssize_t>(n);  // why_lost() reports a loss
                                        },
                                        .seek = nullptr,
                                        .close = nullptr};

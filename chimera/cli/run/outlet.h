@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A stream that a thread of its own writes to a descriptor: whoever prints never waits for whoever reads.
+// A stream that a thread of its own writes to a descriptor: a thread that prints never waits for the reader.
 #pragma once
 
 #include <cstdio>

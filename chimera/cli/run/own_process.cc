@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 constexpr long kLongestWaitNs = 100'000'000;
 constexpr std::chrono::seconds kMakingLimit{kMakingLimitSeconds}, kEndingLimit{kEndingLimitSeconds};
 
-/// Somebody steps through this process: the code that he wants to see stays in it.
+/// True if a debugger is attached: the code to step through then stays in this process.
 bool is_debugged() {
   const auto status = read_ordinary("/proc/self/status", 4096);
   const std::size_t at = status ? status->find("TracerPid:\t") : std::string::npos;
@@ -81,7 +81,7 @@ class Patience {
   Clock::time_point since_ = Clock::now();
 };
 
-/// What has gone on for too long; "" when nothing has.
+/// Time limits of the work in a child. exceeded() names the one that is over; "": none is.
 class Limits {
  public:
   std::string exceeded(const UnderWay& place, bool is_asked) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Work that runs components, in a process of its own: whatever they do to it, somebody is left who says what it was.
+// Runs components in a process of its own. If a component ends that process, its parent reports how it ended.
 #pragma once
 
 #include <cstdio>
@@ -13,7 +13,7 @@ inline constexpr int kMakingLimitSeconds = 10;
 /// The longest that `off` and `kill` may take at the end, as in real time, and any method of a run told to end.
 inline constexpr int kEndingLimitSeconds = 2;
 
-/// How a run ended that did not come to its end.
+/// The cause why a run did not come to its end.
 struct BrokenRun {
   std::string task;  ///< whose method was under way; "": none was
   /// "the run ended by signal 11 (SIGSEGV) while it loaded /lib/gain.so, the component of task 'amp'",
@@ -23,7 +23,8 @@ struct BrokenRun {
 
 /// Runs `work` in a child and returns its exit code; both write to the same files. When the child did not return from
 /// its work (a signal, exit() in a component, an object that is not loaded or a method that does not return in time: it
-/// is killed), `died` is told how and what was under way, and gives the code. SIGINT and SIGTERM reach the child once.
+/// is killed), `died` gets how it ended and the method under way, and returns the code. SIGINT and SIGTERM reach the
+/// child once.
 /// Under a debugger, and when there is no memory or process, `work` runs in this process.
 /// Requires: one thread, handlers of both signals set. Context: setup; may block.
 int in_own_process(const std::function<int()>& work, const std::function<int(const BrokenRun&)>& died);

@@ -16,7 +16,7 @@
 namespace chimera::cli {
 namespace {
 
-/// What was told of the end of a child that does `work`, and 7; its exit code when nothing was.
+/// The reported end of a child that does `work`, and 7; "returned" and its exit code if none was reported.
 std::string end_of(const std::function<int()>& work) {
   std::string told = "returned";
   const int code = in_own_process(work, [&](const BrokenRun& broken) {

@@ -21,7 +21,7 @@ std::string max_text(const Spread& spread) { return spread.count == 0 ? "-" : sp
 std::string mean_text(const Spread& spread) { return spread.count == 0 ? "-" : spread_text(spread.mean()); }
 std::string jitter_text(const Spread& spread) { return spread.count == 0 ? "-" : spread_text(spread.max - spread.min); }
 
-/// What is told only where it happened.
+/// A count that is printed only where it is not zero.
 struct Seldom {
   const char* name;
   std::uint64_t Profile::* count;

@@ -11,8 +11,7 @@
 
 namespace chimera::cli {
 
-/// What is to be told about every task of an application in one process, in order, at `now`; `states`: as they were
-/// before everything was shut down.
+/// The profiles of all tasks of an application in one process, in order, at `now`; `states`: those before the shutdown.
 std::vector<TaskProfile> profiles_of(std::span<const Task* const> tasks, std::span<const State> states,
                                      const Configuration& configuration, Nanoseconds now);
 

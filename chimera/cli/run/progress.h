@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a long run in virtual time is: a line on the terminal, for whoever waits.
+// Shows on the terminal how far a long run in virtual time is.
 #pragma once
 
 #include <string>

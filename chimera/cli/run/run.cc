@@ -34,7 +34,7 @@ constexpr Nanoseconds kDrainEvery = milliseconds(10);
 constexpr Nanoseconds kWatchEvery = milliseconds(100);  // of the run, to see whether it ended or a line is due
 constexpr Nanoseconds kTellEvery = seconds(3);          // of wall time
 
-/// Lines of progress, each over the one before; silent unless somebody can see them.
+/// Lines of progress, each over the one before; silent unless `err` is a terminal.
 class ProgressLine {
  public:
   ProgressLine(const RunRequest& request, std::FILE* err)
@@ -130,12 +130,12 @@ Result<void> LocalTarget::start() {
   if (!request_.svg.empty())
     for (const std::string& name : request_.watch) drawn_.push_back(*application_.probe(name));
   if (!request_.json) std::fprintf(out_, "%s\n", loop_->description().c_str());
-  if (request_.virtual_time) print_notes();  // else the loop runs by now: they are told at the end
+  if (request_.virtual_time) print_notes();  // in real time the loop already runs: notes come at the end
   if (sink_ != nullptr) sink_->begin(application_.spec(), loop_->origin(), loop_->origin());
   return {};
 }
 
-// Of the rtpus that the script had die, or that a standby had killed because their tasks were silent.
+// The fates of rtpus that the script let die, or that a standby had killed because their tasks were silent.
 std::vector<UnitFate> LocalTarget::fates() {
   std::vector<UnitFate> fates;
   const VirtualPeers* const peers = application_.peers();
@@ -147,7 +147,7 @@ std::vector<UnitFate> LocalTarget::fates() {
   return fates;
 }
 
-// What components have to say beside their values, once each.
+// Prints the notes of components, each once.
 void LocalTarget::print_notes() {
   const auto tasks = application_.all_tasks();
   notes_told_.resize(tasks.size());
@@ -220,7 +220,7 @@ void LocalTarget::finish(RunReport& report) {
     report.receipts += (report.receipts.empty() || json.empty() ? "" : ", ") + json;
   }
   report.receipts_left_out = loop_->receipts().left_out();
-  // What `off` and `kill` cost, and their faults, too.
+  // The profiles contain the cost and the faults of `off` and `kill`, too.
   report.profiles = profiles_of(tasks, states, application_.configuration(), now);
   const std::vector<UnitFate> units = fates();
   report.verdict = judge_run({report.profiles, faults_before, units, report.is_flag_up, request_.strict});

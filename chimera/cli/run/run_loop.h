@@ -22,15 +22,15 @@ class RunLoop {
   virtual Nanoseconds now() const = 0;
   virtual Nanoseconds origin() const = 0;
   virtual void shut_down() = 0;
-  /// What was refused while it ran; after the end only.
+  /// Signals refused during the run; after the end only.
   virtual std::span<const RefusedSignal> refused() = 0;
-  /// Of the switches that were asked for; after the end only.
+  /// Receipts of the requested switches; after the end only.
   virtual const SwitchReceipts& receipts() = 0;
   /// One line about how it is run, for people.
   virtual std::string description() const = 0;
 };
 
-/// Whose policy a run of one context follows: in virtual time that of the first task's rtpu, else the first.
+/// The rtpu whose policy a run of one context follows: in virtual time that of the first task, else the first rtpu.
 const RtpuSpec& followed_rtpu(const Configuration& configuration, bool virtual_time);
 
 /// "refused at 0.200 s: off pid: ..." and a line end, of each signal of the script and of tasks that was refused, and

@@ -39,7 +39,7 @@ Result<void> judge_task_names(const RunRequest& request, const Configuration& co
   return {};
 }
 
-/// Real time only: nobody who must keep a deadline may be expected to miss it.
+/// Real time only: refuses tasks that must keep their deadlines but may miss them, by the schedulability analysis.
 Report promises(const RunRequest& request, const Configuration& configuration) {
   if (request.virtual_time) return Report(configuration.file());
   ScheduleOptions options;
@@ -48,7 +48,8 @@ Report promises(const RunRequest& request, const Configuration& configuration) {
   return unschedulable(configuration, schedule_report(configuration, options));
 }
 
-/// What the kernel leaves to real-time threads, less the margin that kMaxUtilisation has below the usual 0.95.
+/// Refuses a load above the share that the kernel leaves to real-time threads. The share is reduced by the margin of
+/// kMaxUtilisation below the usual 0.95.
 Result<void> judge_throttling(const RunRequest& request, const Configuration& configuration) {
   if (request.virtual_time || request.priority == 0 || !may_be_realtime(request.priority)) return {};
   return admit_below(configuration, realtime_share());

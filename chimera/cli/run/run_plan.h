@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `chimera run` finds out before anything starts: is the description legal, can it be run, and does every word
-// of the command line mean something in it.
+// Checks of `chimera run` before the start: the description is legal and can be run, and every word of the command line
+// means something in it.
 #pragma once
 
 #include <cstdio>
@@ -46,7 +46,7 @@ Result<void> admit_below(const Configuration& configuration, double share);
 
 /// Prints a refusal as the request wants it, and answers `code`.
 int refuse_run(const RunRequest& request, const Error& error, std::FILE* out, std::FILE* err, int code = 1);
-/// Tells of a run that did not come to its end, by the task whose method was under way, else by its file.
+/// Reports a run that did not come to its end, by the task whose method was under way, else by its file.
 int report_broken_run(const RunRequest& request, const BrokenRun& broken, std::FILE* out, std::FILE* err);
 
 }  // namespace chimera::cli

@@ -14,7 +14,7 @@ const std::string kTight =
     "  b: {component: t_counter, rate: 100 Hz, budget: 600 us, deadline: 1 ms, alias: {count: n, dt: b_dt,\n"
     "      now: b_now, deadline: b_deadline, cycles: b_cycles, dropped: b_dropped, illegal: b_illegal}}\n";
 
-/// What is said on standard error; "" when the run may begin.
+/// The text on standard error; "" when the run may begin.
 std::string refusal(const std::string& text, RunRequest request = {}) {
   const TestFile file(text);
   request.file = file.path();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run says at its end, however it was run: docs/formats/run.md.
+// The report at the end of every run, in virtual or real time: docs/formats/run.md.
 #pragma once
 
 #include <cstdio>
@@ -49,7 +49,7 @@ struct RunReport {
 /// nothing to do. Context: setup; may block.
 bool save_profile(const RunReport& report, const std::string& path, std::FILE* err);
 
-/// What a component has to say, as a line of a run. Context: setup.
+/// A note of a component, as a line of a run. Context: setup.
 std::string note_line(std::string_view task, std::string_view note);
 
 /// As text or as one JSON object. Context: setup.

@@ -26,13 +26,13 @@ class RunTarget {
   virtual ~RunTarget() = default;
   /// Has the tasks ON, or waits until they are, and prints how they run.
   virtual Result<void> start() = 0;
-  /// What is printed of a start that failed; what was made is ended. Returns the exit code.
+  /// Prints why the start failed, and ends the tasks that were made. Returns the exit code.
   virtual int refuse(const Error& error) = 0;
   /// Lets the run come to `until` (since its start) or to its end; nullopt: it goes on.
   virtual std::optional<RunEnd> advance(Nanoseconds until) = 0;
   /// Since the start.
   virtual Nanoseconds now() const = 0;
-  /// Lines that were due before this instant (since the start) were printed by somebody else.
+  /// Lines that were due before this instant (since the start) were printed by an earlier run client.
   virtual Nanoseconds printed_until() const { return {}; }
   /// Whether the values at an end of this kind are shown although no line is due.
   virtual bool shows_values_at(RunEnd end) const = 0;
@@ -40,7 +40,7 @@ class RunTarget {
   virtual bool draws(Nanoseconds at) = 0;
   /// In the order of `names`.
   virtual std::vector<Reading> read(const std::vector<std::string>& names) = 0;
-  /// Ends the tasks and tells what they came to: everything of the report but the values of variables.
+  /// Ends the tasks and fills in their results: everything of the report but the values of variables.
   virtual void finish(RunReport& report) = 0;
   /// The report is printed: false when output was lost or a picture cannot be written, which was said then.
   virtual bool is_output_complete(const RunReport& report) = 0;

@@ -69,7 +69,7 @@ TEST(Run, CountsOneCycleForEachPeriod) {
   EXPECT_EQ(said.code, kOk) << said.out << said.err;
   EXPECT_NE(said.out.find("holds: count >= 10 (count is 10)\n"), std::string::npos) << said.out;
   EXPECT_NE(said.out.find("ran 0.010 s\n"), std::string::npos) << said.out;
-  EXPECT_EQ(said.err, "");  // no progress where nobody looks
+  EXPECT_EQ(said.err, "");  // no progress: `err` is no terminal
 }
 
 constexpr const char* kLate = R"(subsystem: late

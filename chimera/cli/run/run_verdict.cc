@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What counts: docs/decisions/0023-exit-code-of-a-run.md.
+// Judges a run by the rules of docs/decisions/0023-exit-code-of-a-run.md.
 #include "chimera/cli/run/run_verdict.h"
 
 #include <algorithm>

@@ -11,14 +11,14 @@
 
 namespace chimera::cli {
 
-/// What one real-time unit came to. Plain value.
+/// The result of one rtpu. Plain value.
 struct UnitFate {
   std::string name;
   std::uint64_t restarts = 0;
   Nanoseconds restarted = kNever;  ///< since the start of the run, the last time; kNever: not known
-  bool is_given_up = false;        ///< dead, and nobody starts it again
+  bool is_given_up = false;        ///< dead, and not started again
   std::string bad_end = {};        ///< how it ended although all was to be turned off in order; "": in order
-  Nanoseconds died = kNever;       ///< since the start, in virtual time, where nobody restarts it; kNever: not
+  Nanoseconds died = kNever;       ///< since the start, in virtual time, where no rtpu is restarted; kNever: not
 };
 
 /// A task of which `off` or `kill` failed or was never run. Plain value.
@@ -32,7 +32,7 @@ struct RunVerdict {
   std::uint64_t missed = 0;   ///< deadlines, but for those that may be missed
   std::uint64_t dropped = 0;  ///< releases
   std::uint64_t faults = 0;
-  std::uint64_t restarts = 0;         ///< of real-time units
+  std::uint64_t restarts = 0;         ///< of rtpus
   bool is_flag_up = false;            ///< at the end
   bool is_strict = false;             ///< whatever is not clean is a failure
   std::vector<std::string> remarks;   ///< what was not clean: "20 deadlines missed (pi 12, motor 8)"
@@ -48,8 +48,8 @@ struct RunVerdict {
   std::string json() const;
 };
 
-/// What a verdict is made of. `faults_before`: of each task before all was turned off; what fails after that fails at
-/// the end of the run, where nobody can repeat it.
+/// Facts from which a verdict is made. `faults_before`: of each task before all tasks were turned off. Later faults are
+/// faults at the end of the run, where `off` and `kill` cannot be repeated.
 struct RunFacts {
   std::span<const TaskProfile> tasks;
   std::span<const std::uint64_t> faults_before;

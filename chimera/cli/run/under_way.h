@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a process that runs an application is doing, in memory that its parent reads when it is dead: which object it
-// loads, which method runs.
+// The object that a process loads, or the method that it runs, in shared memory. Its parent reads it when the process
+// is dead.
 #pragma once
 
 #include <atomic>
@@ -44,7 +44,7 @@ struct UnderWay {
   std::uint64_t words() const noexcept { return std::uint64_t{running} << 32 | serving; }
 };
 
-/// Where this process writes; memory of its own that nobody reads, until a parent has passed another to its child.
+/// The memory that this process writes to. It is private, and has no reader, until write_under_way_to() replaces it.
 UnderWay& under_way() noexcept;
 void write_under_way_to(UnderWay& place) noexcept;
 

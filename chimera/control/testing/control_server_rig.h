@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: a door over a real socket, its clock stepped by the test, before a backend that is a test's.
+// For tests: a ControlServer on a real socket, with a clock that the test steps and a backend of the test.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 
 namespace chimera::control {
 
-/// Echoes; keeps the replies of `signal` until told, forgets that of `library`. In door_process_test.cc.
+/// Echoes; keeps the replies of `signal` in `later`, drops the reply of `library`.
 struct FakeBackend final : ControlBackend {
   void call(const MethodRule& method, const Json& parameters, const Caller& caller, Reply reply) override;
   RpcResponse open(std::uint64_t subscription, const Json& parameters) override;
@@ -67,7 +67,7 @@ struct DoorTest : ::testing::Test {
   }
   int plain() { return plain_to(path); }
 
-  /// Once, and as often as the door says that it has more to do at once.
+  /// Serves once, and again as long as ControlServer has more to do at the same instant.
   void serve(Nanoseconds step = milliseconds(1)) {
     door->serve(now = now + step);
     for (int i = 0; i < 1000 && door->next_due() <= now; ++i) door->serve(now);

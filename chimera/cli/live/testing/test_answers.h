@@ -39,7 +39,7 @@ inline constexpr const char* kStatus = R"({
        "inputs": [{"port": "q", "variable": "q", "age_ns": 412000},
                   {"port": "q_ref", "variable": "q_ref", "age_ns": null}]}]})";
 
-/// What verification knows about a part of it.
+/// The answer of `describe` for a part of it.
 inline constexpr const char* kDescribed = R"({
     "start": "run", "configurations": [{"name": "run", "tasks": ["trajectory", "pid", "arm"]},
                                        {"name": "hand", "tasks": ["pid", "arm"]}],
