@@ -94,7 +94,7 @@ def run(program, text, logged, changes, on_at):
             words += ["--at", f"1 s: off {task}"]
         for task in come:
             words += ["--at", f"{on_at} s: on {task}"]
-        done = subprocess.run(words, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=100,
+        done = subprocess.run(words, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True,
                               check=False)
         log = pathlib.Path(folder, "log.csv")
         if done.returncode != 0 or not log.exists():

@@ -51,7 +51,7 @@ def run(program, path, seconds, acts, is_real=False):
     words = [program, "run", str(path), "--for", f"{seconds} s", "--json"] + ([] if is_real else ["--virtual"])
     for at, target in acts:
         words += ["--at", f"{at:.3f} ms: switch {target}"]
-    done = subprocess.run(words, cwd=path.parent, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=600,
+    done = subprocess.run(words, cwd=path.parent, stdin=subprocess.DEVNULL, capture_output=True, text=True,
                           env={**os.environ, "ASAN_OPTIONS": "detect_leaks=0"})
     if done.returncode not in ((0, 1) if is_real else (0,)):  # 1: a deadline was missed, which is judged here
         raise SystemExit(f"exit {done.returncode}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
