@@ -50,16 +50,18 @@ C_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:[^"\\\n]|\\.)*"', re.DOTALL)
 TEST_NAME = re.compile(r"\b(?:TEST|TEST_F|TEST_P|TYPED_TEST)\(\w+,\s*(\w+)\)|\bdef (test_\w+)")
 # Folders whose words are not put right yet. This list only gets shorter.
 NOT_YET = (
-    "README.md", "apps/chimera", "apps/chimera-rtpu", "bench/bench.h", "bench/one_way.h", "bench/preemptive.h",
+    "README.md", "apps/chimera/", "bench/bench.h", "bench/one_way.h", "bench/preemptive.h",
     "bench/row_04_one_way_peer.cc", "bench/row_10_breakdown.cc", "bench/row_11_overrun.cc", "bench/row_12_switch.py",
     "bench/row_13_detection.py", "bench/row_13_takeover.py", "bench/row_15_four_units.py",
     "bench/row_18_observers.py", "bench/row_19_devices.cc", "bench/row_19_lines.cc", "bench/row_20_safe.py",
-    "bench/row_21_door.py", "bench/tasks.h", "chimera/analysis", "chimera/cli", "chimera/component_test/setup_test.cc",
+    "bench/row_21_door.py", "bench/tasks.h", "chimera/analysis/schedule_refusal.cc", "chimera/cli/files",
+    "chimera/cli/live", "chimera/cli/run", "chimera/component_test/setup_test.cc",
     "chimera/control", "chimera/description/yaml_fault_test.cc", "chimera/description/yaml_reader.cc",
     "chimera/draw/graph_text.cc", "chimera/draw/timeline.cc", "chimera/draw/timeline_test.cc", "chimera/guard",
     "chimera/keeper", "chimera/load/declaration_rules_test.cc", "chimera/manager", "chimera/platform",
-    "chimera/record", "chimera/rtpu", "chimera/runtime", "chimera/schedule/policy_test.cc",
-    "chimera/schedule/worst_window_test.cc", "chimera/subsystem", "chimera/task/method_check.h", "chimera/text",
+    "chimera/record/chrome_trace_test.cc", "chimera/rtpu", "chimera/runtime", "chimera/schedule/policy_test.cc",
+    "chimera/schedule/worst_window_test.cc", "chimera/subsystem", "chimera/task/method_check.h",
+    "chimera/text/not_off_test.cc",
     "chimera/verify/objects_test.cc", "chimera/verify/setting_test.cc", "docs/formats", "docs/glossary.md",
     "docs/howto", "docs/security.md", "docs/walk.md",
     "examples/02_cruise_control", "examples/03_split_pm", "examples/07_faults_and_flag",
