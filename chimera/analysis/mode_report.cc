@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds who asks for which configuration, and judges the switch from each configuration, also with a standby in the
-// place of its primary, to each other.
+// Finds the tasks that ask for each configuration. Judges the switch from each configuration, also with a standby in
+// the place of its primary, to each other.
 #include "chimera/analysis/mode_report.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The configurations of a description as nodes, also with a standby in the place of its primary, and the switches
-// and takeovers between them as edges: who asks for each without a person, whether the deadlines hold over it
-// (runtime/switch/switch_schedule.h), and whether a constant may become another one (runtime/switch/constant_choice.h).
+// and takeovers between them as edges. An edge has the tasks that ask for the switch, whether all deadlines are met
+// during it (runtime/switch/switch_schedule.h), and whether a constant may change (runtime/switch/constant_choice.h).
 #pragma once
 
 #include <cstddef>

@@ -45,7 +45,7 @@ Result<RecordedProfile> parse_recorded_profile(std::string_view json);
 /// Replaces the file at `path` by the profile, in one step: no reader finds half of it. Refuses, and leaves the file as
 /// it was: a folder that cannot be written, a path that is no ordinary file. Context: setup; may block.
 Result<void> write_recorded_profile(const std::string& path, const RecordedProfile& profile);
-/// Whether that would be refused, as far as can be told before. Context: setup; may block.
+/// Refuses if write_recorded_profile() would, as far as it is known before. Context: setup; may block.
 Result<void> may_write_recorded_profile(const std::string& path);
 
 /// Reads the file at `path`; refuses one above the size limit unread. Context: setup; may block.

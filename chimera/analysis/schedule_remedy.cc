@@ -197,7 +197,7 @@ class Search {
   }
 
   /// Under `muf`: makes a task without a promise more critical, so that everything fits. Else makes a task less
-  /// critical, so that all others are promised, if a task at least as critical is without a promise.
+  /// critical, so that all others are promised. Some task without a promise must be at least as critical as that task.
   std::optional<Remedy> criticality() {
     std::uint32_t most = 0;  // of those without a promise
     for (std::size_t i = 0; i < set_.works.size(); ++i)

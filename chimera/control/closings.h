@@ -19,7 +19,7 @@ class Closings {
   using Tell = std::function<void(const std::string&)>;
 
   void report_to(Tell tell) { tell_ = std::move(tell); }
-  /// The first sixteen closings of a user are reported at once, then one in 10 s, with the number of unreported ones.
+  /// The first sixteen closings of a user are reported at once, then one in 10 s, with the number of the others.
   void add(uid_t user, std::string text, Nanoseconds now);
   /// Reports the waiting closings that are due.
   void report_due(Nanoseconds now);

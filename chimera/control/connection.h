@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One connection of the control server: who is at its other end and what that user may do (docs/formats/control.md,
-// "Rights"); lines in, lines out, within the limits. Knows no method.
+// One connection of the control server: the user at its other end with its role (docs/formats/control.md, "Rights");
+// lines in, lines out, within the limits. Knows no method.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ struct PeerIdentity {
 
 /// The highest role of a peer with that user and those groups; `owner` is the user of the keeper. Context: any.
 Role role_of(uid_t user, std::span<const gid_t> groups, uid_t owner, const RoleGroups& rules) noexcept;
-/// Asks the kernel who connected (SO_PEERCRED, SO_PEERGROUPS). Context: setup.
+/// Asks the kernel for the user and process that connected (SO_PEERCRED, SO_PEERGROUPS). Context: setup.
 PeerIdentity identify(int descriptor, uid_t owner, const RoleGroups& rules);
 
 /// Context: setup; never blocks.
@@ -111,7 +111,7 @@ class Connection {
   std::deque<std::shared_ptr<Pieces>> behind_;  // the output, but not made yet; the first is under way
   Nanoseconds moved_;  // when output last went, or the first of it was queued
   Nanoseconds half_since_ = kNever;
-  int unread_ = 0;        // what the kernel held of it when looked at last, in the kernel's measure
+  int unread_ = 0;        // sent bytes that the kernel held at the last check, in the kernel's measure
   Nanoseconds taken_at_;  // when the peer was last seen to have read
   bool is_closing_ = false;
   bool has_ended_ = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who gets in when places are short, and who is turned out: by a stepped clock.
+// Tests which connections get a place when places are short, and which are closed, with a stepped clock.
 #include <algorithm>
 
 #include "chimera/control/testing/control_server_rig.h"

@@ -19,11 +19,11 @@ struct Home {
   std::string file;          ///< the description, as it was named there
 };
 
-/// Reads the answer of `hello`; what it does not tell stays empty. Context of all: setup; may block.
+/// Reads the answer of `hello`; members that it lacks stay empty. Context of all: setup; may block.
 Home home_of(const Json& hello);
-/// Is it a subsystem of the caller's terminal (the same session; all sessions from outside of a container count as one,
-/// for they cannot be told apart there), or was it started in the caller's working folder, or
-/// from a description that lies there?
+/// True if the subsystem belongs to the caller's terminal, that is, to the same session. All sessions from outside of a
+/// container count as one, because the container cannot distinguish them. Also true if it was started in the caller's
+/// working folder, or from a description in that folder.
 bool is_here(const Home& home);
 
 }  // namespace chimera::control

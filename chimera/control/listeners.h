@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The processes behind a control socket, told from /proc: for when none of them answers.
+// Finds the processes behind a control socket in /proc, for the case that none of them answers.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The methods of the control protocol, in one table: who may call them and what they take. The parameters of a call are
-// judged by the row of its method, and read after that.
+// The methods of the control protocol, in one table: the role that may call each, and its parameters. The parameters of
+// a call are judged by the row of its method, and read after that.
 #pragma once
 
 #include <cstdint>

@@ -40,8 +40,8 @@ struct PlaceGrant {
 
 /// A place for one more connection, of `user` and `rank`. If the places of the user or of the rank are taken, another
 /// connection gives way. A connection never gives way to a lower rank. A reader of subscriptions gives way only to a
-/// higher rank. Connections that do nothing give way first, among them the lowest rank, then half lines, then the one
-/// that does nothing for the longest time. Context: setup.
+/// higher rank. Connections that do nothing give way first, among them the lowest rank. In one rank half lines come
+/// first, then the longest silence. Context: setup.
 PlaceGrant find_place(std::span<const Occupant> all, uid_t user, Rank rank);
 
 }  // namespace chimera::control

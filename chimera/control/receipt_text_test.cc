@@ -13,7 +13,7 @@ namespace {
 constexpr TaskId kPid{0u}, kTorque{1u};
 constexpr VariableId kTau{0u};
 
-/// A switch from 'pid' to 'torque', asked for 2 s after the origin of 1 s, as far as anybody came.
+/// A switch from 'pid' to 'torque', asked for 2 s after the origin of 1 s; a test says how far it came.
 struct Told {
   Told() {
     port.kind = CHIMERA_OUT_VAR;

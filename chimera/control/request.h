@@ -11,7 +11,7 @@
 
 namespace chimera::control {
 
-/// A request as read. `refusal` says why it is none; then only `id` counts (null when it could not be told).
+/// A request as read. `refusal` says why it is none; then only `id` counts (null when it is not known).
 struct Request {
   std::shared_ptr<const Json> id;          ///< never null
   bool wants_answer = true;                ///< false: a notification of JSON-RPC

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a switch goes the slow way, was refused or aborted, and who asked for it: words of the format, and sentences.
-// docs/formats/receipt.md.
+// The reason why a switch goes the slow way, was refused or aborted, and the origin of its request: words of the
+// format, and sentences. docs/formats/receipt.md.
 #pragma once
 
 #include <string>

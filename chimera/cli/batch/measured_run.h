@@ -14,7 +14,7 @@
 namespace chimera::cli {
 
 struct MeasuredRequest {
-  RunRequest run;  ///< in virtual time, with a duration; `expect`, `watch` and `svg` are not looked at
+  RunRequest run;  ///< in virtual time, with a duration; `expect`, `watch` and `svg` are ignored
   std::vector<std::string> measures;  ///< measure.h
   std::vector<std::string> expect;    ///< measure.h
   Nanoseconds every;                  ///< distance of samples; 0: the shortest period

@@ -52,7 +52,7 @@ struct Child {
                        UnderWay* place) {
   if (place != nullptr) write_under_way_to(*place);
   (void)follow_parent(parent, SIGKILL);
-  std::signal(SIGINT, SIG_IGN);  // of a terminal: the parent ends everybody
+  std::signal(SIGINT, SIG_IGN);  // of a terminal: the parent ends all children
   std::signal(SIGTERM, SIG_DFL);
   const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   ::dup2(nowhere, STDIN_FILENO);
@@ -116,7 +116,7 @@ class Crowd {
   void listen() {
     std::vector<pollfd> waits;
     for (const Child& child : children_) waits.push_back({child.answer, POLLIN, 0});
-    if (::poll(waits.data(), waits.size(), kLookEvery) < 0) return;  // a signal: looked at next
+    if (::poll(waits.data(), waits.size(), kLookEvery) < 0) return;  // a signal: checked next
     for (std::size_t i = waits.size(); i-- > 0;) {
       if (waits[i].revents != 0)
         collect(i);

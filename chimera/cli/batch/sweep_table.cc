@@ -10,7 +10,7 @@
 namespace chimera::cli {
 namespace {
 
-constexpr std::size_t kMostCurves = 24;  // more cannot be told apart
+constexpr std::size_t kMostCurves = 24;  // more cannot be distinguished
 
 struct Column {
   std::string name, unit;

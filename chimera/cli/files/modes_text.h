@@ -8,7 +8,8 @@
 
 namespace chimera::cli {
 
-/// One line for each switch and one for each CPU that it changes; then who asks for nothing. Context: setup.
+/// One line for each switch and one for each CPU that it changes; then the configurations that no task asks for.
+/// Context: setup.
 std::string modes_text(const Configuration& configuration, const ModeReport& report);
 
 }  // namespace chimera::cli

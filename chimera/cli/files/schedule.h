@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `chimera schedule`: does everybody keep the deadlines, who does not, and what would help?
+// `chimera schedule`: whether all tasks keep their deadlines, which do not, and which changes would help.
 #pragma once
 
 #include <string>

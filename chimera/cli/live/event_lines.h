@@ -42,7 +42,7 @@ class EventLines {
 
   std::vector<std::string> kinds_;
   bool each_;
-  std::vector<Event> incident_;  ///< misses that have not been told
+  std::vector<Event> incident_;  ///< misses that are not printed yet
 };
 
 /// The answer of `events`, in lines; `since`: the number that was asked for.

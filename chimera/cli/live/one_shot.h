@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands of more than one request, or with an option that is judged here, before anybody is asked.
+// The commands of more than one request, or with an option that is judged here, before a request is sent.
 #pragma once
 
 #include "chimera/cli/live/commands.h"

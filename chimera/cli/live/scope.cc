@@ -225,7 +225,7 @@ std::string Scope::csv() const {
   return text;
 }
 
-// The last value before the window holds from its left end, and the last value in the window holds to its right end.
+// The last value before the window holds from its left end. The last value in the window holds to its right end.
 std::vector<draw::PlotPoint> Scope::points_of(const Stream& stream, std::size_t column) const {
   std::vector<draw::PlotPoint> points;
   const double left = seconds_between({}, {-request_.pre.count}), right = seconds_between({}, request_.duration);

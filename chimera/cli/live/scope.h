@@ -33,8 +33,8 @@ struct ScopeRequest {
 };
 
 /// Context: setup; may allocate. Keeps what lies in the window and the row before it, which holds until the first of
-/// the window; at most kScopeRows rows of a task. It is armed once every task has told of the whole pre-trigger: an
-/// edge before that is counted and does not begin it.
+/// the window; at most kScopeRows rows of a task. It is armed once the rows of every task cover the whole pre-trigger.
+/// An earlier edge is counted and does not begin the window.
 class Scope {
  public:
   static constexpr std::size_t kScopeRows = 1'000'000;
@@ -106,7 +106,7 @@ class Scope {
   ScopeRequest request_;
   std::deque<Stream> streams_;
   std::optional<Nanoseconds> begin_;
-  Nanoseconds trigger_seen_;  ///< time of the newest value that the trigger has looked at
+  Nanoseconds trigger_seen_;  ///< time of the newest value that the trigger has checked
   std::uint64_t early_edges_ = 0;
   bool is_full_ = false;
 };

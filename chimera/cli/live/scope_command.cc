@@ -198,7 +198,7 @@ CommandResult scope(Session& session, const Call& call, const Screen& screen) {
   }
   CommandResult said =
       show_recording(scope, call, hello.is_good() ? text_of(*hello.result, "subsystem") : "", screen.width);
-  if (end && said.code == kOk) {  // what was recorded is kept; what came after is not known to anybody
+  if (end && said.code == kOk) {  // the recorded rows are kept; later rows are unknown
     said.err += "the recording ended early: " + std::string(end->message.view()) + "\n";
     said.code = kRefused;
   }

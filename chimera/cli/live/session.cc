@@ -45,7 +45,7 @@ std::string with_subsystem(const std::string& text, const std::string& subsystem
   return json_line(*answer);
 }
 
-/// An act and its refusal tell whom they reached.
+/// Puts the name of the subsystem into the result of an act, also when it was refused.
 CommandResult named(CommandResult said, Session& session, const Call& call) {
   if (call.json) return said.out = with_subsystem(said.out, session.subsystem()), said;
   if (!call.is_act() || row_of(call).names_its_subsystem) return said;

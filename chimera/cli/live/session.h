@@ -42,11 +42,12 @@ class Session {
   const Surroundings& surroundings() const noexcept { return surroundings_; }
   /// True if the user named the subsystem, by option or by CHIMERA_SUBSYSTEM.
   bool is_named() const noexcept { return is_named_; }
-  /// Asks who it is: what every command begins with. The answer of `hello`.
+  /// Calls `hello`, with which every command begins, and returns its answer.
   control::RpcResponse hello();
-  /// Its name, as it says itself; "" when it does not answer.
+  /// The name of the subsystem from the answer of `hello`; "" when it does not answer.
   const std::string& subsystem();
-  /// May an act go to it? Named, or of this terminal or folder: else refused, with what is to be typed.
+  /// Permits an act if the subsystem was named, or belongs to this terminal or folder. Else refuses, with the command
+  /// to type.
   Result<void> may_act();
   /// As control::Client::call, with the time that the method may take.
   control::RpcResponse ask(std::string_view method);

@@ -125,7 +125,7 @@ class Attend : public ::testing::Test {
   }
   void open_door() { door_ = *control::ControlServer::open(::dup(listening_), backend_, ::geteuid(), {}); }
 
-  /// The exit code; out_ and err_ are what it printed. The thread of ControlServer calls `meanwhile` repeatedly.
+  /// The exit code; out_ and err_ are what it printed. The thread of ControlServer calls the function repeatedly.
   int attend(RecordSink* sink = nullptr, std::function<void()> meanwhile = [] {}) {
     std::atomic<bool> is_over{false};
     std::thread serving([&] {

@@ -10,7 +10,7 @@ namespace chimera::cli {
 
 /// The longest that one object may take to be loaded, or one state to be constructed.
 inline constexpr int kMakingLimitSeconds = 10;
-/// The longest that `off` and `kill` may take at the end, as in real time, and any method of a run told to end.
+/// Limit of `off` and `kill` at the end, as in real time. It holds for all methods if the run was asked to end.
 inline constexpr int kEndingLimitSeconds = 2;
 
 /// The cause why a run did not come to its end.

@@ -56,7 +56,7 @@ struct RunFacts {
   std::span<const UnitFate> units;
   bool is_flag_up = false;
   bool is_strict = false;
-  std::span<const NotOff> not_off = {};  ///< as told by the subsystem's events; what else the tasks tell is added
+  std::span<const NotOff> not_off = {};  ///< from the subsystem's events; judge_run() adds those of `tasks`
 };
 RunVerdict judge_run(const RunFacts& facts);
 
