@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Waits for deaths, and writes what the dead have left for their devices.
+// Waits for deaths, and writes the safe frames that the dead rtpus left.
 #include "chimera/guard/guard.h"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ Result<void> Guard::prepare(std::span<const SilenceLimit> limits) {
 
 void Guard::say_ready(bool has_rights) noexcept { tell({.kind = Kind::kReady, .good = has_rights ? 1u : 0u}); }
 
-// A keeper that is gone or full is not waited for.
+// If the keeper is gone or its channel is full, the message is dropped: the guard must not wait.
 void Guard::tell(GuardMessage message) noexcept {
   if (keeper_.is_open()) (void)keeper_.send(bytes_of(message));
 }
@@ -63,7 +63,7 @@ bool Guard::step(Nanoseconds at_most) noexcept {
   return is_needed();
 }
 
-// Deaths first: what the keeper says next may be of a successor.
+// Handles deaths before messages of the keeper, because these may be about a successor.
 void Guard::wait(Nanoseconds at_most) noexcept {
   std::array<Watched, 1 + 2 * kMaxRtpus> watched{};
   watched[0].descriptor = keeper_.descriptor();
@@ -95,7 +95,7 @@ void Guard::listen_to_keeper() noexcept {
   }
 }
 
-// A unit is started when its predecessor is dead: whether that was seen here before or not.
+// The keeper starts an rtpu only after the death of its predecessor, even if the guard has not seen that death yet.
 void Guard::take(const GuardMessage& message, OwnedDescriptor passed) noexcept {
   if (message.index >= units_.size() || passed.fd < 0) return;
   Unit& unit = units_[message.index];
@@ -109,7 +109,7 @@ void Guard::take(const GuardMessage& message, OwnedDescriptor passed) noexcept {
   }
 }
 
-// What it has sent can be taken after its death, too.
+// Reads the messages of an rtpu. They can be read after its death, too.
 void Guard::listen_to_unit(std::uint32_t index) noexcept {
   Unit& unit = units_[index];
   GuardMessage message;
@@ -130,7 +130,7 @@ void Guard::listen_to_unit(std::uint32_t index) noexcept {
   }
 }
 
-// It is proved dead: its memory does not change any more.
+// The process is proved dead: its memory does not change any more.
 void Guard::bury(std::uint32_t index) noexcept {
   Unit& unit = units_[index];
   listen_to_unit(index);
@@ -175,8 +175,8 @@ TaskStatus Guard::status(TaskId task) const noexcept {
   return is_there(index) ? units_[index].segment.block().status(task) : TaskStatus{};
 }
 
-// SIGKILL is not yet the end: what there is to write is written, and a standby takes over, when that is proved. A
-// primary of which no standby can take over is left alone.
+// Ends the rtpu of a silent primary. SIGKILL alone proves nothing: frames are written, and a standby takes over, only
+// when the death is proved. A primary whose standbys cannot take over is left alone.
 void Guard::look_for_silence() noexcept {
   const Nanoseconds now = clock_.now();
   for (Silence& silence : silences_) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The process that writes the safe frames of real-time units that are dead: docs/design/guard.md and
-// docs/formats/processes.md, "The guard". It runs no code of a component and outlives the keeper.
+// The process that writes the safe frames of dead rtpus: docs/design/guard.md and docs/formats/processes.md, "The
+// guard". It runs no code of a component and outlives the keeper.
 #pragma once
 
 #include <cstdint>
@@ -20,32 +20,33 @@
 
 namespace chimera {
 
-/// After how many silent periods the unit of a task is ended; only its death before that when there is none.
+/// Number of silent periods of a task after which the guard ends its rtpu. Without a limit it waits for the death of
+/// the rtpu.
 struct SilenceLimit {
   TaskId task;
   std::uint32_t periods = 0;
 };
 
-/// Everything it works in is made at once: from then on nothing is asked of the heap. Single-threaded.
+/// All its memory is allocated at the start; later it allocates nothing. Single-threaded.
 class Guard {
  public:
-  /// `image` as the keeper made it; it outlives the guard. Units of primaries whose standbys say so are ended for their
-  /// silence, too, while such a standby can take over. Refuses a limit of a task that there is not, and what the
-  /// layouts refuse. Context: setup.
+  /// `image` as the keeper made it; it outlives the guard. A standby may state a silence limit: the guard then also
+  /// ends the rtpu of its silent primary, while the standby can take over. Refuses a limit of an unknown task, and
+  /// every refusal of the layouts. Context: setup.
   static Result<std::unique_ptr<Guard>> create(Channel keeper, const ApplicationImage& image,
                                                std::span<const SilenceLimit> limits);
   Guard(const Guard&) = delete;
   Guard& operator=(const Guard&) = delete;
 
-  /// Tells the keeper that it watches, and whether with the rights that were asked for. Context: setup.
+  /// Reports to the keeper that it watches, and whether it has the requested rights. Context: setup.
   void say_ready(bool has_rights) noexcept;
-  /// One round: waits until something has happened, is due, or `at_most` is over, and deals with it. False when the
-  /// keeper is gone, no unit lives and nothing is on its way. Context: any; blocks.
+  /// One round: waits until a message or a death arrives, a step is due, or `at_most` is over, and handles it. False
+  /// when the keeper is gone, no rtpu lives and no frame is left to write. Context: any; blocks.
   bool step(Nanoseconds at_most = kNever) noexcept;
 
  private:
   struct Unit {
-    OwnedDescriptor process;  // readable when it is dead; -1: none lives
+    OwnedDescriptor process;  // readable when the rtpu is dead; -1: none lives
     Channel line;
     PeerSegment segment;
     std::uint32_t incarnation = 0;
@@ -69,7 +70,7 @@ class Guard {
   Channel keeper_;
   const ApplicationSpec& spec_;
   LinuxClock clock_;
-  HeapMemory memory_;  // behind the layouts
+  HeapMemory memory_;  // memory of the layouts
   std::vector<PeerLayout> layouts_;
   std::vector<Unit> units_;
   SafeWrites writes_;

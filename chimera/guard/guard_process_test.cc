@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The guard with real processes as its units; what they share and say is played by the test.
+// The guard with real processes as its rtpus; the test writes their memory and their messages.
 #include "chimera/guard/guard.h"
 
 #include <fcntl.h>
@@ -25,7 +25,7 @@ struct Driver {
   void cycle(Cycle) {}
 };
 
-/// Both ends of a pipe; what is written does not wait.
+/// Both ends of a pipe; its writes do not wait.
 struct Device {
   Device() { EXPECT_EQ(::pipe2(ends, O_CLOEXEC | O_NONBLOCK), 0); }
   ~Device() {
@@ -37,7 +37,7 @@ struct Device {
     const ssize_t got = ::read(ends[0], bytes, sizeof bytes);
     return got > 0 ? std::string(bytes, static_cast<std::size_t>(got)) : "";
   }
-  /// Takes nothing any more.
+  /// Fills the pipe: from here on the device accepts no byte.
   void fill() const {
     const char bytes[4096] = {};
     while (::write(ends[1], bytes, sizeof bytes) > 0) continue;
@@ -46,7 +46,7 @@ struct Device {
   int ends[2] = {-1, -1};
 };
 
-/// One incarnation of the unit: a process that does nothing, memory as a unit makes it, the unit's end of its line.
+/// One incarnation of the rtpu: an idle process, memory as an rtpu makes it, and the rtpu's end of its line.
 struct Life {
   Life(const ApplicationSpec& spec, std::uint32_t unit, std::uint32_t incarnation, int line)
       : link(line, unit, incarnation) {
@@ -94,7 +94,7 @@ struct GuardTest : ::testing::Test {
     app.link(2, 0, "b");
     make_image();
   }
-  /// `spare` takes over from `second` when that is silent for 40 ms.
+  /// `spare` takes over from `second` when `second` is silent for 40 ms.
   void make_image(std::vector<StandbySpec> standbys = {}) {
     ApplicationSpec spec = app.make();
     spec.standbys = standbys;
@@ -107,7 +107,7 @@ struct GuardTest : ::testing::Test {
     keeper = std::move(ends->first);
     guard = *Guard::create(std::move(ends->second), *image, limits);
   }
-  /// The next incarnation of the unit; the guard has not been told anything yet but by the keeper.
+  /// The next incarnation of the rtpu. The guard knows it only from the keeper: the rtpu has sent no message yet.
   std::unique_ptr<Life> begin(std::uint32_t unit = 0) {
     auto ends = Channel::pair();
     const int line = ::fcntl(ends->second.descriptor(), F_DUPFD_CLOEXEC, 0);
@@ -125,7 +125,7 @@ struct GuardTest : ::testing::Test {
   bool until(const std::function<bool()>& is_so) {
     return await_that([&] { return step(), is_so(); });
   }
-  /// "kind good/bad" of the next that it has told.
+  /// "kind good/bad" of the next message of the guard.
   std::string told() {
     GuardMessage message;
     int passed = -1;

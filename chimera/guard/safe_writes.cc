@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the frames of dead processes to their devices, none of which holds up another.
+// Writes the frames of dead processes to their devices; no device delays another.
 #include "chimera/guard/safe_writes.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace chimera {
 namespace {
 
-constexpr Nanoseconds kPatience = seconds(1);       // with a device that takes nothing
+constexpr Nanoseconds kPatience = seconds(1);       // with a device that accepts nothing
 constexpr Nanoseconds kTryAgain = microseconds(500);
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The safe frames of all tasks: where each goes, and those that are on their way because their process is dead.
+// The safe frames of all tasks: the device of each, and the frames that are being written because their process is
+// dead.
 #pragma once
 
 #include <cstdint>
@@ -12,30 +13,30 @@
 
 namespace chimera {
 
-/// What became of the frames of one unit.
+/// Results of the frames of one rtpu.
 struct WrittenFrames {
   std::uint32_t good = 0, bad = 0;
-  Nanoseconds at{};  ///< when the last byte was taken; 0: none was
+  Nanoseconds at{};  ///< when a device accepted the last byte; 0: none did
 };
 
-/// The memory is made at once; from then on nothing is asked of the heap. Context of all but the constructor: any;
-/// system calls that do not wait.
+/// All memory is allocated at the start. Context of all functions but the constructor: any; system calls that do not
+/// wait.
 class SafeWrites {
  public:
   /// Context: setup.
   explicit SafeWrites(std::uint32_t n_tasks) : frames_(std::size_t{n_tasks} * kSafeFrames) {}
 
-  /// A frame of `task` goes to `descriptor`, which it owns from here on, in place of any before; one without a
-  /// descriptor goes nowhere. What does not exist is passed over.
+  /// From here on a frame of `task` goes to `descriptor`, which it owns, instead of any earlier one. A frame without a
+  /// descriptor goes nowhere. An unknown task or frame is ignored.
   void keep(std::uint32_t task, std::uint32_t frame, OwnedDescriptor descriptor, Nanoseconds pause) noexcept;
-  /// Begins with those of `task` that stand in `block`: its process is dead.
+  /// Begins to write the frames of `task` in `block`. Requires: its process is dead.
   void begin(TaskId task, const BlockView& block, Nanoseconds now) noexcept;
-  /// Writes what is due, as far as the devices take it.
+  /// Writes the frames that are due, as far as the devices accept them.
   void advance(Nanoseconds now) noexcept;
-  /// When advance() is due; kNever: nothing is on its way.
+  /// Time when advance() is due; kNever: no frame is being written.
   Nanoseconds due() const noexcept;
   bool is_on_its_way(TaskId task) noexcept;
-  /// What became of the frames of the task is added to `written`; their descriptors are closed.
+  /// Adds the results of the frames of the task to `written` and closes their descriptors.
   void finish(TaskId task, WrittenFrames& written) noexcept;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The keeper's loop: wait, take what has happened, watch the manager, and go through the phases of the end.
+// The keeper's loop: waits, handles signals, messages and deaths, watches the manager, and steps the phases of the end.
 #include "chimera/keeper/keeper.h"
 
 #include <algorithm>
@@ -12,12 +12,12 @@ namespace chimera {
 namespace {
 
 constexpr Nanoseconds kQuickDeath = seconds(1), kLongestPause = milliseconds(500);
-constexpr int kMostRefusals = 10;               // of the manager, before anybody was served: within about two seconds
-constexpr Nanoseconds kLastLimit = seconds(1);  // for the manager to finish, and for SIGKILL to be carried out
+constexpr int kMostRefusals = 10;               // starts of the manager that fail in a row: about 2 s
+constexpr Nanoseconds kLastLimit = seconds(1);  // for the manager to finish, and for SIGKILL to take effect
 constexpr Nanoseconds kWatchEvery = milliseconds(250);
-constexpr Nanoseconds kManagerPatience = milliseconds(1500);  // it is replaced within 20 ms
-constexpr Nanoseconds kFacePatience = seconds(30);            // longer than it waits for any answer, 20 s
-constexpr Nanoseconds kStartPatience = seconds(10);           // until it serves: it verifies the whole description
+constexpr Nanoseconds kManagerPatience = milliseconds(1500);  // a killed manager is replaced within 20 ms
+constexpr Nanoseconds kFacePatience = seconds(30);            // longer than the run client waits for an answer, 20 s
+constexpr Nanoseconds kStartPatience = seconds(10);           // a starting manager first verifies the description
 
 }  // namespace
 
@@ -42,7 +42,7 @@ int Keeper::run() {
     while (advance()) {
     }
   }
-  face_.end();  // it had its time
+  face_.end();  // its time to finish is over
   peers_.end_all();
   return end_code_ != 0 ? end_code_ : face_.code();
 }
@@ -58,7 +58,7 @@ void Keeper::wait() {
   await_readable(descriptors, due - clock_.now());
 }
 
-/// Takes everything that has happened.
+/// Handles all signals, messages and deaths that have arrived.
 void Keeper::poll() {
   SignalQueue::Arrived signal;
   while (signals_.take(signal)) {
@@ -115,7 +115,8 @@ void Keeper::check_face() {
   }
 }
 
-/// A manager that never came to serve is not tried for ever: there is nothing running yet that would go on without it.
+/// Ends the run if the first managers fail to start kMostRefusals times in a row. No task is ON yet, so no task is
+/// lost.
 void Keeper::count_refusal(Nanoseconds lived) {
   const bool refused = lived < kQuickDeath && peers_.manager().life().by_signal == 0;
   if (!refused) manager_refusals_ = -1;
@@ -137,7 +138,7 @@ void Keeper::on_message(const KeeperMessage& wish) {
     peers_.restart(wish.index);
 }
 
-/// The manager watches everybody else, and the keeper the manager: docs/formats/processes.md, "Who watches whom".
+/// The manager watches the rtpus, and the keeper watches the manager: docs/formats/processes.md, "Who watches whom".
 void Keeper::watch_manager() {
   const Nanoseconds now = clock_.now();
   if (now < watch_due_) return;
@@ -165,8 +166,8 @@ void Keeper::watch_manager() {
   }
 }
 
-/// The face ends the run in time: a face that is stopped, or whose main loop does not go on, is replaced. At the end of
-/// the run each phase has its limit, which the face cannot extend.
+/// Kills a run client that is stopped or hangs: the client ends the run in time, so the keeper replaces it. Each phase
+/// of the end has its own limit, which the client cannot extend.
 void Keeper::watch_face(Nanoseconds now) {
   if (phase_ != Phase::kRunning || !face_.lives()) return;
   const LifeVerdict verdict =
@@ -174,7 +175,7 @@ void Keeper::watch_face(Nanoseconds now) {
   if (verdict.is_over || verdict.life == Life::kStopped) face_.signal(SIGKILL);
 }
 
-/// To the manager that runs now, be it another one.
+/// Sends the report of a hang to the manager that runs now, which may be the successor of the one that hung.
 void Keeper::report_hang() {
   if (hung_.kind == KeeperMessage::Kind::kHung) peers_.manager().send(hung_);
   hung_ = {};
@@ -185,7 +186,7 @@ void Keeper::enter(Phase phase, Nanoseconds limit) {
   phase_due_ = clock_.now() + limit;
 }
 
-/// One step of what is due; true when there may be another.
+/// Carries out one step that is due. True if another step may be due.
 bool Keeper::advance() {
   const Nanoseconds now = clock_.now();
   const bool is_late = now >= phase_due_;
@@ -212,7 +213,7 @@ bool Keeper::advance() {
     peers_.finish_manager();
     enter(Phase::kManagerFinishes, kLastLimit);
   } else if (phase_ == Phase::kManagerFinishes && (!manager.lives() || is_late)) {
-    phase_ = Phase::kDone;  // what is left ends with this keeper
+    phase_ = Phase::kDone;  // the keeper's exit ends every process that is left
   } else {
     return false;
   }

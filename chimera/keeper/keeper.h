@@ -15,30 +15,30 @@ namespace chimera {
 
 struct KeeperPlan {
   PeerPlan peers;
-  std::vector<std::string> face;          ///< program and arguments of the face of this run; empty: none
-  Nanoseconds face_limit = seconds(2);    ///< to take its last values when told to; and to finish after the rtpus
+  std::vector<std::string> face;          ///< program and arguments of the run client; empty: none
+  Nanoseconds face_limit = seconds(2);    ///< to take its last values after SIGTERM; and to finish after the rtpus
   Nanoseconds ending_limit = seconds(2);  ///< for `off` and `kill` of all tasks
 };
 
-/// Must live in the thread that lives longest: the children follow it. Context: setup.
+/// The thread of the keeper must live longest, because the children die with it. Context: setup.
 class Keeper {
  public:
   explicit Keeper(KeeperPlan plan);
-  /// Nothing that it started outlives it.
+  /// Ends every process that the keeper started.
   ~Keeper();
   Keeper(const Keeper&) = delete;
   Keeper& operator=(const Keeper&) = delete;
 
-  /// Starts everybody; refuses when one cannot be. SIGINT, SIGTERM and SIGHUP are blocked from here on: run() takes
-  /// them.
+  /// Starts all processes; refuses if a process cannot start. SIGINT, SIGTERM and SIGHUP are blocked from here on:
+  /// run() handles them.
   Result<void> start();
-  /// Keeps until the face exits or says SIGUSR1, the manager says so, or a signal does; then ends everybody: the face
-  /// has taken its last values by then, and sees how the tasks end. A face that dies by a signal is replaced (one that
-  /// is stopped or hangs is sent SIGKILL), and so are its successors; when one dies too often, or while everything
-  /// ends, that is told on standard error and the exit code is 1. Else the manager's if it gave one above 0, else that
-  /// of the face, 0 without one.
+  /// Runs until the run client exits or sends SIGUSR1, the manager asks for the end, or a signal arrives. Then it ends
+  /// all processes. The client takes its last values first and sees how the tasks end.
+  /// A client that dies by a signal is replaced; a client that is stopped or hangs is sent SIGKILL. If it dies too
+  /// often, or during the end, standard error names the reason and the exit code is 1. Otherwise the exit code is the
+  /// manager's if it is above 0, else the client's, 0 without a client.
   int run();
-  /// The face has told that what it printed is lost. Requires: start() was called.
+  /// The run client reported that its output is lost. Requires: start() was called.
   bool output_is_lost() const noexcept { return face_.is_wanted() && face_.page().lost_output != 0; }
 
  private:
@@ -73,13 +73,13 @@ class Keeper {
   Nanoseconds phase_due_ = kNever;
   Nanoseconds watch_due_ = {};
   LifeWatch manager_life_, face_life_;
-  std::uint64_t manager_beats_ = 0;   // of the present one; 0: it has not come to serve
-  KeeperMessage hung_;                // kHung: of the manager, to be told when one runs again
-  Nanoseconds manager_due_ = kNever;  // when it is started again
+  std::uint64_t manager_beats_ = 0;   // of the present manager; 0: it does not serve yet
+  KeeperMessage hung_;                // kHung: report of a hung manager, for the next one that runs
+  Nanoseconds manager_due_ = kNever;  // next start of the manager
   Nanoseconds manager_pause_;
-  int manager_refusals_ = 0;  // in a row from the start on; negative once one has lived
+  int manager_refusals_ = 0;  // failed starts in a row; negative once a manager has served
   bool end_asked_ = false;
-  bool face_has_looked_ = false;  // and says so by SIGUSR1: from there on it only waits for the ends
+  bool face_has_looked_ = false;  // the client sent SIGUSR1: now it only waits for the ends
   int end_code_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the decision page and the keeper page, and writes into them what every process of the run may see.
+// Makes the decision page and the keeper page, and writes the keeper's part of them.
 #include "chimera/keeper/keeper_pages.h"
 
 #include <new>
@@ -25,7 +25,7 @@ Result<KeeperPages> KeeperPages::create(std::uint32_t n_rtpus, Nanoseconds origi
 
 void KeeperPages::show_life(std::uint32_t index, std::uint32_t incarnation) noexcept {
   keeper().alive[index].store(incarnation, std::memory_order_release);
-  decision().changes.fetch_add(1, std::memory_order_release);  // pairs with the look at a cycle boundary: who lives
+  decision().changes.fetch_add(1, std::memory_order_release);  // pairs with the reads at a cycle boundary
 }
 
 void KeeperPages::ring_all() noexcept {

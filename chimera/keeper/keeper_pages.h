@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two pages by which the keeper shows all processes of a run who lives and how the run goes.
+// The two pages in which the keeper shows every process of a run which peers live and how the run goes.
 // docs/formats/processes.md, "Keeper messages".
 #pragma once
 
@@ -10,25 +10,26 @@
 
 namespace chimera {
 
-/// Single-threaded. Requires, for all but create(): was made by create(). Context: setup; never blocks.
+/// Single-threaded. Requires for all functions but create(): create() made the pages. Context: setup; never blocks.
 class KeeperPages {
  public:
-  /// Makes both pages: of `n_rtpus` and the manager none lives yet, and the grid of releases begins at `origin`.
+  /// Makes both pages. No peer lives yet, and the grid of releases begins at `origin`.
   static Result<KeeperPages> create(std::uint32_t n_rtpus, Nanoseconds origin);
 
-  /// What a process is given at its start: the decision page, for all to write; the keeper page, for all to read.
+  /// Descriptors that each process gets at its start: the decision page, writable by all; the keeper page, readable by
+  /// all.
   int decision_descriptor() const noexcept { return decision_.descriptor(); }
   int keeper_descriptor() const noexcept { return keeper_.descriptor(); }
 
-  /// Of the peer lives `incarnation`; 0: none. Wakes nobody: ring_all() does.
+  /// Shows that `incarnation` of the peer lives; 0: no process of the peer lives. Wakes no process: ring_all() does.
   void show_life(std::uint32_t index, std::uint32_t incarnation) noexcept;
   /// Wakes every process of the run.
   void ring_all() noexcept;
-  /// Shows all peers that the loop of the keeper went round once more.
+  /// Counts one more round of the keeper's loop, for all peers to see.
   void beat() noexcept { keeper().beats.fetch_add(1, std::memory_order_release); }
-  /// Shows how often the face died and of what, and whether its output is lost; wakes everybody.
+  /// Shows how often and by which signal the run client died, and whether its output is lost. Wakes all processes.
   void show_face(const FacePage& face) noexcept;
-  /// The run ends from here on.
+  /// Shows that the run ends.
   void show_ending() noexcept { keeper().ending.store(1, std::memory_order_release); }
 
  private:

@@ -6,7 +6,7 @@
 namespace chimera {
 namespace {
 
-/// Pages of two rtpus and the manager, and both as a process of the run sees them.
+/// Pages of two rtpus and the manager, with both views of a process of the run.
 class KeeperPagesTest : public ::testing::Test {
  protected:
   const KeeperPage& seen() const { return *reinterpret_cast<const KeeperPage*>(keeper_.bytes().data()); }

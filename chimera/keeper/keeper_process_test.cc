@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The keeper with real processes that log what they are told (testing/child.cc).
+// The keeper with real processes that log their messages (testing/child.cc).
 #include "chimera/keeper/keeper.h"
 
 #include <gtest/gtest.h>
@@ -19,17 +19,17 @@ namespace {
 
 std::span<const std::byte> text(const char* words) { return std::as_bytes(std::span(words, std::strlen(words))); }
 
-/// A keeper in a process of its own, with `n` rtpus, the manager and a face, all of them testing/child.cc.
+/// A keeper in a process of its own, with `n` rtpus, the manager and a run client; all children run testing/child.cc.
 class KeeperProcess : public ::testing::Test, public testing::ChildFolder {
  protected:
   void TearDown() override {
     if (keeper_ > 0) {
-      ::kill(keeper_, SIGKILL);  // still ours
+      ::kill(keeper_, SIGKILL);  // not reaped yet: still its process id
       ::waitpid(keeper_, nullptr, 0);
     }
   }
 
-  /// `limit`: of the face and of the rtpus when they end.
+  /// `limit`: time that the run client and the rtpus have to end.
   void start(std::uint32_t n, bool with_face = true, Nanoseconds limit = kHangLimit) {
     keeper_ = ::fork();
     if (keeper_ != 0) return;
@@ -64,13 +64,13 @@ class KeeperProcess : public ::testing::Test, public testing::ChildFolder {
     if (await_that(are_there)) return true;
     return ADD_FAILURE() << "no " << n << " lines '" << line << "' in\n" << log(), false;
   }
-  /// Of the process that logged "WHO begin PID" last.
+  /// Process id in the last line "WHO begin PID" of the log.
   pid_t pid_of(const std::string& who) {
     const std::string all = "\n" + log(), begin = "\n" + who + " begin ";
     const std::size_t at = all.rfind(begin);
     return at == std::string::npos ? 0 : std::stoi(all.substr(at + begin.size()));
   }
-  /// Whoever logged that it began, which it has not ended since: its parent holds it until then.
+  /// Kills the last process that logged "WHO begin". Its parent has not reaped it, so its id is still valid.
   void kill_the(const std::string& who) {
     const int held = static_cast<int>(::syscall(SYS_pidfd_open, pid_of(who), 0));
     EXPECT_EQ(::syscall(SYS_pidfd_send_signal, held, SIGKILL, nullptr, 0), 0) << who;
@@ -82,9 +82,9 @@ class KeeperProcess : public ::testing::Test, public testing::ChildFolder {
     keeper_ = 0;
     return WIFEXITED(status) ? WEXITSTATUS(status) : 256 + WTERMSIG(status);
   }
-  /// True when every process that ever began is gone.
-  /// One that has ended and that process 1 does not reap, as in some containers, does not.
+  /// False for a zombie: in some containers process 1 does not reap.
   static bool lives(pid_t pid) { return ::kill(pid, 0) == 0 && process_state(pid).letter != 'Z'; }
+  /// True when every process that ever began is gone.
   bool nobody_is_left() {
     std::istringstream all(log());
     std::vector<pid_t> pids;
@@ -146,7 +146,7 @@ TEST_F(KeeperProcess, AnRtpuIsStartedAgainWhenTheManagerSaysSo) {
   ASSERT_TRUE(wait_for("2.1 ended 0 1 signal 11"));
   order("2", "changes");
   ASSERT_TRUE(wait_for("2.1 changes 4"));
-  order("2", "start 1");  // lives: nothing
+  order("2", "start 1");  // 2 lives already: the order has no effect
   order("2", "start 0");
   ASSERT_TRUE(wait_for("2.1 started 0 2 alive"));
   ASSERT_TRUE(wait_for("2.1 peer 0 2 by-0.2"));
@@ -181,7 +181,7 @@ TEST_F(KeeperProcess, SignalsEndEverythingWithTheCodeOfTheFace) {
     start(1);
     ASSERT_TRUE(wait_for("face begin"));
     ASSERT_TRUE(wait_for("1.1 peer 0 1"));
-    ::kill(keeper_, number);  // still ours
+    ::kill(keeper_, number);  // not reaped yet: still its process id
     EXPECT_EQ(code_of_keeper(), 5) << number;
     const std::string all = log();
     EXPECT_LT(all.find("face finishes"), all.find("0.1 finish"));
@@ -207,17 +207,17 @@ TEST_F(KeeperProcess, SomebodyElsesSignalIsNotTheFaces) {
   start(1);
   ASSERT_TRUE(wait_for("face begin"));
   ASSERT_TRUE(wait_for("1.1 peer 0 1"));
-  ::kill(keeper_, SIGUSR1);  // still ours
+  ::kill(keeper_, SIGUSR1);  // not reaped yet: still its process id
   order("1", "kill 0");
   EXPECT_TRUE(wait_for("1.1 ended 0 1 signal 9")) << "it still keeps";
-  ::kill(keeper_, SIGTERM);  // still ours
+  ::kill(keeper_, SIGTERM);  // not reaped yet: still its process id
   EXPECT_EQ(code_of_keeper(), 5);
 }
 
 TEST_F(KeeperProcess, EndsWithoutAFaceToo) {
   start(1, false);
   ASSERT_TRUE(wait_for("1.1 peer 0 1"));
-  ::kill(keeper_, SIGTERM);  // still ours
+  ::kill(keeper_, SIGTERM);  // not reaped yet: still its process id
   EXPECT_EQ(code_of_keeper(), 0);
   EXPECT_TRUE(nobody_is_left());
 }
@@ -231,7 +231,7 @@ TEST_F(KeeperProcess, WhoeverDoesNotFinishIsKilledAfterItsLimit) {
   order("2", "stubborn");
   ASSERT_TRUE(wait_for("0.1 is stubborn"));
   ASSERT_TRUE(wait_for("2.1 is stubborn"));
-  ::kill(keeper_, SIGINT);  // still ours
+  ::kill(keeper_, SIGINT);  // not reaped yet: still its process id
   EXPECT_EQ(code_of_keeper(), 1) << "nobody has judged the run";
   EXPECT_TRUE(nobody_is_left());
 }
@@ -266,7 +266,7 @@ TEST_F(KeeperProcess, NobodyIsLeftWhenTheKeeperItselfIsKilled) {
   ASSERT_TRUE(wait_for("face begin"));
   ASSERT_TRUE(wait_for("2.1 peer 1 1"));
   ASSERT_TRUE(wait_for("2.1 peer 0 1"));
-  ::kill(keeper_, SIGKILL);  // still ours
+  ::kill(keeper_, SIGKILL);  // not reaped yet: still its process id
   EXPECT_EQ(code_of_keeper(), 256 + SIGKILL);
   EXPECT_TRUE(nobody_is_left());
 }
@@ -276,7 +276,7 @@ TEST_F(KeeperProcess, AManagerThatDiesAgainAndAgainIsStartedMoreAndMoreSlowly) {
   start(1);
   ASSERT_TRUE(wait_for("1.6 begin"));  // pauses of 0, 10, 20, 40 and 80 ms
   EXPECT_TRUE(::kill(pid_of("0.1"), 0) == 0) << "the rtpu goes on";
-  ::kill(keeper_, SIGTERM);  // still ours
+  ::kill(keeper_, SIGTERM);  // not reaped yet: still its process id
   EXPECT_EQ(code_of_keeper(), 5);
 }
 

@@ -23,7 +23,7 @@ Result<void> KeptFace::start() {
   std::vector<const char*> words;
   for (const std::string& word : words_) words.push_back(word.c_str());
   const int passed[] = {pages_.descriptor()};
-  auto process = Process::start(words[0], words, passed, SIGTERM);  // an early end waits until it listens
+  auto process = Process::start(words[0], words, passed, SIGTERM);  // SIGTERM stays pending until the client listens
   if (!process) return process.error();
   process_ = *std::move(process);
   return {};

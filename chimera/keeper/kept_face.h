@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The face of a run as its keeper has it: replaced when it dies, because it is the one that ends the run in time.
+// The run client as its keeper holds it. A client that dies is replaced, because the client ends the run in time.
 // docs/formats/processes.md, "The run client".
 #pragma once
 
@@ -14,35 +14,35 @@
 
 namespace chimera {
 
-/// Single-threaded. Context: setup; never blocks but in start() and end().
+/// Single-threaded. Context: setup; blocks only in start() and end().
 class KeptFace {
  public:
-  /// `words`: program and arguments; none: a run without a face, of which nothing else is to be asked but is_wanted().
+  /// `words`: program and arguments. If empty, the run has no client, and only is_wanted() may be called.
   explicit KeptFace(std::vector<std::string> words) : words_(std::move(words)) {}
-  /// Ends the process of the face.
+  /// Ends the process of the client.
   ~KeptFace() { end(); }
   KeptFace(const KeptFace&) = delete;
   KeptFace& operator=(const KeptFace&) = delete;
 
   bool is_wanted() const noexcept { return !words_.empty(); }
-  /// Starts it, for the first time or after a death. Refuses when it cannot be.
+  /// Starts the client, for the first time or after a death. Refuses if the process cannot start.
   Result<void> start();
   enum class Fate : std::uint8_t {
     kNothingNew,
-    kExited,   ///< by itself, with code()
-    kDied,     ///< by a signal
-    kGivenUp,  ///< so too, too often in a short time
+    kExited,   ///< exit by itself, with code()
+    kDied,     ///< death by a signal
+    kGivenUp,  ///< too many deaths by signals in a short time
   };
-  /// What has happened since the last look.
+  /// Polls the process for its end.
   Fate poll();
-  /// "signal 9 (SIGKILL)": of what it died last.
+  /// Signal of the last death: "signal 9 (SIGKILL)".
   Message cause() const noexcept { return signal_text(page().last_signal); }
   bool lives() const noexcept { return process_.is_held(); }
   int code() const noexcept { return code_; }
   pid_t pid() const noexcept { return process_.pid(); }
   int pidfd() const noexcept { return process_.pidfd(); }
   void signal(int number) const noexcept { process_.signal(number); }
-  /// Ends it at once, if it lives. May block for 1 s.
+  /// Kills the client if it lives. May block for 1 s.
   void end();
   /// Requires: start() was called.
   FacePage& page() const noexcept { return *reinterpret_cast<FacePage*>(pages_.bytes().data()); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Starts the guard, tells it who lives, and passes on what it says.
+// Starts the guard, introduces rtpus to it, and passes its news on to the manager.
 #include "chimera/keeper/kept_guard.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ Result<void> KeptGuard::start(const std::string& program, std::span<const std::s
 
 Channel KeptGuard::make_line() {
   auto ends = lives() ? Channel::pair() : Result<std::pair<Channel, Channel>>(std::pair<Channel, Channel>());
-  if (!ends) return {};  // as without a guard
+  if (!ends) return {};  // the rtpu then runs as without a guard
   new_line_ = std::move(ends->first);
   return std::move(ends->second);
 }
@@ -39,7 +39,7 @@ void KeptGuard::watch(std::uint32_t index, std::uint32_t incarnation, int pidfd)
   new_line_ = Channel();
 }
 
-// A guard that does not take its messages would write nothing for whom it does not know.
+// Kills a guard that accepts no messages: it would not know the rtpu and would write nothing for it.
 void KeptGuard::send(const GuardMessage& message, int passed) const {
   if (channel_.is_open() && !channel_.send(bytes_of(message), passed)) process_.signal(SIGKILL);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The guard as its keeper has it: chimera/guard/guard.h. docs/formats/processes.md, "The guard".
+// The guard as its keeper holds it: chimera/guard/guard.h. docs/formats/processes.md, "The guard".
 #pragma once
 
 #include <cstdint>
@@ -15,36 +15,36 @@
 
 namespace chimera {
 
-/// One process, started once: one that dies is told of and not replaced, because the descriptors that it held are gone
-/// with it. Single-threaded. Context: setup; never blocks but in end().
+/// One process, started once. A dead guard is reported and not replaced, because the descriptors that it held are lost.
+/// Single-threaded. Context: setup; blocks only in end().
 class KeptGuard {
  public:
-  /// `limits`: words of its command line. Refuses what the system refuses.
+  /// `limits`: words of its command line. Refuses if the system refuses the process.
   Result<void> start(const std::string& program, std::span<const std::string> limits, int image);
-  /// It was started, and has not been seen dead.
+  /// True from the start until the keeper sees the death of the guard.
   bool lives() const noexcept { return process_.is_held(); }
   int channel() const noexcept { return channel_.descriptor(); }
   int pidfd() const noexcept { return process_.pidfd(); }
   pid_t pid() const noexcept { return process_.pid(); }
 
-  /// A line between the guard and a unit that is to be started: answers the end of the unit, closed where there is no
-  /// guard; the other one is given to the guard by watch().
+  /// Makes the line between the guard and the rtpu that starts next. Returns the rtpu's end, closed if there is no
+  /// guard; watch() gives the other end to the guard.
   Channel make_line();
-  /// The unit of the last line runs. The descriptor stays the caller's.
+  /// Introduces the rtpu of the last line to the guard: it runs now. The caller keeps the descriptor.
   void watch(std::uint32_t index, std::uint32_t incarnation, int pidfd);
 
-  /// Takes what the guard has said, and its death; what the manager is to know is added to `news`.
+  /// Reads the messages of the guard and notices its death. Appends the news for the manager to `news`.
   void poll(std::vector<KeeperMessage>& news);
-  /// What a manager that comes is to know of it: kGuardState, or nothing for a guard that is as it should be.
+  /// Appends the state of the guard for a new manager: kGuardState, or nothing if the guard is well.
   void introduce(std::vector<KeeperMessage>& news) const;
-  /// Lets it end, and ends it when it does not within `limit`. Requires: no unit lives. Blocks.
+  /// Asks the guard to end, and kills it after `limit`. Requires: no rtpu lives. Blocks.
   void end(Nanoseconds limit);
 
  private:
   void send(const GuardMessage& message, int passed) const;
 
   Process process_;
-  Channel channel_, new_line_;  // the guard's end of the line of the unit that is being started
+  Channel channel_, new_line_;  // new_line_: the guard's end of the line of the rtpu that starts next
   KeeperMessage state_{.kind = KeeperMessage::Kind::kGuardState, .code = KeeperMessage::kGuardIsWell};
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Starts the process of a peer, exchanges messages with it, and keeps what has become of it.
+// Starts the process of a peer, exchanges messages with it, and keeps its last start or end.
 #include "chimera/keeper/kept_peer.h"
 
 #include <algorithm>
@@ -18,7 +18,8 @@ using Kind = KeeperMessage::Kind;
 
 namespace {
 
-/// What is started while it lives comes from there. Of one thread only: the environment is the whole process's.
+/// While it lives, new processes inherit `origin`. Use it in one thread only: the environment belongs to the whole
+/// process.
 class StartsFrom {
  public:
   explicit StartsFrom(const std::string& origin) {

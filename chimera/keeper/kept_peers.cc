@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Starts and restarts the processes of a subsystem, hands their memory round, and tells who lives.
+// Starts and restarts the processes of a subsystem, passes their memory on, and reports their starts and ends.
 #include "chimera/keeper/kept_peers.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ using Kind = KeeperMessage::Kind;
 
 namespace {
 
-constexpr Nanoseconds kDyingLimit = seconds(1);    // for SIGKILL to be carried out
+constexpr Nanoseconds kDyingLimit = seconds(1);    // for SIGKILL to take effect
 constexpr Nanoseconds kWritingLimit = seconds(3);  // longer than the guard waits for a device
 
 }  // namespace
@@ -49,7 +49,7 @@ Result<void> KeptPeers::start_all() {
   pages_ = *std::move(pages);
   if (!plan_.guard_program.empty())
     if (auto started = guard_.start(plan_.guard_program, plan_.guard_limits, plan_.image); !started) return started;
-  // The manager has most to do before it can serve; the inventory it is owed is told as it comes into being.
+  // The manager starts first, because its start takes longest. It gets the inventory piece by piece as the rtpus start.
   if (auto started = start(manager_index()); !started) return started;
   for (std::uint32_t rtpu = 0; rtpu < manager_index(); ++rtpu) {
     if (auto started = start(rtpu); !started) return started;
@@ -67,7 +67,7 @@ Result<void> KeptPeers::start(std::uint32_t index) {
   else passed.push_back(plan_.objects);
   const Channel line = is_manager ? Channel() : guard_.make_line();
   if (line.is_open()) passed.push_back(line.descriptor());
-  pages_.show_life(index, incarnation);  // before it can look
+  pages_.show_life(index, incarnation);  // before the process reads the page
   pages_.ring_all();
   const auto started = peers_[index].start({.program = is_manager ? plan_.manager_program : plan_.rtpu_program,
                                             .passed = passed,
@@ -85,7 +85,8 @@ void KeptPeers::restart(std::uint32_t index) {
   show_end(index);
 }
 
-/// The newcomer is told of the others, and the manager of a new rtpu.
+/// Passes the memory of the other peers to a new rtpu and reports it to the manager; gives a new manager the whole
+/// inventory.
 void KeptPeers::introduce(std::uint32_t newcomer) {
   const KeptPeer& peer = peers_[newcomer];
   if (newcomer != manager_index()) {
@@ -99,14 +100,14 @@ void KeptPeers::introduce(std::uint32_t newcomer) {
     peers_[rtpu].pass_segment_to(peer);
     if (!lives) tell_life(rtpu);
   }
-  peer.pass_segment_to(peer);  // its predecessor's
+  peer.pass_segment_to(peer);  // the memory of its predecessor
   std::vector<KeeperMessage> news;
   guard_.introduce(news);
   for (const KeeperMessage& message : news) peer.send(message);
   peer.send({.kind = Kind::kComplete});
 }
 
-/// Tells the manager whether the peer lives.
+/// Sends the last start or end of the peer to the manager.
 void KeptPeers::tell_life(std::uint32_t of) { manager().send(peers_[of].life(), peers_[of].pidfd()); }
 
 void KeptPeers::read_messages(std::uint32_t index, std::vector<KeeperMessage>& wishes) {
@@ -130,7 +131,7 @@ void KeptPeers::read_guard() {
 bool KeptPeers::has_ended(std::uint32_t index, std::vector<KeeperMessage>& wishes) {
   ProcessEnd how;
   if (!peers_[index].has_ended(how)) return false;
-  read_messages(index, wishes);  // what it sent before it ended
+  read_messages(index, wishes);  // messages that it sent before it ended
   peers_[index].note_end(how, clock_.now());
   show_end(index);
   return true;
@@ -138,7 +139,7 @@ bool KeptPeers::has_ended(std::uint32_t index, std::vector<KeeperMessage>& wishe
 
 void KeptPeers::show_end(std::uint32_t index) {
   pages_.show_life(index, 0);
-  if (index != manager_index()) tell_life(index);  // before the bells: each of them is a system call
+  if (index != manager_index()) tell_life(index);  // before the bells: each ring is a system call
   pages_.ring_all();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rtpus and the manager together: who is started, what each is told of the others, and how all of them end.
+// The rtpus and the manager together: starts them, passes messages and memory between them, and ends them.
 // docs/formats/processes.md, "Keeper messages".
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace chimera {
 
-/// What to start. The descriptors stay the caller's.
+/// The processes to start. The caller keeps the descriptors.
 struct PeerPlan {
   std::string rtpu_program, manager_program;
   std::string guard_program{};              ///< empty: no task has a device
@@ -25,7 +25,7 @@ struct PeerPlan {
   int image = -1, objects = -1, bundle = -1, listening = -1;
 };
 
-/// By number: the rtpus, then the manager. Single-threaded. Context: setup; never blocks.
+/// Peers by number: the rtpus, then the manager. Single-threaded. Context: setup; blocks only in end_all().
 class KeptPeers {
  public:
   explicit KeptPeers(PeerPlan plan);
@@ -33,25 +33,26 @@ class KeptPeers {
   KeptPeers(const KeptPeers&) = delete;
   KeptPeers& operator=(const KeptPeers&) = delete;
 
-  /// Makes the decision page and the keeper page and starts everybody; refuses when one cannot be.
+  /// Makes the decision page and the keeper page, and starts all peers. Refuses if a page or a process cannot be made.
   Result<void> start_all();
-  /// Starts the next incarnation of one that does not live. One that cannot be started counts as ended with 127.
+  /// Starts the next incarnation of a dead peer. A peer that cannot start counts as ended with code 127.
   void restart(std::uint32_t index);
-  /// Takes what `index` has sent; its new memory goes to all others. What the manager wants is added to `wishes`.
+  /// Reads the messages of `index` and passes its new memory to all others. Appends the manager's requests to `wishes`.
   void read_messages(std::uint32_t index, std::vector<KeeperMessage>& wishes);
-  /// Takes what the guard has said, for the manager.
+  /// Reads the messages of the guard and passes them to the manager.
   void read_guard();
-  /// True, once, when `index` has ended: then the others know.
+  /// True, once, when `index` has ended. The page and the manager already show the end then.
   bool has_ended(std::uint32_t index, std::vector<KeeperMessage>& wishes);
-  /// Tells every rtpu to end its tasks; from here on everybody sees that it ends.
+  /// Asks every rtpu to end its tasks. The keeper page shows all processes that the run ends.
   void finish_rtpus();
-  /// Tells the manager to end when it has done what is left.
+  /// Asks the manager to finish its work and end.
   void finish_manager();
-  /// Ends the processes that dead rtpus left behind; `other` is a child that other code of this process waits for. Due
-  /// again at orphans_due().
+  /// Ends the processes that dead rtpus left behind. Spares `other`, a child that other code of this process waits for.
+  /// Due again at orphans_due().
   void check_orphans(pid_t other);
   Nanoseconds orphans_due() const noexcept { return orphans_.due(); }
-  /// SIGKILL for every child that is left, and for its orphans, until none is left. Blocks for 2 s at most.
+  /// Sends SIGKILL to every child that is left and to its orphans, and waits for their ends. Blocks for at most 1 s for
+  /// the peers, 6 s for the guard and 1 s for the orphans.
   void end_all();
 
   std::uint32_t size() const noexcept { return static_cast<std::uint32_t>(peers_.size()); }
@@ -60,7 +61,7 @@ class KeptPeers {
   const KeptPeer& manager() const noexcept { return peers_.back(); }
   const KeptGuard& guard() const noexcept { return guard_; }
   bool any_rtpu_lives() const noexcept;
-  /// What all of them see. Requires: start_all() was called.
+  /// The pages that all peers see. Requires: start_all() was called.
   KeeperPages& pages() noexcept { return pages_; }
 
  private:

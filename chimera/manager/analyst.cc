@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop of the analyst: takes one question after the other and answers it within bounds of memory.
+// The loop of the analyst: reads one question after the other and answers it within a limit of memory.
 #include "chimera/manager/analyst.h"
 
 #include <new>
@@ -33,7 +33,7 @@ Result<Question> question_in(const QuestionMessage& asked, int passed) {
   return Question{asked.kind, {begin, asked.file_bytes}, {begin + asked.file_bytes, asked.text_bytes}};
 }
 
-/// False when the manager is gone.
+/// False if the manager is gone.
 bool answer(const Channel& channel, const QuestionMessage& asked, int passed, const Library& library) {
   QuestionMessage told{.what = QuestionMessage::What::kNoMemory, .kind = asked.kind, .number = asked.number};
   const auto question = question_in(asked, passed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who asked the manager for something that leaves a receipt.
+// Role and user of a request to the manager that leaves a receipt.
 #pragma once
 
 #include <cstdint>

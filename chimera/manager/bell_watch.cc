@@ -30,7 +30,7 @@ BellWatch::~BellWatch() {
 }
 
 void BellWatch::watch() noexcept {
-  std::uint32_t seen = bell_.read() - 1;  // the first wait returns at once: what was rung before counts
+  std::uint32_t seen = bell_.read() - 1;  // the first wait returns at once: an earlier ring counts
   while (!stop_) {
     bell_.wait_until(seen, kNever);
     const std::uint32_t now = bell_.read();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A doorbell as a descriptor: who waits in epoll cannot sleep on a word in memory, so a small thread does it.
+// A doorbell as a descriptor. A loop in epoll cannot sleep on a word in memory, so a small thread does it.
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@ namespace chimera::manager {
 /// Context: setup. One reader.
 class BellWatch {
  public:
-  /// `bell` outlives it. Refuses when there is no descriptor or thread for it.
+  /// `bell` outlives it. Refuses if a descriptor or thread cannot be made.
   static Result<std::unique_ptr<BellWatch>> start(Doorbell bell);
   BellWatch(const BellWatch&) = delete;
   BellWatch& operator=(const BellWatch&) = delete;
@@ -22,7 +22,7 @@ class BellWatch {
 
   /// Readable after the bell rang.
   int descriptor() const noexcept { return event_.descriptor(); }
-  /// Until it rings again. To be called before looking at what the bell was rung for.
+  /// Makes descriptor() unreadable until the bell rings again. Call it before reading the data behind the bell.
   void reset() const noexcept { event_.reset(); }
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kVersion = 1;
 
-/// Texts are bytes to the bundle: what is no UTF-8 goes as one code point a byte.
+/// The bundle treats texts as bytes: text that is not UTF-8 is written as one code point for each byte.
 Json text_json(const std::string& text) {
   if (is_utf8(text)) return text;
   Json bytes = Json::array();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `chimera run` read at its start, as one text: with it another process makes the identical Configuration without
-// reading a file, now and after every restart, whatever has become of the files. docs/formats/bundle.md.
+// All that `chimera run` read at its start, as one text. Another process makes the identical Configuration from it
+// without reading a file, at every restart, even if the files have changed. docs/formats/bundle.md.
 #pragma once
 
 #include <cstdint>
@@ -21,10 +21,11 @@ struct Bundle {
   std::string program;      ///< version of the program, "0.1.0"
   std::string file;         ///< the description as its user named it; "" when idle
   std::string description;  ///< its text; "" when idle: nothing is loaded
-  /// Groups whose members get that role at the door; nobody beside root and the keeper's user when not given.
+  /// Groups whose members get that role at ControlServer. Without a group only root and the keeper's user have the
+  /// role.
   std::optional<std::uint32_t> observe_group, operate_group, configure_group;
   Library library;          ///< all installed components and the units
-  std::vector<Setting> settings = {};  ///< values in the place of those of the text
+  std::vector<Setting> settings = {};  ///< values that replace those of the text
 
   bool is_idle() const noexcept { return description.empty(); }
 };
@@ -32,11 +33,11 @@ struct Bundle {
 /// The bundle as text, without a zero. Context: setup; may block.
 std::string encode(const Bundle& bundle);
 
-/// The bundle in `text`; zeros behind it (the rest of a page) are passed over. Refuses, saying where, what is no
-/// bundle of this version, and a descriptor or unit text that their readers refuse. Context: setup; may block.
+/// The bundle in `text`; ignores zeros after it (the rest of a page). Refuses, with the place, a text that is not a
+/// bundle of this version, and a descriptor or unit text that its reader refuses. Context: setup; may block.
 Result<Bundle> decode_bundle(std::string_view text);
 
-/// Verifies the description, with the settings, of a bundle that is not idle: keeper and manager come to one verdict.
+/// Verifies the description of a bundle that is not idle, with its settings. Keeper and manager reach the same verdict.
 /// Context: setup.
 Verdict verify(const Bundle& bundle);
 

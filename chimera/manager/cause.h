@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a real-time unit ended, in words.
+// The cause of an rtpu's end, in words.
 #pragma once
 
 #include <string>
@@ -10,17 +10,17 @@
 
 namespace chimera::manager {
 
-/// "pid.cycle" for BlockHead::running and the like; "" between jobs, and for a word that no rtpu would write. Context:
-/// setup.
+/// "pid.cycle" for BlockHead::running and similar words; "" between jobs, and for a word that no rtpu would write.
+/// Context: setup.
 std::string running_text(const ApplicationSpec& spec, std::uint32_t running);
 
-/// "pid.off did not return within 2 s" of a unit that gave itself up, and "pid.cycle ended its thread"; "" when it did
-/// not. Context: setup.
+/// "pid.off did not return within 2 s" of an rtpu that gave itself up, or "pid.cycle ended its thread"; "" for other
+/// ends. Context: setup.
 std::string hung_text(const ApplicationSpec& spec, const BlockHead& left);
 
 /// "ended by signal 11 (SIGSEGV) in pid.cycle; core dumped", or "was ended: pid.off did not return within 2 s". `left`
-/// is the block of the incarnation that ended; not there: it never showed one. `made` is what it loaded or constructed
-/// then ("while it loaded ..."). Context: setup.
+/// is the block of the incarnation that ended; it is not there if that incarnation never made one. `made` names what
+/// the rtpu was loading or constructing then ("while it loaded ..."). Context: setup.
 std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, const BlockView& left,
                        const std::string& made = {});
 

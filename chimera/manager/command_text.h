@@ -10,7 +10,7 @@
 
 namespace chimera::manager {
 
-inline constexpr std::size_t kTasksNamed = 16;  ///< of a command that names more
+inline constexpr std::size_t kTasksNamed = 16;  ///< of a command with more tasks
 
 /// "off pid, arm", "ring lamp", "ring a, ..., p and 9984 more". Context: setup.
 inline std::string command_text(const ApplicationSpec& spec, Signal signal, std::span<const TaskId> tasks) {

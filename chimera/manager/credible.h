@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a real-time unit counted, read from memory that a stray pointer of its components may have written over.
+// The counts of an rtpu, read from memory that a stray pointer of its components may have overwritten.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace chimera::manager {
 
-/// Could these be counts of a subsystem that runs for `age`? Nothing is counted faster than the shortest period, times
-/// the inputs of a cycle, and nothing took longer than all of it. Context: any; wait-free.
+/// True if these can be counts of a subsystem that runs for `age`. No count grows faster than the shortest period
+/// allows, times the inputs of a cycle; no duration exceeds `age`. Context: any; wait-free.
 inline bool is_credible(const Profile& counted, Nanoseconds age) noexcept {
   const std::int64_t longest = std::max<std::int64_t>((age + seconds(1)).count, 0);
   const auto most = static_cast<std::uint64_t>(longest / kShortestPeriod.count) * CHIMERA_MAX_PORTS;
@@ -22,7 +22,7 @@ inline bool is_credible(const Profile& counted, Nanoseconds age) noexcept {
     if (count > most) return false;
   const auto is_duration = [&](Nanoseconds took) { return took.count >= -longest && took.count <= longest; };
   const auto is_spread = [&](const Spread& spread) {
-    const bool has_values = spread.min <= spread.max;  // else as at first: nothing was added, or just now
+    const bool has_values = spread.min <= spread.max;  // if false: no value yet, or the first one is being added
     return spread.count <= most && (!has_values || (is_duration(spread.min) && is_duration(spread.max)));
   };
   return is_spread(counted.response) && is_spread(counted.start_delay) &&
@@ -31,10 +31,10 @@ inline bool is_credible(const Profile& counted, Nanoseconds age) noexcept {
          (counted.on_since == kNever || counted.on_since.count >= 0) && is_duration(counted.on_before);
 }
 
-/// A copy may have the count of the first value and not yet the value. Context: any; wait-free.
+/// Empties a spread that counts its first value but does not contain it yet. Context: any; wait-free.
 inline Spread whole(const Spread& spread) noexcept { return spread.min <= spread.max ? spread : Spread{}; }
 
-/// What can be counted with, of what was read: nothing where it cannot be true. Context: any; wait-free.
+/// The counts of `read` if they are credible; empty counts if not. Context: any; wait-free.
 inline Profile credible(const Profile& read, Nanoseconds age) noexcept {
   if (!is_credible(read, age)) return {};
   Profile counted = read;

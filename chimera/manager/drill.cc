@@ -80,7 +80,7 @@ void Drill::show_flag(bool up) {
   world_.announce();
 }
 
-// What was published before the flag went up says nothing about it.
+// Judges a task only by publications after the flag went up; earlier ones prove nothing.
 void Drill::judge(DrillPart& part) const {
   if (part.verdict != DrillVerdict::kWaiting) return;
   const TaskStatus status = world_.peers.status(part.task);
@@ -101,7 +101,8 @@ void Drill::judge(DrillPart& part) const {
   part.after = {slot.published_ns - present_->raised.count};
 }
 
-// First the tasks are waited for, then the guard. A unit that has died meanwhile is not killed again.
+// Waits for the tasks first, then for the guard. True if the drill must go on. An rtpu that has died already is not
+// killed again.
 bool Drill::goes_on(Nanoseconds now) {
   DrillOutcome& outcome = present_->outcome;
   const bool is_over = now >= present_->until;
@@ -135,7 +136,7 @@ void Drill::look(Nanoseconds now) {
   DrillOutcome& outcome = present_->outcome;
   if (!world_.is_ending() && goes_on(now)) return;
   outcome.flag_for = now - present_->raised;
-  for (const DrillPart& part : outcome.tasks)  // seen after this turn of the manager had begun
+  for (const DrillPart& part : outcome.tasks)  // a report may be newer than `now`, the start of this round
     if (part.verdict == DrillVerdict::kSafe) outcome.flag_for = std::max(outcome.flag_for, part.after);
   show_flag(false);
   const Present over = std::move(*present_);

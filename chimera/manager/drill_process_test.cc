@@ -112,7 +112,7 @@ TEST_F(DrillTest, KillsAUnitWhenAllAreSafeAndTellsWhatTheGuardWrote) {
   ASSERT_TRUE(fake.until([&] { return fake.killed == 0u; }));
   EXPECT_FALSE(got) << "the guard has said nothing";
   KeeperMessage written{.kind = KeeperMessage::Kind::kFramesWritten, .index = 1, .code = 1, .at = now()};
-  fake.driver().drill().take(written);  // of another unit
+  fake.driver().drill().take(written);  // of another rtpu
   fake.step();
   EXPECT_FALSE(got);
   written.index = 0;

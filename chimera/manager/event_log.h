@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The events of a subsystem, numbered without a gap from its start, over every restart of the manager. The last 10,000
-// are kept; a client that asks for older events learns how many are lost.
+// The events of a subsystem, numbered without a gap from its start, over every restart of the manager. The log keeps
+// the last 10,000; a client that asks for older events learns how many are lost.
 #pragma once
 
 #include <cstdint>
@@ -28,10 +28,10 @@ inline constexpr std::size_t kEventsKept = 10'000;
 /// Single-threaded. Context: setup; may allocate.
 class EventLog {
  public:
-  /// Goes on behind number `last`, which a predecessor gave out.
+  /// Continues after number `last`, which a predecessor used.
   explicit EventLog(std::uint64_t last = 0) noexcept : last_(last) {}
 
-  /// Takes an event under the next number; `event.number` is ignored.
+  /// Adds an event under the next number; ignores `event.number`.
   void add(LoggedEvent event);
   /// Number of the oldest event kept, last() + 1 when there is none; and of the newest, 0 before the first.
   std::uint64_t first() const noexcept { return last_ - kept_.size() + 1; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells of deaths and lost output of the client of a run.
+// Logs deaths and lost output of the run client.
 #include "chimera/manager/face_watch.h"
 
 #include <string>

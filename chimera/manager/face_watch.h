@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What becomes of the face of the run, as the keeper publishes it: events, and a part of `status`.
+// Deaths and lost output of the run client, as the keeper publishes them: events, and a part of `status`.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace chimera::manager {
 
 struct ManagerState;
 
-/// Tells each death and each loss once in the life of a manager: the events of its predecessor are gone.
+/// Logs each death and each loss once in the life of a manager, because the events of its predecessor are lost.
 class FaceWatch {
  public:
   /// Context: setup; may allocate.

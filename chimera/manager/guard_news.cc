@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts into words what the guard did.
+// Writes the guard's reports as sentences.
 #include "chimera/manager/guard_news.h"
 
 #include <cstdio>

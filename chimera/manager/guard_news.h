@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the guard did, as events: docs/formats/processes.md, "The guard".
+// The guard's reports as events: docs/formats/processes.md, "The guard".
 #pragma once
 
 #include "chimera/manager/manager_state.h"
@@ -7,8 +7,7 @@
 
 namespace chimera::manager {
 
-/// Events of the kind `safe` for kFramesWritten, kSilent and kGuardState; nothing for any other message.
-/// Context: setup.
+/// Logs events of the kind `safe` for kFramesWritten, kSilent and kGuardState; ignores other messages. Context: setup.
 void tell_of_guard(ManagerState& world, const KeeperMessage& message, Nanoseconds now);
 
 }  // namespace chimera::manager

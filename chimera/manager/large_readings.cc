@@ -40,7 +40,7 @@ void LargeReadings::begin_reading(std::string& text) {
   ++next_;
   std::string head = reading_head_json(world_, variable, reading_, now()).dump();
   if (reading_.is_valid) {
-    head.pop_back();  // goes on with "text" and "value"
+    head.pop_back();  // "text" and "value" follow
     text += head + R"(,"text":")";
     text_.emplace(reading_.form, reading_.value, ValueRenderer::As::kText);
     value_.emplace(reading_.form, reading_.value, ValueRenderer::As::kJson);

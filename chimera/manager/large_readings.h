@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Readings whose values are too large to be written at once: 4 MiB of numbers take half a second.
+// Readings whose values are too large for one step of the loop: 4 MiB of numbers take half a second.
 #pragma once
 
 #include <optional>
@@ -13,17 +13,17 @@
 
 namespace chimera::manager {
 
-/// Bytes of values; of more than these the readings are made in pieces.
+/// Bytes of values above which the readings are made in pieces.
 inline constexpr std::size_t kLargeReadings = std::size_t{1} << 14;
 
 /// The present size of the values of these variables. Context: setup.
 std::size_t bytes_of(const ManagerState& world, const std::vector<VariableId>& variables);
 
-/// {name: reading} as readings_json() makes them. Each variable is read when those before it have been taken, so that
-/// at most one value is held. Context: setup.
+/// {name: reading} as readings_json() makes them. Reads a variable only after those before it have been sent, so that
+/// it holds at most one value. Context: setup.
 class LargeReadings final : public control::Pieces {
  public:
-  /// Between `begin`, which is not empty, and `end`. `world` outlives it.
+  /// The readings stand between `begin`, which is not empty, and `end`. `world` outlives it.
   LargeReadings(const ManagerState& world, std::vector<VariableId> variables, std::string begin, std::string end)
       : world_(world), variables_(std::move(variables)), begin_(std::move(begin)), end_(std::move(end)) {}
   bool append_to(std::string& text) override;
@@ -37,7 +37,7 @@ class LargeReadings final : public control::Pieces {
   std::string begin_, end_;
   std::size_t next_ = 0;  // of variables_
   VariableReading reading_;
-  std::optional<ValueRenderer> text_, value_;  // what of reading_ is not written yet
+  std::optional<ValueRenderer> text_, value_;  // parts of reading_ that are not written yet
 };
 
 }  // namespace chimera::manager

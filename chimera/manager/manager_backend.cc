@@ -25,8 +25,8 @@ constexpr const char* kSignals[] = {signal_name(Signal::kSpawn), signal_name(Sig
                                     signal_name(Signal::kOff),   signal_name(Signal::kKill),
                                     signal_name(Signal::kClear), signal_name(Signal::kReinit)};
 
-/// The slow method that the unit is known to hang in, and what a person can do; "": nothing is known. Of a cycle the
-/// data of the error tell.
+/// The slow method in which the rtpu hangs, and what a person can do; "" if none is known. For a hang in `cycle`, the
+/// data of the error names the method.
 std::string under_way(const ManagerState& world, RtpuId rtpu) {
   const RtpuRecord& record = world.rtpus[rtpu.index];
   const PeerSegment& segment = world.peers[rtpu];
@@ -37,7 +37,7 @@ std::string under_way(const ManagerState& world, RtpuId rtpu) {
          ", and the tasks that were ON come back";
 }
 
-/// Error -32006 with what the real-time unit runs.
+/// Error -32006 with the method that the rtpu runs.
 RpcResponse no_answer(const ManagerState& world, RtpuId rtpu, const std::string& text) {
   const PeerSegment& segment = world.peers[rtpu];
   const std::string running = segment.is_there() ? running_text(world.spec(), segment.block().head().running) : "";
@@ -56,7 +56,7 @@ std::variant<TaskBits, RpcResponse> named_set(const ApplicationSpec& spec, const
   return RpcResponse::unknown("no configuration '" + name + "'" + hint, name, near);
 }
 
-/// What `switch` asks for: a configuration, or what is ON and `on` without `off`.
+/// The tasks that `switch` requests: a configuration, or the tasks that are ON plus `on` minus `off`.
 std::variant<TaskBits, RpcResponse> wanted_tasks(const ManagerState& world, const Json& parameters) {
   const bool is_named = parameters.contains("configuration");
   const bool is_listed = parameters.contains("on") || parameters.contains("off");
@@ -175,7 +175,7 @@ RpcResponse receipts_answer(const ReceiptArchive& archive, std::size_t n) {
       std::to_string(archive.unfiled()) + ", \"fault\": " + or_null(archive.fault()) + "}"));
 }
 
-/// `subscribe` and `unsubscribe` are carried out by the door.
+/// ControlServer carries out `subscribe` and `unsubscribe`.
 ManagerBackend::Handler ManagerBackend::handler(MethodId method) noexcept {
   using Me = ManagerBackend;
   static constexpr struct {
@@ -262,7 +262,7 @@ void ManagerBackend::receipts(const Request& request) {
   request.reply(receipts_answer(driver_.receipts(), control::number(request.parameters, "last", 20)));
 }
 
-/// None: it was answered why there is no such set of tasks.
+/// The requested set of tasks. None: the answer with the refusal has been sent.
 std::optional<TaskBits> ManagerBackend::wanted(const Request& request) const {
   auto found = wanted_tasks(world(), request.parameters);
   if (const auto* refused = std::get_if<RpcResponse>(&found)) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the door opens to: the methods of the control protocol. Those that change nothing are ReadMethods; each of the
-// others is a function of its own, and the answer to a signal is what the step function answered, in the words of the
-// protocol.
+// The methods of the control protocol behind ControlServer. ReadMethods answers those that change nothing; each other
+// one is a function here. The answer to a signal is the answer of the step function in the words of the protocol.
 #pragma once
 
 #include <memory>
@@ -21,21 +20,21 @@ namespace chimera::manager {
 /// The states of the tasks before and after, or the refusal with its kind, place and remedy. Context: setup.
 control::RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAnswer& answer);
 
-/// The receipt of a switch that was begun, or why it was not. Context: setup.
+/// The receipt of a switch, or the reason why it did not begin. Context: setup.
 control::RpcResponse switch_answer(const ManagerState& world, const SwitchOutcome& outcome);
 
-/// What a drill found out, by task. Context: setup.
+/// The results of a drill, by task. Context: setup.
 Json drill_json(const ManagerState& world, const DrillOutcome& outcome);
-/// What a switch would do now, or why it would be refused. Context: setup.
+/// The plan of a switch now, or the reason why it would be refused. Context: setup.
 Json plan_json(const ManagerState& world, const ForeseenSwitch& foreseen);
 
-/// The last `n` receipts, and what is known of their file. Context: setup.
+/// The last `n` receipts, and the state of their file. Context: setup.
 control::RpcResponse receipts_answer(const ReceiptArchive& archive, std::size_t n);
 
 /// Context: setup.
 class ManagerBackend final : public control::ControlBackend {
  public:
-  /// `driver` and `questions` outlive it. Without `questions` (null) analyses are made in the call.
+  /// `driver` and `questions` outlive it. If `questions` is null, analyses are made in the call.
   explicit ManagerBackend(ManagerLoop& driver, Questions* questions = nullptr)
       : driver_(driver), questions_(questions), reads_(driver.world()), feeds_(driver.world()) {}
 
@@ -54,7 +53,7 @@ class ManagerBackend final : public control::ControlBackend {
   std::shared_ptr<const Json> pull(std::uint64_t subscription) override { return feeds_.pull(subscription); }
 
  private:
-  /// One call: its parameters have been checked by the row of its method.
+  /// One call: the row of its method has checked its parameters.
   struct Request {
     const Json& parameters;
     const control::Caller& caller;

@@ -144,7 +144,7 @@ TEST_F(ManagerBackendTest, StatusIsReadOutOfTheBlocks) {
   EXPECT_EQ(law["fault"], nullptr);
   ASSERT_EQ(law["inputs"].size(), 2u);
   EXPECT_EQ(law["inputs"][0]["port"], "y");
-  EXPECT_TRUE(law["inputs"][0]["age_ns"].is_number());  // 0 when it is written while the answer is made
+  EXPECT_TRUE(law["inputs"][0]["age_ns"].is_number());  // 0 if it is written while the answer is made
   EXPECT_LT(law["inputs"][0]["age_ns"].as_int64(), 1'000'000'000);
   EXPECT_EQ(law["inputs"][1], (Json{{"port", "kp"}, {"variable", "kp"}, {"age_ns", 0}})) << "never old";
 }
@@ -168,7 +168,7 @@ TEST_F(ManagerBackendTest, AVariableThatIsNamedTwiceIsReadOnce) {
 }
 
 TEST_F(ManagerBackendTest, ReadingsInPiecesAreTheSameAsAtOnce) {
-  fake_.rtpu(0).die();  // so that nothing is written meanwhile
+  fake_.rtpu(0).die();  // so that no task writes during the test
   fake_.rtpu(1).die();
   const std::vector<VariableId> variables = std::get<0>(variables_named(world(), {}));
   LargeReadings pieces(world(), variables, R"({"values":)", "}");
@@ -351,7 +351,7 @@ TEST_F(ManagerBackendTest, SubscriptionsOfTheTapMayBeginWithTheOldestRecord) {
 }
 
 TEST_F(ManagerBackendTest, TheTapIsReadAgainOnlyWhenAllThatWasReadIsTaken) {
-  ASSERT_TRUE(backend_->open(1, {{"to", "tap"}}).is_good());  // both rtpus: two messages of each reading
+  ASSERT_TRUE(backend_->open(1, {{"to", "tap"}}).is_good());  // two rtpus: each reading gives two messages
   std::vector<Nanoseconds> pulled;
   for (std::int64_t last = 0; pulled.size() < 8;) {
     const std::uint64_t sensor = cycles("sensor"), law = cycles("law");

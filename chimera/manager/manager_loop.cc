@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop of the manager: inventory first, then messages of the keeper, posts of the units, what is due.
+// The loop of the manager: the inventory first, then messages of the keeper, posts of the rtpus, and due steps.
 #include "chimera/manager/manager_loop.h"
 
 #include <algorithm>
@@ -14,12 +14,12 @@ namespace chimera::manager {
 namespace {
 
 constexpr Nanoseconds kCountersEvery = milliseconds(100);
-constexpr Nanoseconds kPatience = milliseconds(500);  // for rtpus to serve this manager before it goes on without
-constexpr Nanoseconds kLookEvery = milliseconds(2);   // while one does not serve it yet: nothing rings for that
+constexpr Nanoseconds kPatience = milliseconds(500);  // wait for rtpus that do not serve this manager yet
+constexpr Nanoseconds kLookEvery = milliseconds(2);   // while an rtpu does not serve it yet: no bell rings for that
 
 }  // namespace
 
-/// What stays mapped as long as the driver lives. Members refer to those before them.
+/// Memory that stays mapped while ManagerLoop lives. Members refer to those before them.
 struct ManagerLoop::Mapped {
   Channel channel;
   FrozenBytes image_bytes, bundle_bytes;
@@ -76,7 +76,7 @@ Result<std::unique_ptr<ManagerLoop>> ManagerLoop::start(const Inherited& inherit
   return driver;
 }
 
-/// Everything the keeper has to say before `complete`; only then there is a predecessor to take over from.
+/// Reads all messages of the keeper before `complete`. Only after them it is known if there is a predecessor.
 Result<bool> ManagerLoop::take_inventory(std::uint32_t incarnation, std::int32_t keeper_pid) {
   std::vector<std::pair<KeeperMessage, int>> inventory;
   for (KeeperMessage message; inventory.empty() || message.kind != KeeperMessage::Kind::kComplete;) {
@@ -128,7 +128,7 @@ Result<bool> ManagerLoop::take_inventory(std::uint32_t incarnation, std::int32_t
   return true;
 }
 
-/// The first event of every manager; the numbers of its predecessors' are not kept by anybody.
+/// Logs the first event of every manager. The events of its predecessors are lost, and only their numbers go on.
 void ManagerLoop::say_hello() {
   const std::uint64_t gone = world_->log.last();
   std::string text = "manager started";
@@ -157,7 +157,7 @@ void ManagerLoop::take(const KeeperMessage& message, int passed) {
   using Kind = KeeperMessage::Kind;
   Events events;
   if (message.kind == Kind::kPeer && passed >= 0 && message.index < world_->peers.n_rtpus()) {
-    if (is_ready_) takeovers_->look(now());  // of the incarnation before, whose words go
+    if (is_ready_) takeovers_->look(now());  // reads the words of the incarnation before, which are unmapped next
     fleet_->mapped(message, std::exchange(passed, -1));
   } else if (message.kind == Kind::kStarted) {
     fleet_->started(message);
@@ -178,7 +178,7 @@ void ManagerLoop::take(const KeeperMessage& message, int passed) {
 void ManagerLoop::look() {
   Events events;
   fleet_->look(events);
-  health_->look(now());  // before a task of a unit that came up is ON
+  health_->look(now());  // before a task of a new rtpu is ON
   steps_->step(events);
   if (!is_ready_ && (fleet_->all_up() || now() - begun_ > kPatience)) become_ready();
 }
@@ -197,7 +197,8 @@ void ManagerLoop::pass_end_on() {
   KeeperMessage message;
   message.kind = KeeperMessage::Kind::kEnd;
   message.code = *std::exchange(end_wish_, std::nullopt);
-  [[maybe_unused]] const bool sent = mapped_->channel.send(bytes_of(message));  // not sent: it ends already
+  // Not sent: the keeper ends the run already.
+  [[maybe_unused]] const bool sent = mapped_->channel.send(bytes_of(message));
 }
 
 int ManagerLoop::bundle() const noexcept { return mapped_->bundle_bytes.descriptor(); }
@@ -211,7 +212,7 @@ void ManagerLoop::look_at_keeper() {
   world_->tell("ending", TaskId{}, RtpuId{}, "the subsystem is ending", now());
 }
 
-/// Each beat of the keeper is answered by one of the manager's: never more of them than the keeper takes.
+/// Answers each beat of the keeper with one beat, so that the keeper's channel never fills.
 void ManagerLoop::watch() {
   KeeperMessage message;
   message.kind = KeeperMessage::Kind::kBeat;
@@ -227,7 +228,7 @@ void ManagerLoop::end_unit(RtpuId rtpu) {
   message.kind = KeeperMessage::Kind::kEndChild;
   message.index = rtpu.index;
   message.incarnation = world_->rtpus[rtpu.index].incarnation;
-  [[maybe_unused]] const bool sent = mapped_->channel.send(bytes_of(message));  // not sent: the keeper hangs itself
+  [[maybe_unused]] const bool sent = mapped_->channel.send(bytes_of(message));  // not sent: the keeper hangs
 }
 
 Nanoseconds ManagerLoop::next_due() const noexcept {
@@ -238,7 +239,7 @@ Nanoseconds ManagerLoop::next_due() const noexcept {
   return due;
 }
 
-/// A negative descriptor is passed over.
+/// Ignores negative descriptors.
 void ManagerLoop::wait(Nanoseconds until, int also, int or_else) {
   const int descriptors[] = {mapped_->channel.descriptor(), bell_->descriptor(), receipts_->descriptor(), also,
                              or_else};
@@ -246,7 +247,7 @@ void ManagerLoop::wait(Nanoseconds until, int also, int or_else) {
 }
 
 bool ManagerLoop::step(Nanoseconds at_most, int also, int or_else) {
-  pass_end_on();  // what asked for it is answered by now
+  pass_end_on();  // the request for the end has been answered before
   wait(std::min(next_due(), at_most), also, or_else);
   bell_->reset();
   if (!take_messages()) return false;
@@ -258,7 +259,7 @@ bool ManagerLoop::step(Nanoseconds at_most, int also, int or_else) {
     counters_due_ = now() + kCountersEvery;
   }
   steps_->look(now());
-  if (is_ready_) {  // before that nobody knows which tasks are ON
+  if (is_ready_) {  // before that, the tasks that are ON are not known
     switches_->look(now());
     wishes_->look(now());
     takeovers_->look(now());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Linux driver of a subsystem: waits for what the keeper, the real-time units and the clock have for its step
-// function. Killed at any moment, its successor picks everything up from the segments.
+// The loop that drives the step function of a subsystem on Linux: it waits for the keeper, the rtpus and the clock. If
+// it is killed at any moment, its successor continues from the segments.
 #pragma once
 
 #include <memory>
@@ -23,7 +23,7 @@
 
 namespace chimera::manager {
 
-/// Descriptors that the keeper hands over. Taken over by the driver.
+/// Descriptors that the keeper passes on. ManagerLoop owns them.
 struct Inherited {
   int channel = kChannelDescriptor;
   int image = kImageDescriptor;
@@ -33,41 +33,41 @@ struct Inherited {
   int bundle = kBundleDescriptor;
 };
 
-/// Context: setup. Single-threaded but for the bell watch.
+/// Context: setup. Single-threaded except for the bell watch.
 class ManagerLoop {
  public:
-  /// Maps what was inherited, waits for the keeper's inventory, makes the own segment and hands it on. Refuses what is
-  /// not as documented; null when the keeper is gone. May block until the inventory is complete.
+  /// Maps the inherited memory, waits for the keeper's inventory, makes its own segment and passes it on. Refuses
+  /// memory that is not as documented; null if the keeper is gone. May block until the inventory is complete.
   static Result<std::unique_ptr<ManagerLoop>> start(const Inherited& inherited, std::uint32_t incarnation,
                                                     std::int32_t keeper_pid);
   ManagerLoop(const ManagerLoop&) = delete;
   ManagerLoop& operator=(const ManagerLoop&) = delete;
   ~ManagerLoop();
 
-  /// One round: waits until something is due, `at_most`, or until `also` or `or_else` is readable; deals with
-  /// everything that is the driver's. False when the keeper is gone or wants no more.
+  /// One round: waits until a step is due, for `at_most`, or until `also` or `or_else` is readable; then handles all of
+  /// its own input. False when the keeper is gone or has asked it to finish.
   bool step(Nanoseconds at_most = kNever, int also = -1, int or_else = -1);
-  /// Asks for a signal; `answered` is called when it is over, maybe at once.
+  /// Requests a signal; calls `answered` when it is over, maybe at once.
   void command(Signal signal, std::vector<TaskId> tasks, Answered answered) {
     steps_->command(signal, std::move(tasks), std::move(answered));
   }
   /// Rings doorbells, as RtpuLinks::ring.
   RtpuId ring(std::span<const TaskId> tasks);
-  /// The keeper has told it to finish, or is gone: step() answers false. Files what is left to be filed; may block for
-  /// most of the second that the keeper waits.
+  /// Call it after step() returned false. Files the receipts that are left; may block for most of the second that the
+  /// keeper waits.
   void finish();
-  /// Has the keeper end everything; the keeper is told in the next step(), after the request was answered.
+  /// Has the keeper end the whole run. The next step() sends the request, after the client got its answer.
   void end(std::int32_t code);
-  /// Hands over the listening socket, once.
+  /// Gives the listening socket away, once.
   int take_listening() noexcept;
-  /// Of the bundle, to hand on; stays the driver's.
+  /// Descriptor of the bundle, for other processes; ManagerLoop keeps it.
   int bundle() const noexcept;
 
   ManagerState& world() noexcept { return *world_; }
   SwitchCoordinator& switches() noexcept { return *switches_; }
   const ReceiptArchive& receipts() const noexcept { return *receipts_; }
   Drill& drill() noexcept { return *drill_; }
-  /// Has the step function been given the whole inventory? Faces are served from then on.
+  /// True if the step function has the whole inventory. Clients are served from then on.
   bool is_ready() const noexcept { return is_ready_; }
 
  private:
@@ -96,7 +96,7 @@ class ManagerLoop {
   std::unique_ptr<TakeoverReceipts> takeovers_;
   std::unique_ptr<Drill> drill_;
   std::unique_ptr<UnitWatch> watch_;
-  std::uint64_t keeper_beats_ = 0;  // that were answered
+  std::uint64_t keeper_beats_ = 0;  // number of the keeper's last answered beat
   std::unique_ptr<UnitHealth> health_;
   std::unique_ptr<BellWatch> bell_;
   Nanoseconds begun_;

@@ -68,7 +68,7 @@ TEST(ManagerLoop, AManagerKilledAtAnyTimeIsFollowedByOneThatGoesOn) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
-  ASSERT_TRUE(fake.until([&] { return !fake.told("started").empty(); }));  // else its successor has that to tell
+  ASSERT_TRUE(fake.until([&] { return !fake.told("started").empty(); }));  // otherwise its successor logs it
   const double tuned[] = {7, 8};
   fake.driver().world().own.publish_operator(0, std::as_bytes(std::span(tuned)), now());
   const std::uint64_t last = fake.driver().world().log.last();
@@ -120,7 +120,7 @@ TEST(ManagerLoop, WhatWasOnComesBackWhateverItsUnitLeftInItsMemory) {
     fake.start_manager();
     ASSERT_TRUE(fake.until_on("law"));
     fake.rtpu(1).die_overwritten(word, 8);
-    for (int i = 0; i < 3; ++i) ASSERT_TRUE(fake.step());  // it looks before it hears
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(fake.step());  // it polls before it reads messages
     const Nanoseconds at = now();
     EXPECT_EQ(status_json(fake.driver().world(), at)["tasks"][2]["task"], "law");
     EXPECT_EQ(profile_json(fake.driver().world(), at)["tasks"].size(), 3u);
@@ -143,7 +143,7 @@ TEST(ManagerLoop, WhatWasOnInAUnitWhoseMemoryCannotBeReadIsKnownToTheNextManager
             "its memory cannot be read, something in it has overwritten it (not a state variable table: the first 8 "
             "bytes are not CHIMTBL1)\n");
   EXPECT_TRUE(fake.until_on("law"));
-  fake.kill_manager();  // what was ON before was a goal, and is no memory any more
+  fake.kill_manager();  // tasks that were ON are goals now, and this memory is gone
   bool is_off = false;
   fake.start_manager();
   ASSERT_TRUE(fake.until([&] { return fake.driver().world().rtpus[1].is_up; }));
@@ -164,7 +164,7 @@ TEST(ManagerLoop, AUnitThatLivesAndCannotBeReadIsToldWithWhatHelps) {
   ASSERT_TRUE(fake.until_on("law"));
   fake.kill_manager();
   fake.rtpu(1).die_overwritten(0xdeadbeef);
-  fake.start_manager();  // it has heard of no death
+  fake.start_manager();  // it has no message about a death
   ASSERT_TRUE(fake.until([&] { return !fake.told("fault").empty(); }));
   EXPECT_EQ(fake.told("fault"),
             "its memory cannot be read, something in it has overwritten it (not a state variable table: the first 8 "

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program chimera-manager, killed at any moment, between a keeper and real-time units played by the test.
+// The program chimera-manager, killed at any moment; the test plays the keeper and the rtpus.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -48,7 +48,7 @@ class Listening {
   int descriptor_ = -1;
 };
 
-/// The keeper's loop: starts the manager again whenever it died.
+/// The keeper's loop: starts the manager again after each death.
 class Kept {
  public:
   Kept() : manager_(fake_.start_program(program(), listening_.descriptor())), thread_([this] { run(); }) {}
@@ -72,7 +72,7 @@ class Kept {
       ProcessEnd end;
       if (manager_.has_ended(end)) {
         fake_.keep();  // its last words
-        ++starts_;  // first: who runs may answer at once
+        ++starts_;  // before the start: the new manager may answer at once
         manager_ = fake_.start_program(program(), listening_.descriptor());
       }
       ::usleep(200);
@@ -87,7 +87,7 @@ class Kept {
   std::thread thread_;
 };
 
-/// Asks again on a new connection as long as the manager dies under it.
+/// Asks again on a new connection while managers die under it.
 Json ask(const std::string& path, const char* method, const Json& parameters = Json::object()) {
   for (int tries = 0; tries < 20; ++tries) {
     auto client = control::Client::connect_to(path, kHangLimit);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes events, and keeps the clocks of the manager.
+// Logs events, and keeps the clocks of the manager.
 #include "chimera/manager/manager_state.h"
 
 #include <ctime>
@@ -16,7 +16,7 @@ std::int64_t read_clock(clockid_t clock) noexcept {
   return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
 }
 
-Clock* stepped_clock = nullptr;  // of a test
+Clock* stepped_clock = nullptr;  // set by a test
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Judges from samples of a unit's words whether a method takes longer than its limit.
+// Judges from samples of an rtpu's words if a method takes longer than its limit.
 #include "chimera/manager/method_watch.h"
 
 #include <utility>

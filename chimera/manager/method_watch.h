@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a method that is under way comes to its end, judged from the words of a unit's block. Knows no clock and asks
-// nobody: samples in, verdicts out.
+// Judges from the words of an rtpu's block if a running method comes to its end. It reads no clock and no block:
+// samples in, verdicts out.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,24 @@
 namespace chimera::manager {
 
 struct MethodVerdict {
-  std::uint32_t word = 0;  ///< what does not end; 0: nothing
-  Nanoseconds since;       ///< for how long
-  bool is_news = false;    ///< to be told now: it does not end, it still does not, or (`ended` is not 0) it has ended
+  std::uint32_t word = 0;  ///< the method that does not end; 0: none
+  Nanoseconds since;       ///< time for which it has run
+  /// Report it now: it does not end, it still does not end, or (`ended` is not 0) it has ended.
+  bool is_news = false;
   std::uint32_t ended = 0;
 };
 
-/// Of one word: runtime/task_word.h. Context: setup.
+/// Watches one word: runtime/task_word.h. Context: setup.
 class MethodWatch {
  public:
-  /// `told`: a method under way for this long is reported; `head_start`: the time that it took before its word was
+  /// `told`: a method that has run for this long is reported. `head_start`: time that it ran before its word was
   /// published.
   explicit MethodWatch(Nanoseconds told = milliseconds(1500), Nanoseconds head_start = {}) noexcept
       : told_(told), head_start_(head_start) {}
 
-  /// Samples come in the order of time, a few in each second; after a gap longer than kWatchGap nothing is known.
-  /// `progress` grows when an equal word means another call of the method.
+  /// Requires samples in the order of time, a few each second. A gap longer than kWatchGap is not time of the
+  /// method; a method not yet reported then starts from zero. `progress` grows when an equal word means another
+  /// call of the method.
   MethodVerdict look(std::uint32_t word, std::uint64_t progress, Nanoseconds at) noexcept;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds what names mean, judges acts that are no signals, and carries them out on the operator's part of the table.
+// Resolves names, judges acts other than signals, and carries them out on the operator variables and the flag.
 #include "chimera/manager/operator_acts.h"
 
 #include "chimera/manager/operator_values.h"
@@ -26,7 +26,7 @@ std::vector<std::string> variable_names(const ManagerState& world) {
   return names;
 }
 
-/// Elements of a row of an operator variable; 0 for what has one dimension.
+/// Elements in a row of an operator variable; 0 if it has one dimension.
 std::size_t columns(const ManagerState& world, VariableId variable) {
   const std::uint32_t index = world.readings->variables().all()[variable.index].operator_index;
   const std::string& shape = world.readings->configured(variable).shape;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What faces may do beside signals: set operator variables, raise the operator's flag, ask for tuned values in
-// the words of a description.
+// Acts of clients besides signals: set operator variables, raise the operator's flag, and get tuned values in the words
+// of a description.
 #pragma once
 
 #include <string>
@@ -13,16 +13,17 @@
 
 namespace chimera::manager {
 
-/// Context of all: setup.
-/// The variables of these names, each once, none: all of them; refuses an unknown one with the nearest.
+/// Context of all functions: setup.
+/// The variables with these names, without repetition; all variables if there are no names. Refuses an unknown name and
+/// suggests the nearest.
 std::variant<std::vector<VariableId>, control::RpcResponse> variables_named(const ManagerState& world,
                                                                             const std::vector<std::string>& names);
-/// The tasks of these names; refuses none at all, and an unknown one with the nearest.
+/// The tasks with these names. Refuses an empty list; refuses an unknown name and suggests the nearest.
 std::variant<std::vector<TaskId>, control::RpcResponse> tasks_named(const ManagerState& world,
                                                                     const std::vector<std::string>& names);
-/// Why nobody would answer a ring of the task's doorbell; good when it is behind a server and ON.
+/// Reason why no task would answer a ring of the doorbell; good if the task is behind a server and ON.
 control::RpcResponse judge_ring(const ManagerState& world, TaskId task);
-/// {name: value}: sets operator variables, all or none. The answer has their readings.
+/// {name: value}: sets operator variables, all or none. The answer contains their readings.
 control::RpcResponse set_values(ManagerState& world, const Json& values);
 /// Raises or lowers the operator's part of the flag.
 control::RpcResponse set_flag(ManagerState& world, bool up);

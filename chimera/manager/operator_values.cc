@@ -41,7 +41,8 @@ Node map_node(const Json& json, const ValueForm& form) {
   for (const auto& [key, value] : json.items()) {
     const auto field = std::find_if(form.fields.begin(), form.fields.end(),
                                     [&name = key](const FieldDescriptor& f) { return f.name == name; });
-    const FieldDescriptor known = field == form.fields.end() ? FieldDescriptor{} : *field;  // the rules refuse others
+    // The rules refuse unknown fields later.
+    const FieldDescriptor known = field == form.fields.end() ? FieldDescriptor{} : *field;
     node.keys.push_back({key, {}});
     node.items.push_back(node_of(value, form, known.unit, known.type));
   }
@@ -57,7 +58,7 @@ Node node_of(const Json& json, const ValueForm& form, const std::string& unit, s
   return scalar(json.dump());
 }
 
-/// A flat list for a variable of two dimensions is cut into rows, as it is shown.
+/// Cuts a flat list into the rows of a variable of two dimensions.
 Json with_rows(const Json& json, const GivenSpec& given, const ValueForm& form) {
   const std::size_t columns = given.extent[1].max;
   if (columns <= 1 || !json.is_array() || json.size() != form.count || json.empty() || json[0].is_array()) return json;
@@ -79,7 +80,7 @@ Error refused(const std::string& why, const std::string& variable) {
   return {ErrorCode::kBadInput, std::string_view(why), std::string_view(variable)};
 }
 
-/// The extents are settled by now: a list must be as long as they are.
+/// Refuses a list that does not have the present extents of the variable.
 Result<void> fits_extents(const GivenSpec& given, const ValueForm& form, const std::string& name) {
   std::uint32_t listed = 1;
   for (const std::uint32_t entries : given.listed) listed *= std::max(entries, 1u);
@@ -109,7 +110,7 @@ std::string plain(std::uint32_t type, std::span<const std::byte> at, const std::
   if (const auto* whole = std::get_if<std::int64_t>(&value)) return with_unit(std::to_string(*whole), unit);
   const double number = std::get<double>(value);
   std::string finite = json_number(number);
-  if (finite.ends_with(".0")) finite.resize(finite.size() - 2);  // as a person writes it
+  if (finite.ends_with(".0")) finite.resize(finite.size() - 2);  // a person writes 5, not 5.0
   return with_unit(finite == "null" ? (number > 0 ? "inf" : "-inf") : finite, unit);
 }
 

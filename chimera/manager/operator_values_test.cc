@@ -70,7 +70,7 @@ class OperatorValues : public ::testing::Test {
     return *verdict.configuration;
   }
   Result<OperatorBytes> ask(const Json& values) { return operator_bytes(configuration_, library_, values, forms_); }
-  /// The value as description_text() has it after it was set so.
+  /// The value in description_text() after it was set in this way.
   std::string after(const std::string& name, const Json& value) {
     const auto bytes = ask({{name, value}});
     if (!bytes) return std::string(bytes.error().where.view()) + ": " + bytes.error().message.c_str();

@@ -7,7 +7,7 @@
 namespace chimera::manager {
 namespace {
 
-// Of a predecessor that is dead, into a block that nobody reads yet: relaxed, pairs with nothing.
+// Copies from a dead predecessor into a block that no process reads yet: relaxed, pairs with nothing.
 template <class T>
 void copy_word(std::atomic<T>& to, const std::atomic<T>& from) noexcept {
   to.store(from.load(std::memory_order_relaxed), std::memory_order_relaxed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The manager's own segment: the operator variables, what it posts, and what its successor has to know.
+// The manager's own segment: the operator variables, its posts, and the data that its successor needs.
 #pragma once
 
 #include <memory>
@@ -10,15 +10,15 @@
 
 namespace chimera::manager {
 
-/// Made once by each manager; whatever the predecessor left in its segment is taken over. Context: setup.
+/// Each manager makes one. It takes over the data that the predecessor left in its segment. Context: setup.
 class OwnSegment {
  public:
-  /// `predecessor` may be null: the first manager. Goals, memory, journal, the operator's flag and variables are
-  /// copied from it. `peers` outlives it. Refuses what the system refuses.
+  /// `predecessor` is null for the first manager. Copies goals, memory, journal, the operator's flag and variables from
+  /// it. `peers` outlives it. Refuses if the system refuses the memory.
   static Result<OwnSegment> make(const Peers& peers, std::uint32_t incarnation, const PeerSegment* predecessor,
                                  Nanoseconds now);
 
-  /// To be passed on.
+  /// Descriptor of the segment, for other processes.
   int descriptor() const noexcept { return region_.descriptor(); }
   const BlockOwner& block() const noexcept { return block_; }
   std::uint32_t incarnation() const noexcept { return incarnation_; }
@@ -26,7 +26,7 @@ class OwnSegment {
   std::uint32_t peer() const noexcept { return peer_; }
 
   GroupReader operator_reader(std::size_t index) const noexcept;
-  /// Publishes a value of operator variable `index`: value.size() is that of the variable at its largest.
+  /// Publishes a value of operator variable `index`. value.size() is the largest size of the variable.
   void publish_operator(std::size_t index, std::span<const std::byte> value, Nanoseconds now) noexcept;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The segments of all real-time units as the manager maps them.
+// The segments of all rtpus as the manager maps them.
 #include "chimera/manager/peers.h"
 
 #include <cstring>

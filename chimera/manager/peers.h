@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The segments of the real-time units as the manager maps them: read-only, each kept until its successor's came, so
-// that the last words and values of a dead one can still be read.
+// The segments of the rtpus as the manager maps them, read-only. Each stays mapped until the segment of its successor
+// arrives, so that the last words and values of a dead rtpu can still be read.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace chimera::manager {
 
-/// All real-time units. Context: setup.
+/// All rtpus. Context: setup.
 class Peers {
  public:
   /// `spec` outlives it.
@@ -27,12 +27,12 @@ class Peers {
   const PeerSegment& operator[](RtpuId rtpu) const noexcept { return *segments_[rtpu.index]; }
   /// The segment, which stays mapped as long as the pointer lives.
   std::shared_ptr<const PeerSegment> hold(RtpuId rtpu) const noexcept { return segments_[rtpu.index]; }
-  /// Puts another incarnation in the place of the present one. Closes `descriptor` in any case.
+  /// Replaces the present incarnation by another. Closes `descriptor` in any case.
   Result<void> map(RtpuId rtpu, std::uint32_t incarnation, int descriptor);
 
-  /// The segment of the task's rtpu; not there before it came.
+  /// The segment of the task's rtpu; not there before it arrived.
   const PeerSegment& of(TaskId task) const noexcept { return *segments_[spec_->tasks[task.index].rtpu.index]; }
-  /// As it stands in the segment, dead or alive.
+  /// The status word in the segment, even if the rtpu is dead.
   TaskStatus status(TaskId task) const noexcept;
   FaultRecord fault(TaskId task) const noexcept;
 
@@ -40,7 +40,7 @@ class Peers {
   explicit Peers(const ApplicationSpec& spec) noexcept : spec_(&spec) {}
 
   const ApplicationSpec* spec_;
-  std::unique_ptr<HeapMemory> memory_ = std::make_unique<HeapMemory>();  // behind the layouts
+  std::unique_ptr<HeapMemory> memory_ = std::make_unique<HeapMemory>();  // memory of layouts_
   std::vector<PeerLayout> layouts_;  // of the rtpus, then of the manager
   std::vector<std::shared_ptr<const PeerSegment>> segments_;  // never null
 };

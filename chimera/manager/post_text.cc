@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts the messages of real-time units into sentences of the event log.
+// Writes the messages of rtpus as sentences of the event log.
 #include "chimera/manager/post_text.h"
 
 #include "chimera/runtime/refusal.h"

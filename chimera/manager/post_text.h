@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an rtpu posts, as kinds and sentences of the event log.
+// The posts of an rtpu as kinds and sentences of the event log.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace chimera::manager {
 
-/// As in docs/formats/control.md. Context of all: setup.
+/// Kinds of docs/formats/control.md. Context of all functions: setup.
 const char* event_kind(EventKind happening) noexcept;
-/// `fault`: the last words of the task, "" when there are none.
+/// `fault`: the last words of the task, "" if there are none.
 std::string event_text(const ApplicationSpec& spec, const Post& post, const std::string& fault);
 /// "1 deadline missed", "3 deadlines missed (17 in all)".
 std::string counted(const char* what, const char* how, std::uint64_t more, std::uint64_t all);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers a question about a description: is it legal, and does it keep its deadlines.
+// Answers a question about a description: if it is legal, and if it meets its deadlines.
 #include "chimera/manager/question.h"
 
 #include "chimera/analysis/schedule_report.h"
@@ -9,7 +9,7 @@
 namespace chimera::manager {
 namespace {
 
-/// With its keys in the order of all other answers.
+/// The JSON on one line, with its keys in the order of all other answers.
 std::string one_line(const std::string& json) { return Json::parse(json).dump(); }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the manager and its analyst say to each other: one message a question, one its answer, the text as sealed
-// memory.
+// Messages between the manager and its analyst: one for each question, one for its answer. Texts are in sealed memory.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +11,7 @@
 
 namespace chimera::manager {
 
-/// A question about a description that has nothing to do with what runs.
+/// A question about a description that is independent of the running one.
 struct Question {
   enum class Kind : std::uint32_t { kCheck, kSchedule };
   Kind kind = Kind::kCheck;
@@ -20,13 +19,13 @@ struct Question {
   std::string text;
 };
 
-/// 32 bytes over a Channel. With a question go `file_bytes` of the name, `text_bytes` of the text and one byte that
-/// counts for nothing; with an answer `text_bytes` of JSON.
+/// 32 bytes over a Channel, with memory. For a question the memory has `file_bytes` of the name, `text_bytes` of the
+/// text and one unused byte; for an answer it has `text_bytes` of JSON.
 struct QuestionMessage {
   enum class What : std::uint32_t {
     kQuestion,
     kAnswer,
-    kNoMemory,  ///< kAnalystMemory was not enough, or the answer is larger than kMaxAnalysis
+    kNoMemory,  ///< kAnalystMemory was not enough, or the answer exceeds kMaxAnalysis
   };
   What what = What::kQuestion;
   Question::Kind kind = Question::Kind::kCheck;
@@ -45,7 +44,7 @@ inline std::span<std::byte> bytes_of(QuestionMessage& message) noexcept {
 inline constexpr std::uint64_t kAnalystMemory = std::uint64_t{1} << 30;
 inline constexpr std::uint64_t kMaxAnalysis = std::uint64_t{32} << 20;  ///< bytes of one answer
 
-/// The answer as one line of JSON, docs/formats/run.md: the report of `check`, or of a legal text the analysis of
+/// The answer as one line of JSON, docs/formats/run.md: the report of `check`, or for a legal text the analysis of
 /// `schedule`. Context: setup; may take seconds.
 std::string answer_of(const Question& question, const Library& library);
 

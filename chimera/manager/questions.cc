@@ -18,7 +18,7 @@ namespace {
 
 using control::RpcResponse;
 
-constexpr Nanoseconds kPatienceWithEnd = seconds(1);  // of a process that was sent SIGKILL
+constexpr Nanoseconds kPatienceWithEnd = seconds(1);  // until a process that was sent SIGKILL has ended
 
 RpcResponse too_many(const char* what) { return RpcResponse::error(control::kTooFast, what, {{"retry_ms", 100}}); }
 
@@ -26,7 +26,7 @@ RpcResponse given_up(const std::string& why) {
   return RpcResponse::refused("analysis", why, "text", "ask `chimera check` or `chimera schedule` with the file");
 }
 
-/// A large text is sent out of the memory in which it came.
+/// A large text is sent directly from the memory of the analyst's answer.
 RpcResponse answer_in(int passed, std::size_t text_bytes) {
   auto opened = FrozenBytes::open(passed);
   if (!opened || opened->bytes().size() < text_bytes) return given_up("the answer of the analysis cannot be read");
@@ -102,7 +102,8 @@ void Questions::answer_first(const RpcResponse& answer, Nanoseconds now) {
   first.reply(answer);
 }
 
-/// The oldest of the connection whose turn it is: a connection with many questions waits for itself.
+/// The oldest question of the connection whose turn it is, so that many questions of one connection do not delay the
+/// others.
 std::deque<Questions::Waiting>::iterator Questions::next_question() {
   auto best = waiting_.begin();
   const auto rank = [this](std::uint64_t connection) { return std::pair(connection <= last_connection_, connection); };
@@ -116,12 +117,12 @@ void Questions::pass_on(Nanoseconds now) {
   if (!channel_.is_open() && !start(now)) return;
   const auto next = next_question();
   last_connection_ = next->connection;
-  std::rotate(waiting_.begin(), next, next + 1);  // those before it keep their order
+  std::rotate(waiting_.begin(), next, next + 1);  // the questions before it keep their order
   since_ = now;
   is_under_way_ = true;
   ++number_;
   if (send_first()) return;
-  tell_("the analyst of descriptions " + how_it_ended());  // since the question before: another one is asked
+  tell_("the analyst of descriptions " + how_it_ended());  // it died after the last question: start another one
   if (!start(now)) return;
   is_under_way_ = true;
   if (!send_first())
@@ -159,7 +160,7 @@ void Questions::end_analyst() {
   (void)how_it_ended();
 }
 
-/// Takes leave of an analyst that has ended, or is about to.
+/// Waits for the end of an analyst that has ended or was killed, and says how it ended.
 std::string Questions::how_it_ended() {
   ProcessEnd end;
   channel_ = Channel();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers status, readings, events and the like out of the state of the manager.
+// Answers status, readings, events and other questions from the state of the manager.
 #include "chimera/manager/read_methods.h"
 
 #include <algorithm>
@@ -50,7 +50,7 @@ std::optional<RpcResponse> ReadMethods::answer(MethodId method, const Json& para
   }
 }
 
-/// What the bundle says does not change as long as the manager lives.
+/// Makes an answer once: the bundle does not change while the manager lives.
 RpcResponse ReadMethods::made_once(std::shared_ptr<const std::string>& text, Json (*make)(const ManagerState&)) const {
   if (text == nullptr) text = std::make_shared<const std::string>(make(world_).dump());
   return RpcResponse::ready(text);
@@ -63,7 +63,7 @@ RpcResponse ReadMethods::hello(control::Role role) const {
                             {"role", control::role_name(role)},
                             {"file", world_.bundle.file},
                             {"keeper_pid", world_.keeper_pid},
-                            {"session", own_session()},  // the keeper's, as is the folder: both are inherited
+                            {"session", own_session()},  // session and folder are inherited from the keeper
                             {"folder", working_folder()},
                             {"manager", {{"pid", own_process_id()}, {"starts", world_.own.incarnation()}}}});
 }

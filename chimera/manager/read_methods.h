@@ -18,8 +18,7 @@ class ReadMethods {
   /// `world` outlives it.
   explicit ReadMethods(const ManagerState& world) : world_(world) {}
 
-  /// The answer to a call whose parameters have been checked by the row of its method; none when the method is not one
-  /// of these.
+  /// The answer to a call; the row of its method has checked its parameters. None if the method is not one of these.
   std::optional<control::RpcResponse> answer(control::MethodId method, const Json& parameters, control::Role role);
 
  private:

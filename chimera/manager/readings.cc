@@ -38,7 +38,7 @@ Readings::Form Readings::form_of(std::size_t variable, const Configuration& conf
   const ApplicationSpec& spec = peers_.spec();
   Form made;
   made.configured = &configuration.variable(VariableId(variable));
-  CHIMERA_ASSERT(made.configured->name == v.name);  // image and configuration come from the same description
+  CHIMERA_ASSERT(made.configured->name == v.name);  // the image and the configuration come from the same description
   made.form.unit = made.configured->unit;
   made.form.is_scalar = made.configured->shape.empty();
   const bool is_operators = v.producers.empty();
@@ -96,7 +96,7 @@ VariableReading Readings::read(VariableId variable, bool with_value) const {
   return reading;
 }
 
-/// Only what is asked for is copied: the other outputs of the task may be large.
+/// Copies only this output: the other outputs of the task may be large.
 bool Readings::read_output(const PortOf& port, chimera_slot& slot, std::vector<std::byte>* value) const {
   const PeerSegment& segment = peers_.of(port.task);
   if (!segment.is_there()) return false;
@@ -134,7 +134,8 @@ std::optional<std::int64_t> Readings::constant(ConstantId id) const {
   const bool is_chosen = std::ranges::any_of(constant.producers, [this](const PortOf& port) { return is_on(port); });
   for (const PortOf& producer : constant.producers) {
     const PeerSegment& segment = peers_.of(producer.task);
-    if (!segment.is_there() || (is_chosen && !is_on(producer))) continue;  // of several the one that is ON counts
+    // If there are several producers, the one that is ON counts.
+    if (!segment.is_there() || (is_chosen && !is_on(producer))) continue;
     const PeerLayout& layout = peers_.layout(peers_.spec().tasks[producer.task.index].rtpu);
     const GroupId group = layout.constants(producer.task);
     const VariablePlace& place = layout.variables(group)[producer.index];

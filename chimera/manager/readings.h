@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The present values of state variables, out of the segments of all processes: from the producer that is ON, else from
-// the one that wrote last.
+// The present values of state variables, read from the segments of all processes. The value is from the producer that
+// is ON; if there is none, from the one that wrote last.
 #pragma once
 
 #include <algorithm>
@@ -23,21 +23,21 @@ namespace chimera::manager {
 /// A variable at one instant.
 struct VariableReading {
   std::vector<std::byte> value;  ///< as many elements as its extents have now
-  chimera_slot slot{};           ///< of the publication it came with; sequence 0: never published
-  TaskId producer;               ///< invalid: the operator, or nobody
+  chimera_slot slot{};           ///< of the publication of the value; sequence 0: never published
+  TaskId producer;               ///< invalid: the operator, or no producer
   bool is_valid = false;         ///< written at least once, or given an initial value
   ValueForm form;
 
-  /// At `at`; 0 when it was published after that.
+  /// Age at `at`; 0 if it was published later.
   Nanoseconds age(Nanoseconds at) const noexcept {
     return {std::max<std::int64_t>(at.count - std::max<std::int64_t>(slot.published_ns, 0), 0)};
   }
 };
 
-/// Context: setup; may allocate. What it is made of outlives it.
+/// Context: setup; may allocate. All arguments outlive it.
 class Readings {
  public:
-  /// State of a task as people see it.
+  /// State of a task as users see it.
   using StateOf = std::function<State(TaskId)>;
 
   Readings(const Peers& peers, const OwnSegment& own, const Configuration& configuration, const Library& library,
@@ -53,12 +53,12 @@ class Readings {
   bool is_operators(VariableId variable) const noexcept {
     return variables_.all()[variable.index].operator_index != UINT32_MAX;
   }
-  /// Who produces it now, or did last; invalid: the operator, or no task that does was ever created.
+  /// The present or last producer; invalid: the operator, or no producer was ever created.
   TaskId producer(VariableId variable) const;
   VariableReading read(VariableId variable) const;
-  /// The same without the value, which may be large.
+  /// Reads all but the value, which may be large.
   VariableReading read_header(VariableId variable) const;
-  /// How a value of the variable is to be read, with its present extents.
+  /// The form of the value of the variable, with its present extents.
   ValueForm form(VariableId variable) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hands receipts to the writer, marks in the journal what is on the disk, and tells what is not.
+// Gives receipts to the writer, marks filed ones in the journal, and reports those that are not filed.
 #include "chimera/manager/receipt_archive.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ void ReceiptArchive::keep(std::string receipt) {
 }
 
 void ReceiptArchive::add(std::uint32_t number, std::string receipt, Nanoseconds now, std::function<void()> then) {
-  (void)journal_.put(number, receipt);  // no room: the disk takes nothing, and only this manager knows it
+  (void)journal_.put(number, receipt);  // no room: the disk accepts nothing, and only this manager has it
   keep(receipt);
   if (!writer_) {
     journal_.filed(number);
@@ -66,7 +66,7 @@ void ReceiptArchive::file_next(Nanoseconds now) {
   writer_->file(std::move(receipts));
 }
 
-/// What this manager knows of its own stands behind what was filed before.
+/// Puts the receipts of this manager after those that were filed before.
 void ReceiptArchive::take_found(const std::vector<std::string>& found) {
   const std::deque<std::string> own = std::exchange(kept_, {});
   for (const std::string& receipt : found) keep(receipt);

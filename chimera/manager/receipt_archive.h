@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The receipts of the switches of a subsystem: each is kept in the journal, filed on the disk once, and given out.
+// The receipts of the switches of a subsystem: kept in the journal, filed on the disk once, and given to clients.
 #pragma once
 
 #include <deque>
@@ -14,35 +14,35 @@
 
 namespace chimera::manager {
 
-/// Context: setup; never blocks but in flush().
+/// Context: setup; blocks only in flush().
 class ReceiptArchive {
  public:
-  static constexpr std::size_t kKept = 200;              // that are given out
+  static constexpr std::size_t kKept = 200;              // receipts that clients can get
   static constexpr std::size_t kMostUnfiled = 1000;
   static constexpr Nanoseconds kPatience = milliseconds(100);  // for the disk, before an answer
   static constexpr Nanoseconds kTryAgain = seconds(10);        // after a fault
 
-  /// Takes up what a predecessor has not filed. `folder`: of the files; "": there is none. Refuses what
+  /// Takes over the receipts that a predecessor has not filed. `folder`: for the files; "": there is none. Refuses if
   /// ReceiptWriter::start refuses. `world` outlives it.
   static Result<std::unique_ptr<ReceiptArchive>> start(ManagerState& world, const std::string& folder);
   ReceiptArchive(const ReceiptArchive&) = delete;
   ReceiptArchive& operator=(const ReceiptArchive&) = delete;
 
-  /// Keeps the receipt of that number, one line of JSON, and files it. `then` is called when it is on the disk, when it
-  /// cannot be, or after kPatience; maybe at once.
+  /// Keeps the receipt of that number, one line of JSON, and files it. Calls `then` when it is on the disk, when it
+  /// cannot be filed, or after kPatience; maybe at once.
   void add(std::uint32_t number, std::string receipt, Nanoseconds now, std::function<void()> then);
-  /// Readable when look() has something to do; -1: never.
+  /// Readable when look() has a finished job; -1: never.
   int descriptor() const noexcept { return writer_ ? writer_->descriptor() : -1; }
   Nanoseconds next_due() const noexcept;
   void look(Nanoseconds now);
-  /// Files what is left; blocks for at most that long.
+  /// Files the receipts that are left; blocks for `limit` at most.
   void flush(Nanoseconds limit);
 
-  /// In the order in which they ended, those of earlier runs first; one line of JSON each.
+  /// Receipts in the order of their ends, those of earlier runs first; one line of JSON each.
   const std::deque<std::string>& kept() const noexcept { return kept_; }
   std::size_t unfiled() const noexcept { return unfiled_.size(); }
   const std::string& path() const noexcept { return path_; }    ///< "": there is no file
-  const std::string& fault() const noexcept { return fault_; }  ///< why the last ones are not filed; "": they are
+  const std::string& fault() const noexcept { return fault_; }  ///< why the last ones are not filed; "": they are filed
 
  private:
   struct Unfiled {
@@ -69,10 +69,10 @@ class ReceiptArchive {
   std::string path_, fault_;
   std::deque<std::string> kept_;
   std::deque<Unfiled> unfiled_;
-  std::size_t in_flight_ = 0;  // of unfiled_, the first ones: what the writer has
+  std::size_t in_flight_ = 0;  // number of first entries of unfiled_ that the writer has
   std::vector<Waiting> waiting_;
   bool has_found_ = false;
-  Nanoseconds tries_again_;    // not before
+  Nanoseconds tries_again_;    // earliest time of the next try
 };
 
 }  // namespace chimera::manager

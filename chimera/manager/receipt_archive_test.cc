@@ -64,7 +64,7 @@ TEST_F(ReceiptArchiveTest, AnAnswerWaitsForTheDisk) {
   EXPECT_EQ(archive->kept().size(), 3u);
 }
 
-// Somebody else has the lock: the writer is held up, as by a disk that is stalled.
+// Another process holds the lock: the writer waits, as for a stalled disk.
 TEST_F(ReceiptArchiveTest, AStalledDiskIsWaitedForATenthOfASecond) {
   std::filesystem::create_directories(folder());
   std::optional<Result<LineFile>> lock(LineFile::open(control::ReceiptFile(folder()).path()));
@@ -104,7 +104,8 @@ TEST_F(ReceiptArchiveTest, WhatCannotBeFiledIsToldKeptAndTriedAgain) {
   EXPECT_EQ(archive->fault(), "");
 }
 
-// Killed between the file and the journal: the successor has both in its journal, and one of them in the file.
+// The manager was killed between the file and the journal: the successor has both in its journal, and one of them in
+// the file.
 TEST_F(ReceiptArchiveTest, WhatAPredecessorDidNotFileIsFiledOnce) {
   archive.reset();
   ASSERT_TRUE(journal().put(1, receipt(1)));

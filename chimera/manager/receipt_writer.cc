@@ -18,11 +18,11 @@ namespace chimera::manager {
 struct ReceiptWriter::Shared {
   explicit Shared(const std::string& folder, WakeEvent rung) : file(folder), event(std::move(rung)) {}
 
-  control::ReceiptFile file;  // the thread's
+  control::ReceiptFile file;  // used by the thread only
   WakeEvent event;
   std::mutex mutex;
   std::condition_variable changed;
-  bool is_ending = false;  // under the mutex, as all below
+  bool is_ending = false;  // guarded by the mutex, as are all below
   std::optional<std::vector<std::string>> job;
   std::optional<Done> done;
 

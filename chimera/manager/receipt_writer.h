@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A thread that reads and files receipts, so that a disk that is slow, full or stalled holds nobody up.
+// A thread that reads and files receipts, so that a slow, full or stalled disk delays no one else.
 #pragma once
 
 #include <memory>
@@ -12,29 +12,29 @@
 
 namespace chimera::manager {
 
-/// One job at a time; the first, which nobody asks for, is to read what is filed. Context: setup; does not block but
-/// where it says so. A thread that a disk holds up is left behind.
+/// One job at a time; the first job, made at the start, reads the filed receipts. Context: setup; blocks only where
+/// stated. A thread that a disk stalls is left behind.
 class ReceiptWriter {
  public:
   struct Done {
-    std::vector<std::string> found;  ///< of the first job: the last receipts of the file
+    std::vector<std::string> found;  ///< by the first job: the last receipts of the file
     std::string fault;               ///< why the receipts of the job may not be on the disk; "": they are
   };
 
-  /// Files into that folder. Refuses when there is no descriptor or thread for it.
+  /// Files into that folder. Refuses if a descriptor or thread cannot be made.
   static Result<std::unique_ptr<ReceiptWriter>> start(const std::string& folder, std::size_t n_found);
   ReceiptWriter(const ReceiptWriter&) = delete;
   ReceiptWriter& operator=(const ReceiptWriter&) = delete;
   ~ReceiptWriter();
 
-  /// Readable when take() has something.
+  /// Readable when take() has a result.
   int descriptor() const noexcept;
   bool is_busy() const noexcept { return is_busy_; }
   /// Requires: !is_busy().
   void file(std::vector<std::string> receipts);
-  /// What became of the job, once; it is busy until then.
+  /// The result of the job, once; is_busy() until then.
   std::optional<Done> take();
-  /// Blocks until take() has something, at most so long.
+  /// Blocks until take() has a result, `limit` at most.
   void await(Nanoseconds limit) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps the segments of real-time units, reads their state and messages, and sends them signals.
+// Maps the segments of rtpus, reads their state and messages, and sends them signals.
 #include "chimera/manager/rtpu_links.h"
 
 #include <utility>
@@ -28,7 +28,8 @@ bool RtpuLinks::is_current(RtpuId rtpu) const noexcept {
   return segment.is_there() && segment.incarnation() == world_.rtpus[rtpu.index].incarnation;
 }
 
-// A unit that serves has something to do yet for the last switch: what comes back now might meet what it has to undo.
+// True if another serving rtpu has not finished the last switch. Tasks that come back now could conflict with the steps
+// that it must undo.
 bool RtpuLinks::is_switch_open_beside(RtpuId rtpu) const noexcept {
   const std::uint16_t number = PlanWord::of(world_.page.switching.plan.load(std::memory_order_acquire)).number;
   for (std::uint32_t r = 0; number != 0 && r < links_.size(); ++r) {
@@ -56,7 +57,7 @@ void RtpuLinks::started(const KeeperMessage& message) {
 void RtpuLinks::mapped(const KeeperMessage& message, int descriptor) {
   const RtpuId rtpu(message.index);
   Link& link = links_[rtpu.index];
-  link.inbox = {};  // both point into the mapping that goes away
+  link.inbox = {};  // both point into the mapping that ends
   link.outbox = {};
   if (const auto mapped = world_.peers.map(rtpu, message.incarnation, descriptor); !mapped) {
     const Error& why = mapped.error();
@@ -71,16 +72,17 @@ void RtpuLinks::mapped(const KeeperMessage& message, int descriptor) {
   const BlockOwner& own = world_.own.block();
   link.inbox = Inbox::resume(block.outbox(world_.own.peer()), own.progress(rtpu.index), message.incarnation);
   link.outbox = Outbox(own.outbox(rtpu.index), &block.progress(world_.own.peer()), world_.own.incarnation());
-  // One that was restarted may have died in the switch that is over, or being undone; a predecessor knew.
+  // A restarted rtpu may have died in a switch that is over or being undone. Only a predecessor knew, so this manager
+  // assumes it.
   const bool is_open = PlanWord::of(world_.page.switching.plan.load(std::memory_order_acquire)).is_open();
   if (own.head().incarnation > 1 && message.incarnation > 1 && !is_open) link.has_died = true;
-  // A predecessor may have died before it told: better twice than never.
+  // A predecessor may have died before it logged the loss. Twice in the log is better than never.
   link.lost = own.head().incarnation > 1 ? 0 : block.head().lost_posts.load();
   for (const TaskId task : link.tasks) {
     const Profile p = block.profile(task);
     counted_[task.index] = {p.missed, p.overrun, p.stale};
   }
-  // Its bell is rung, so that it looks whether this manager serves it.
+  // Rings its bell, so that the rtpu checks if it can serve this manager.
   Doorbell(world_.page.bells[rtpu.index].word).ring();
 }
 
@@ -91,7 +93,7 @@ void RtpuLinks::ended(const KeeperMessage& message, Events& events) {
   record.incarnation = message.incarnation;
   record.restarts = message.incarnation - 1;
   const bool left_words = is_current(rtpu);
-  const bool is_known = message.incarnation <= world_.own.block().memory().handled[rtpu.index];  // to a predecessor
+  const bool is_known = message.incarnation <= world_.own.block().memory().handled[rtpu.index];  // by a predecessor
   if (left_words) take_posts(rtpu, events);
   if (left_words || !is_known) {
     abort_open_plan_of(world_, rtpu);
@@ -117,7 +119,7 @@ void RtpuLinks::ended(const KeeperMessage& message, Events& events) {
   events.push_back(subsystem::RtpuDown{rtpu, message.incarnation, record.last_end, is_end, is_orderly});
 }
 
-/// What a unit that never showed a block was loading or constructing.
+/// The object or task that an rtpu without a block was loading or constructing.
 std::string RtpuLinks::what_it_made(RtpuId rtpu) const {
   const std::uint32_t word = world_.page.making[rtpu.index];
   const std::uint32_t task = task_of_making(word, world_.spec().tasks.size());
@@ -262,7 +264,7 @@ bool RtpuLinks::send(const subsystem::Send& send, Nanoseconds at) {
     post.task = send.tasks[i];
     post.signal = send.signal;
     post.more = i + 1 < send.tasks.size();
-    if (!outbox.try_post(post)) return false;  // cannot be: there was room, and nobody else writes
+    if (!outbox.try_post(post)) return false;  // cannot happen: there was room, and only this process writes
   }
   Doorbell(world_.page.bells[send.rtpu.index].word).ring();
   return true;

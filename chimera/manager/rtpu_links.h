@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The real-time units as the manager deals with them: takes their posts and looks at their words, and makes events of
-// both; posts signals to them.
+// The rtpus as the manager handles them: it reads their posts and words, makes events of both, and posts signals to
+// them.
 #pragma once
 
 #include <span>
@@ -19,37 +19,37 @@ class RtpuLinks {
  public:
   explicit RtpuLinks(ManagerState& world);
 
-  /// The keeper says that an incarnation lives.
+  /// The keeper reports that an incarnation lives.
   void started(const KeeperMessage& message);
-  /// The segment of an incarnation, alive or not. What is no segment of it is told and left out.
+  /// Maps the segment of an incarnation, alive or dead. Logs and ignores memory that is not its segment.
   void mapped(const KeeperMessage& message, int descriptor);
-  /// It is dead: its last words and posts, then RtpuDown.
+  /// The incarnation is dead: appends events for its last words and posts, then RtpuDown.
   void ended(const KeeperMessage& message, Events& events);
 
-  /// Everything that changed: who serves now, posts, status words.
+  /// Reads all that changed: rtpus that serve now, posts, status words.
   void look(Events& events);
-  /// The counters of failures, one event for a task and kind.
+  /// Reads the counters of failures; logs one event for a task and kind.
   void look_at_counters(Nanoseconds at);
-  /// Does every living rtpu serve this manager?
+  /// True if every living rtpu serves this manager.
   bool all_up() const noexcept;
 
-  /// Posts the signals as one transaction, all or none; false when there is no room or no reader.
+  /// Posts the signals as one transaction, all or none. False if there is no room or no reader.
   bool send(const subsystem::Send& send, Nanoseconds at);
-  /// Rings the doorbell of each task, as often as it is named, all or none; the rtpu that has no room or does not read
-  /// when it was none, else invalid.
+  /// Rings the doorbell of each task, as often as it is named, all or none. If none, returns the rtpu that has no room
+  /// or does not read; otherwise invalid.
   RtpuId ring(std::span<const TaskId> tasks, Nanoseconds at);
 
  private:
   struct Counted {
     std::uint64_t missed = 0, overrun = 0, stale = 0;
-    bool is_untrue = false;  ///< told
+    bool is_untrue = false;  ///< was reported
   };
   struct Link {
     Inbox inbox;
     Outbox outbox;
     std::vector<TaskId> tasks;
     std::uint64_t lost = 0;
-    bool has_died = false;  ///< an incarnation before, as far as this manager knows; until the next one is up
+    bool has_died = false;  ///< an earlier incarnation died, as far as this manager knows; until the next one serves
   };
 
   RtpuRecord& record(RtpuId rtpu) noexcept { return world_.rtpus[rtpu.index]; }

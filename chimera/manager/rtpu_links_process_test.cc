@@ -12,7 +12,7 @@
 namespace chimera::manager {
 namespace {
 
-// Both make x. `left` went OFF for `right`, its unit died, and the other one has not undone yet.
+// Both tasks produce x. `left` went OFF for `right`, its rtpu died, and the other rtpu has not undone the switch yet.
 struct HalfUndone : ::testing::Test {
   HalfUndone() {
     fake.start_manager();

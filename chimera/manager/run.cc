@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The manager's loop over the control socket, the questions and the driver.
+// The manager's loop over the control socket, the questions and ManagerLoop.
 #include "chimera/manager/run.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ Result<int> run(const Inherited& inherited, std::uint32_t incarnation, std::int3
   if (!started) return started.error();
   if (*started == nullptr) return 0;
   ManagerLoop& driver = **started;
-  // Until everything is known connections wait in the backlog, so that no command meets half a picture.
+  // Connections wait in the backlog until the inventory is complete, so that no command meets an incomplete state.
   while (!driver.is_ready())
     if (!driver.step()) return 0;
   const Bundle& bundle = driver.world().bundle;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole manager: driver, backend and door in one loop.
+// The whole manager: ManagerLoop, ManagerBackend and ControlServer in one thread.
 #pragma once
 
 #include "chimera/manager/manager_loop.h"
 
 namespace chimera::manager {
 
-/// Runs until the keeper is gone; answers the exit code. Refuses what ManagerLoop::start refuses. Blocks.
+/// Runs until the keeper is gone; returns the exit code. Refuses if ManagerLoop::start refuses. Blocks.
 Result<int> run(const Inherited& inherited, std::uint32_t incarnation, std::int32_t keeper_pid);
 
 }  // namespace chimera::manager

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes real-time units, tasks, profiles and events as JSON.
+// Writes rtpus, tasks, profiles and events as JSON.
 #include "chimera/manager/status_json.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ const char* phase_text(PeerPhase phase) {
 
 Json or_null(const std::string& text) { return text.empty() ? Json() : Json(text); }
 
-/// What the rtpu says of itself, one that was cut short included.
+/// The report of the rtpu on its rights, even if it was cut to its room.
 std::string grant_of(const BlockHead& head) { return {head.grant, ::strnlen(head.grant, sizeof head.grant)}; }
 
 bool is_given_up(const ManagerState& world, RtpuId rtpu) {
@@ -48,7 +48,7 @@ bool has_lost_tasks(const ManagerState& world, RtpuId rtpu) {
   return false;
 }
 
-/// Nobody is left who could raise the flag for what its tasks do not produce any more.
+/// True if no rtpu is left that could raise the flag for missing variables.
 bool all_are_dead(const ManagerState& world) {
   return !world.is_ending() &&
          std::none_of(world.rtpus.begin(), world.rtpus.end(), [](const RtpuRecord& rtpu) { return rtpu.is_alive; });
@@ -121,7 +121,7 @@ Json server_json(const std::optional<ServerSpec>& server) {
           {"period_ns", server->period.count}};
 }
 
-/// Of a task that ceased to be ON without saying so only what it was ON before that is known.
+/// Time for which the task was ON. If it left ON without a report, only the time before its last `on` is known.
 Nanoseconds on_time(const ManagerState& world, TaskId task, const Profile& profile, Nanoseconds at) {
   return world.state(task) == State::kOn ? profile.on_by(at) : profile.on_before;
 }
@@ -228,7 +228,7 @@ std::string fault_text(const ManagerState& world, TaskId task) {
 std::string configuration_name(const ManagerState& world) {
   if (!world.configuration) return "";
   const ApplicationSpec& spec = world.spec();
-  std::vector<bool> on(spec.tasks.size());  // states change while one looks
+  std::vector<bool> on(spec.tasks.size());  // states may change during this call
   for (std::size_t t = 0; t < on.size(); ++t) on[t] = world.state(TaskId(t)) == State::kOn;
   const auto is_on = [&](TaskId task) { return on[task.index]; };
   const std::uint32_t set = set_in_force(spec, is_on);

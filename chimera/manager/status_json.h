@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The answers about what there is and what it does: docs/formats/control.md, objects rtpu, task, profile, event.
+// The answers about the state of the subsystem: docs/formats/control.md, objects rtpu, task, profile, event.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace chimera::manager {
 
-/// Context of all: setup; may block for the time of a copy.
+/// Context of all functions: setup; may block for the time of a copy.
 Json status_json(const ManagerState& world, Nanoseconds at);
-/// Whether the illegal-configuration flag is up, and by whom.
+/// State of the illegal-configuration flag, and the tasks or persons that raised it.
 Json flag_json(const ManagerState& world);
 Json describe_json(const ManagerState& world);
 Json profile_json(const ManagerState& world, Nanoseconds at);
@@ -19,9 +19,9 @@ Json event_json(const ManagerState& world, const LoggedEvent& event);
 /// At most `limit` events from number `since` on.
 Json events_json(const ManagerState& world, std::uint64_t since, std::size_t limit);
 Json library_json(const ManagerState& world);
-/// The last fault of a task as "cycle: its words"; "" when there was none.
+/// The last fault of a task as "cycle: its words"; "" if there was none.
 std::string fault_text(const ManagerState& world, TaskId task);
-/// Name of the configuration whose tasks are ON, exactly; "" when it has no name.
+/// Name of the configuration whose tasks are ON, exactly; "" if it has no name.
 std::string configuration_name(const ManagerState& world);
 
 }  // namespace chimera::manager

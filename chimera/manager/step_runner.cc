@@ -38,7 +38,7 @@ void StepRunner::command(Signal signal, std::vector<TaskId> tasks, Answered answ
   step(subsystem::Commanded{id, signal, std::move(tasks)});
 }
 
-// A signal that found no room is not reported on, so it fails in time.
+// A signal without room gets no report, so the step function fails it after its time limit.
 void StepRunner::carry_out(const subsystem::Send& send) { (void)fleet_.send(send, now()); }
 
 void StepRunner::carry_out(const subsystem::StartRtpu& start) {
@@ -52,7 +52,7 @@ void StepRunner::carry_out(const subsystem::RememberGoal& goal) { world_.own.blo
 
 void StepRunner::carry_out(const subsystem::RememberHandled& handled) {
   memory().handled[handled.rtpu.index] = handled.incarnation;
-  for (std::uint32_t t = 0; t < world_.peers.n_tasks(); ++t)  // what it was is a goal by now
+  for (std::uint32_t t = 0; t < world_.peers.n_tasks(); ++t)  // the goals hold the last states now
     if (world_.spec().tasks[t].rtpu == handled.rtpu) world_.own.block().set_status(TaskId(t), {});
 }
 

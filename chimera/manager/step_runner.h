@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between the step function of the subsystem and what carries its actions out: hands events to it, sends its signals to
-// the real-time units, its starts to the keeper, keeps what it must not forget, answers commands, logs.
+// Connects the step function of the subsystem to the processes. It passes events to the step function, sends signals to
+// rtpus and starts to the keeper, remembers, answers commands, and logs.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +14,17 @@
 
 namespace chimera::manager {
 
-/// What became of a command.
+/// Called with the result of a command.
 using Answered = std::function<void(const subsystem::CommandAnswer&)>;
 
-/// Context: setup; never blocks. Everything outlives it.
+/// Context: setup; never blocks. All arguments outlive it.
 class StepRunner {
  public:
   StepRunner(ManagerState& world, RtpuLinks& fleet, Channel& keeper) : world_(world), fleet_(fleet), keeper_(keeper) {}
   StepRunner(const StepRunner&) = delete;
   StepRunner& operator=(const StepRunner&) = delete;
 
-  /// The first step: with what a predecessor remembered in the manager's segment.
+  /// The first step, with the memory of a predecessor in the manager's segment.
   void begin();
   /// One step, and its actions in order.
   void step(const subsystem::Event& event);
@@ -32,13 +32,13 @@ class StepRunner {
   void step(const Events& events) {
     for (const subsystem::Event& event : events) step(event);
   }
-  /// When the step function is due though nothing happened.
+  /// Time when the step function is due if no event arrives.
   Nanoseconds next_due() const noexcept { return world_.logic.next_due(); }
-  /// Steps when it is due.
+  /// Steps if the step function is due.
   void look(Nanoseconds at) {
     if (next_due() <= at) step(subsystem::Tick{});
   }
-  /// Asks for a signal; `answered` is called when it is over, maybe at once.
+  /// Requests a signal; calls `answered` when it is over, maybe at once.
   void command(Signal signal, std::vector<TaskId> tasks, Answered answered);
 
  private:

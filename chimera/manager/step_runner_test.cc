@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What becomes of the actions of the step function; posts to real-time units that answer: manager_loop_test.cc.
+// The effects of the actions of the step function; posts to rtpus that answer: manager_loop_test.cc.
 #include "chimera/manager/step_runner.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ class StepRunnerTest : public ::testing::Test, public LoneState {
 
   std::uint32_t goal(const char* name) { return world().own.block().view().goal(task(name)); }
   ManagerMemory& memory() { return world().own.block().memory(); }
-  /// The index in each message that asks the keeper to start a unit.
+  /// The index in each message that asks the keeper to start an rtpu.
   std::vector<std::uint32_t> started() {
     std::vector<std::uint32_t> indices;
     KeeperMessage message;
@@ -29,7 +29,7 @@ class StepRunnerTest : public ::testing::Test, public LoneState {
     }
     return indices;
   }
-  /// Both units have ended and are not started again: commands are answered at once.
+  /// Both rtpus have ended and are not started again: commands are answered at once.
   void end_all() {
     for (RtpuId rtpu : {RtpuId(0u), RtpuId(1u)}) runner_.step(subsystem::RtpuDown{rtpu, 1, "ended", true, true});
     runner_.step(subsystem::InventoryComplete{});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens a feed for each subscription, and makes its next notification when it is asked.
+// Opens a feed for each subscription, and makes its next notification on request.
 #include "chimera/manager/subscription_feeds.h"
 
 #include <algorithm>
@@ -74,7 +74,8 @@ std::shared_ptr<const Json> SubscriptionFeeds::pull_events(Feed& feed) const {
 }
 
 std::shared_ptr<const Json> SubscriptionFeeds::pull_tap(Feed& feed) const {
-  // The tap is read again when all of this is taken: what a slow reader leaves there is overwritten and counted.
+  // Reads the tap again only when all messages have been sent. Rows that a slow client leaves in the ring are
+  // overwritten and counted as lost.
   if (feed.waiting.empty()) feed.tap->pump([&](Json message) { feed.waiting.push_back(shared(std::move(message))); });
   if (feed.waiting.empty()) return nullptr;
   auto message = std::move(feed.waiting.front());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each subscription of the control protocol is to be sent next: status, events, values or the tap.
+// The next notification of each subscription of the control protocol: status, events, values or the tap.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@
 
 namespace chimera::manager {
 
-/// Of one answer or notification.
+/// Most events in one answer or notification.
 inline constexpr std::size_t kEventsAtOnce = 1000;
 
-/// Context: setup. As the functions of control::ControlBackend with these names.
+/// Context: setup. The functions are those of control::ControlBackend with these names.
 class SubscriptionFeeds {
  public:
   /// `world` outlives it.

@@ -15,7 +15,7 @@ class SubscriptionFeedsTest : public ::testing::Test, public LoneState {
     const control::RpcResponse answer = feeds_.open(subscription, parameters);
     EXPECT_TRUE(answer.is_good()) << answer.message;
   }
-  /// What the subscription is to be sent; null: nothing.
+  /// The next notification of the subscription; null: none.
   Json pull(std::uint64_t subscription) {
     const auto message = feeds_.pull(subscription);
     return message == nullptr ? Json() : *message;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Orders a switch from the real-time units and makes one receipt of what they tell.
+// Orders a switch from the rtpus and makes one receipt from their parts.
 #include "chimera/manager/switch_coordinator.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace chimera::manager {
 namespace {
 
-constexpr Nanoseconds kGrace = milliseconds(500);  // within which the units abort by themselves
+constexpr Nanoseconds kGrace = milliseconds(500);  // time in which the rtpus abort by themselves
 
 /// "14:03:07", of the wall clock.
 std::string time_of_day(Nanoseconds at) {
@@ -24,7 +24,7 @@ std::string time_of_day(Nanoseconds at) {
   return text;
 }
 
-/// It may have been left by a manager that wrote where it should not.
+/// False for a cause that no manager would write: the predecessor may have damaged its journal.
 bool is_cause(const BegunSwitch& begun, const ApplicationSpec& spec) {
   const bool is_of_task = begun.cause > SwitchCause::kScript && begun.cause <= SwitchCause::kFault;
   return is_of_task ? begun.by.index < spec.tasks.size() : begun.cause == SwitchCause::kScript && !begun.by.is_valid();
@@ -38,8 +38,8 @@ bool is_way(const SwitchWay& way, const ApplicationSpec& spec) {
          (!found.task.is_valid() || found.constant.index < spec.constants.size());
 }
 
-/// No gap of the rtpu is longer while the tasks `on` cycle: the longest time between two releases of those tasks that
-/// have the shortest period.
+/// Upper bound of the gaps of the rtpu while the tasks `on` cycle: the longest time between two releases of the tasks
+/// with the shortest period.
 Nanoseconds longest_gap(const ApplicationSpec& spec, const TaskBits& on, RtpuId rtpu) {
   std::vector<const TaskSpec*> fastest;
   for (std::size_t t = 0; t < spec.tasks.size(); ++t) {
@@ -69,7 +69,7 @@ std::string asker_text(const BegunSwitch& begun, const ApplicationSpec& spec) {
 
 }  // namespace
 
-// One of those tasks has a resource of `task`.
+// True if one of the tasks in `tasks` shares a resource with `task`.
 static bool has_rival_in(const ManagerState& world, TaskId task, const TaskBits& tasks) {
   for (std::size_t t = 0; t < world.spec().tasks.size(); ++t)
     if (tasks.has(TaskId(t)) && world.rivals.are(task, TaskId(t))) return true;
@@ -86,7 +86,7 @@ TaskStatus last_status(const ManagerState& world, TaskId task) {
   if (!was_member || !world.peers[rtpu].is_there()) return status;
   const SwitchProgress& progress = world.peers[rtpu].block().head().switching;
   if (progress.adopted.load(std::memory_order_acquire) == plan.number) return status;  // SwitchProgress
-  if (plan.phase != SwitchPhase::kCommitted) {  // of a slow one it may have done a part
+  if (plan.phase != SwitchPhase::kCommitted) {  // it may have carried out a part of a slow one
     if (order->slow != 0 && status.state <= State::kOn)
       status.state = order->on.has(task) ? State::kOn : std::min(status.state, State::kOff);
     if (order->slow != 0 && has_rival_in(world, task, order->on)) status.state = State::kNotCreated;
@@ -119,7 +119,7 @@ SwitchCoordinator::SwitchCoordinator(ManagerState& world, ReceiptArchive& archiv
   take_over();
 }
 
-/// What was never announced is forgotten; a try that was not announced is as if only those before it had been made.
+/// Forgets a switch that was never announced. If only its last try was not announced, continues with the tries before.
 void SwitchCoordinator::take_over() {
   auto begun = journal_.begun();
   if (!begun) return;
@@ -163,7 +163,7 @@ bool SwitchCoordinator::is_free() const noexcept {
   return !present_ && !open.is_open() && (open.number == 0 || orders_.are_over(open.number, UINT16_MAX));
 }
 
-/// What may begin is kDone, for as long as nothing has gone wrong.
+/// Judges the request. If the switch may begin, `end` is kDone, because no error has occurred yet.
 void SwitchCoordinator::assess(const TaskBits& target, SwitchOutcome& outcome) {
   SwitchReceipt& receipt = outcome.receipt;
   const PlanAnswer answer = orders_.judge(target);
@@ -207,7 +207,7 @@ ForeseenSwitch SwitchCoordinator::foresee(const TaskBits& target) {
   return foreseen;
 }
 
-/// A slow switch does not wait for a gap for longer anyway.
+/// Skips slow switches: they do not wait longer for a gap.
 void SwitchCoordinator::find_late_off(ForeseenSwitch& foreseen) const {
   if (foreseen.receipt.way.slow != 0) return;
   const TaskBits after = target_of(foreseen.plan);
@@ -223,7 +223,7 @@ void SwitchCoordinator::find_late_off(ForeseenSwitch& foreseen) const {
   }
 }
 
-/// Of methods that were never called: as IdleGap takes them.
+/// Typical time of the method; for a method that was never called, the guess of IdleGap.
 Nanoseconds SwitchCoordinator::method_time(TaskId task, Method method) const {
   const Nanoseconds budget = world_.spec().tasks[task.index].budget;
   const Nanoseconds guess = budget > Nanoseconds{} ? budget : IdleGap::kUnknownMethod;
@@ -231,7 +231,7 @@ Nanoseconds SwitchCoordinator::method_time(TaskId task, Method method) const {
   return profile.execution[static_cast<int>(method)].count == 0 ? guess : profile.of_late(method);
 }
 
-/// To the change, when nothing has to be waited for but the flag. Requires: orders_ has judged.
+/// Estimated time to the change, if only the flag must be waited for. Requires: orders_ has judged.
 Nanoseconds SwitchCoordinator::expected() {
   Nanoseconds sum;
   const std::uint8_t slow = orders_.way().slow;
@@ -275,7 +275,7 @@ void SwitchCoordinator::ask(const SwitchRequest& request, const TaskBits& target
   world_.tell("switch", TaskId{}, RtpuId{}, under_way() + ": begun", now);
 }
 
-/// Who cancelled is noted before the plan is aborted: a successor may have to tell.
+/// Notes in the journal who cancelled before it aborts the plan, because a successor may have to report it.
 bool SwitchCoordinator::cancel(Asker cancelled_by, Switched switched) {
   if (!present_) return false;
   BegunSwitch cancelled = present_->begun;
@@ -291,7 +291,7 @@ bool SwitchCoordinator::cancel(Asker cancelled_by, Switched switched) {
 }
 
 Nanoseconds SwitchCoordinator::next_due() const noexcept {
-  const bool is_open = present_ && agreement().plan().is_open();  // when it is not, units ring
+  const bool is_open = present_ && agreement().plan().is_open();  // if it is not open, the rtpus ring
   return is_open ? present_->begun.order.until + kGrace : kNever;
 }
 
@@ -304,7 +304,7 @@ bool SwitchCoordinator::is_tried_again(const SwitchReceipt& receipt, Nanoseconds
   return true;
 }
 
-/// An open plan of which the journal knows nothing is nobody's.
+/// Aborts an open plan that the journal does not contain: no manager follows it.
 void SwitchCoordinator::look(Nanoseconds now) {
   const PlanWord plan = agreement().plan();
   if (!present_ && plan.is_open() && agreement().abort(plan.number)) world_.announce();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the manager does for a switch of configurations: SwitchOrders (runtime/switch/switch_orders.h) judges the
-// request, orders the switch from the rtpus and collects the receipt; this class answers the people who ask, files the
-// receipt, and keeps in the journal what a successor needs to go on. docs/formats/processes.md,
+// The manager's part in a switch of configurations. SwitchOrders (runtime/switch/switch_orders.h) judges the request,
+// orders the switch from the rtpus and collects the receipt. This class answers the clients, files the receipt, and
+// keeps the data that a successor needs in the journal. docs/formats/processes.md,
 // docs/decisions/0045-a-switch-is-committed-by-the-rtpus.md.
 #pragma once
 
@@ -22,72 +22,72 @@
 
 namespace chimera::manager {
 
-/// What became of a request. The lists of `receipt` are those beside it.
+/// Result of a request. The lists of `receipt` point to the vectors beside it.
 struct SwitchOutcome {
   SwitchReceipt receipt;
   std::vector<TaskPart> tasks;
   std::vector<VariablePart> variables;
   std::vector<TaskId> reinitialised;
-  std::string remedy;  ///< of a refusal; "": none is known
-  std::string json;    ///< the receipt as it is filed; "": there is none
+  std::string remedy;  ///< for a refusal; "": none is known
+  std::string json;    ///< the filed receipt; "": there is none
 };
 using Switched = std::function<void(const SwitchOutcome&)>;
 
-/// What a switch would do now. Lists point into the coordinator, until it is asked for anything else.
+/// The switch that would happen now. Its lists point into the coordinator and are valid until its next call.
 struct ForeseenSwitch {
-  SwitchReceipt receipt;  ///< `before`, `after` and, where it would be refused, `why`, `task` and `said`
-  SwitchPlan plan;        ///< empty where it would be refused
+  SwitchReceipt receipt;  ///< `before`, `after` and, for a refusal, `why`, `task` and `said`
+  SwitchPlan plan;        ///< empty for a refusal
   std::string remedy;
-  Nanoseconds expected;   ///< from the request to the change, about; gaps, inputs and `safe_when` come on top
-  TaskId late_off;        ///< its `off` was never called and fits no gap, so it comes IdleGap::kLongestWait late
-  Nanoseconds needed;     ///< by the `off` of late_off
+  Nanoseconds expected;   ///< estimated time from the request to the change, without gaps, inputs and `safe_when`
+  TaskId late_off;        ///< its `off` was never called and fits no gap: it comes IdleGap::kLongestWait late
+  Nanoseconds needed;     ///< idle time that the `off` of late_off needs
 };
 
-/// The status word of a task of a unit that is dead, as it would be had the unit lived to make a change that was
-/// committed without it: what comes back is the set after the switch. Context: setup.
+/// Status word of a task of a dead rtpu. If a change was committed without the rtpu, the word is as if the rtpu had
+/// made it. So the tasks that come back are those of the set after the switch. Context: setup.
 TaskStatus last_status(const ManagerState& world, TaskId task);
-/// Of a unit that is dead, before last_status(): an open plan in which it took part is aborted, else it might be
-/// committed after its last states were read. Context: setup; lock-free.
+/// Aborts an open plan in which the dead rtpu takes part. Call it before last_status(): otherwise the plan might be
+/// committed after the last states were read. Context: setup; lock-free.
 void abort_open_plan_of(ManagerState& world, RtpuId rtpu);
 
 /// Context: setup; never blocks. One request at a time.
 class SwitchCoordinator {
  public:
-  /// Takes up the switch that a predecessor has begun.
+  /// Continues the switch that a predecessor has begun.
   SwitchCoordinator(ManagerState& world, ReceiptArchive& archive);
 
-  /// Asks for a switch to sets[request.set]. `asked_by`: of a person; without a role of a task or reaction, which the
-  /// request names. `switched` is called when it is over and its receipt is filed, maybe at once.
+  /// Requests a switch to sets[request.set]. `asked_by`: the person; it has no role if a task or reaction asked, which
+  /// the request names. Calls `switched` when the switch is over and its receipt is filed, maybe at once.
   void ask(const SwitchRequest& request, Asker asked_by, Nanoseconds wait, Nanoseconds now, Switched switched) {
     ask(request, tasks_of(world_.spec(), request.set), asked_by, wait, now, std::move(switched));
   }
-  /// The same to any set of tasks that is legal; request.set is its number or kNoSet.
+  /// Requests a switch to any legal set of tasks; request.set is its number or kNoSet.
   void ask(const SwitchRequest& request, const TaskBits& target, Asker asked_by, Nanoseconds wait, Nanoseconds now,
            Switched switched);
-  /// What ask() would do. Changes nothing.
+  /// The result that ask() would have. Changes nothing.
   ForeseenSwitch foresee(const TaskBits& target);
-  /// Aborts what is under way and not committed: `switched` gets the same receipt as who asked for it. False: there is
-  /// nothing, or it is too late.
+  /// Aborts a switch that is under way and not committed. `switched` gets the same receipt as the requester. False if
+  /// there is none or it is too late.
   bool cancel(Asker cancelled_by, Switched switched);
   bool is_under_way() const noexcept { return present_.has_value(); }
-  /// One that is asked for now would not be refused as under way; of a manager before this one neither.
+  /// True if a new request would not be refused because of a switch under way, of this manager or an earlier one.
   bool is_free() const noexcept;
-  /// What is asked for is under way.
+  /// True if the requested switch is under way.
   bool leads_to(const SwitchRequest& request) const noexcept { return present_ && present_->begun.leads_to(request); }
-  /// "switch 3 to 'hand', asked for by operate:ann", or "by task law", or "by on_fault of law"; "" without one.
+  /// "switch 3 to 'hand', asked for by operate:ann", or "by task law", or "by on_fault of law"; "" if there is none.
   std::string under_way() const;
-  /// How far it is, and until when it may take: "arming, until 14:03:07". Requires: is_under_way().
+  /// The phase of the switch and its time limit: "arming, until 14:03:07". Requires: is_under_way().
   std::string progress() const;
 
-  /// Deals with what the units have said since.
+  /// Handles the progress of the rtpus since the last call.
   void look(Nanoseconds now);
-  /// When look() is due though nobody says anything; kNever: not.
+  /// Time when look() is due if no bell rings; kNever: not due.
   Nanoseconds next_due() const noexcept;
 
  private:
   struct Present {
     BegunSwitch begun;
-    std::vector<Switched> switched;  // none: who asked, asked a predecessor
+    std::vector<Switched> switched;  // empty: the request came to a predecessor
   };
 
   SwitchAgreement agreement() const noexcept { return orders_.agreement(); }
@@ -105,7 +105,7 @@ class SwitchCoordinator {
   ManagerState& world_;
   ReceiptArchive& archive_;
   SwitchJournal journal_;
-  HeapMemory memory_;  // behind orders_ and slow_
+  HeapMemory memory_;  // memory of orders_ and slow_
   ShownMembers members_;
   SwitchOrders orders_;
   SlowPlanner slow_;

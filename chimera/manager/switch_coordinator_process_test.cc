@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The manager's side of a switch; the test plays the real-time units.
+// The manager's side of a switch; the test plays the rtpus.
 #include "chimera/manager/switch_coordinator.h"
 
 #include <gtest/gtest.h>
@@ -38,10 +38,10 @@ struct SwitchCoordinatorTest : ::testing::Test {
     got->receipt.tasks = got->tasks;
     got->receipt.variables = got->variables;
   }
-  /// What the file of receipts has.
+  /// The receipts in the file.
   std::vector<std::string> filed() const { return control::ReceiptFile(fake.state() + "/chimera/fake").last(1000); }
   SwitchPart& part(std::uint32_t r) { return fake.rtpu(r).block().switch_part(); }
-  /// The unit has done what it has to do.
+  /// The rtpu reports that it has finished its part.
   void over(std::uint32_t r, DecisionPage& page, NoSwitch why = NoSwitch::kNone) {
     part(r).number = PlanWord::of(page.switching.plan).number;
     part(r).why = why;
@@ -57,7 +57,7 @@ struct SwitchCoordinatorTest : ::testing::Test {
     ASSERT_TRUE(there.agree(number, 1));
   }
   void commit() { commit_in(fake.decision_page()); }
-  /// As if it had been killed.
+  /// Replaces the manager as if it had been killed.
   void restart() {
     fake.kill_manager();
     fake.start_manager();
@@ -243,7 +243,7 @@ TEST_F(SwitchCoordinatorTest, OneThatFoundNoGapOrNoReadyDeviceIsMadeTheSlowWay) 
   }
 }
 
-// The units ring: a manager that looked again and again from the deadline on would fill its CPU.
+// The rtpus ring. A manager that polled from the deadline on without end would fill its CPU.
 TEST_F(SwitchCoordinatorTest, NothingIsDueWhenThePlanIsNoMoreOpen) {
   EXPECT_EQ(coordinator().next_due(), kNever);
   ask(kRest);
@@ -323,7 +323,8 @@ TEST_F(SwitchCoordinatorTest, ASuccessorClosesAPlanThatIsPastItsDeadline) {
   EXPECT_EQ(agreement().plan().number, 2);
 }
 
-// Killed between the journal and the plan: nobody was told of it, its number is the next one's.
+// The manager was killed between the journal and the plan. The switch was not announced, so the next one gets its
+// number.
 TEST_F(SwitchCoordinatorTest, WhatWasNeverAnnouncedIsForgotten) {
   BegunSwitch begun;
   begun.order.number = 1;
@@ -336,8 +337,8 @@ TEST_F(SwitchCoordinatorTest, WhatWasNeverAnnouncedIsForgotten) {
   EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', " + kByAnn);
 }
 
-// Killed between the journal and the plan of another try: the first try was late, and that is what is told, or tried
-// again.
+// The manager was killed between the journal and the plan of another try. The first try was late: the successor reports
+// that, or tries again.
 TEST_F(SwitchCoordinatorTest, ATryThatWasNotAnnouncedIsMadeAgain) {
   ask(kRest);
   SwitchJournal journal(fake.driver().world().own.block().journal());
@@ -392,7 +393,7 @@ TEST_F(SwitchCoordinatorTest, ACauseOrATaskThatCannotBeIsForgotten) {
   change(static_cast<SwitchCause>(9), fake.task("law"));
 }
 
-// Its number is on the page, but the journal has nothing: somebody else wrote it.
+// The page has its number, but the journal has no entry: no manager wrote it.
 TEST_F(SwitchCoordinatorTest, APlanThatNobodyOrderedIsAborted) {
   SwitchOrder order;
   order.number = 7;
@@ -405,7 +406,7 @@ TEST_F(SwitchCoordinatorTest, APlanThatNobodyOrderedIsAborted) {
   EXPECT_EQ(got->receipt.said.view(), "the real-time units are not done with the last switch");
 }
 
-// The memory of a unit may hold anything.
+// The memory of an rtpu may hold any value.
 TEST_F(SwitchCoordinatorTest, APartThatDoesNotFitTheApplicationIsLeftOut) {
   ask(kRest);
   commit();
@@ -414,7 +415,8 @@ TEST_F(SwitchCoordinatorTest, APartThatDoesNotFitTheApplicationIsLeftOut) {
   std::memset(part(0).said, 'x', sizeof part(0).said);
   part(0).n_tasks = part(0).n_variables = UINT32_MAX;
   part(0).task = TaskId(77u);
-  part(1).tasks[0] = {fake.task("sensor"), TaskMove::kStays, Nanoseconds{-1}, Nanoseconds{-1}, 0};  // of the other unit
+  // A task of the other rtpu.
+  part(1).tasks[0] = {fake.task("sensor"), TaskMove::kStays, Nanoseconds{-1}, Nanoseconds{-1}, 0};
   part(1).n_tasks = 1;
   over(0, NoSwitch::kOnFailed);
   over(1);
@@ -424,7 +426,7 @@ TEST_F(SwitchCoordinatorTest, APartThatDoesNotFitTheApplicationIsLeftOut) {
   EXPECT_TRUE(got->variables.empty());
 }
 
-// It would have turned law OFF: with what its last words say, law would come back.
+// It would have turned law OFF: by its last words alone, law would come back.
 TEST_F(SwitchCoordinatorTest, AUnitThatDiesBetweenCommitAndChangeComesBackToTheSetAfterIt) {
   ask(kRest);
   commit();
@@ -438,7 +440,8 @@ TEST_F(SwitchCoordinatorTest, AUnitThatDiesBetweenCommitAndChangeComesBackToTheS
   EXPECT_EQ(fake.driver().world().state(fake.task("law")), State::kOff);
 }
 
-// It has agreed and died; the other would agree next. What comes back is decided here and now, so the plan is too.
+// One rtpu has agreed and died; the other would agree next. The tasks that come back are decided now, so the plan must
+// be decided too.
 TEST_F(SwitchCoordinatorTest, APlanIsNoLongerOpenWhenItIsDecidedAsWhatADeadUnitComesBack) {
   ask(kRest);
   const std::uint16_t number = agreement().plan().number;

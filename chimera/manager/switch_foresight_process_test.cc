@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a dry run says of a switch: the way that it would go, and an `off` that would come late.
+// The report of a dry run about a switch: the way that it would go, and an `off` that would come late.
 #include <gtest/gtest.h>
 
 #include "chimera/control/switch_reason.h"

@@ -15,7 +15,8 @@ namespace {
 static_assert(std::is_trivially_copyable_v<BegunSwitch>);
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
-// Of a process that is dead: what it stored last is seen. The stores are ordered for that, and pair with nothing else.
+// The reader comes after the death of the writer and sees its last stores. The stores are ordered for this, and pair
+// with nothing else.
 constexpr auto kAfterAll = std::memory_order_release;
 constexpr auto kRelaxed = std::memory_order_relaxed;
 
@@ -36,7 +37,7 @@ SwitchJournal::Entry& SwitchJournal::entry_at(std::uint32_t at) const noexcept {
   return *reinterpret_cast<Entry*>(pages_->text + at);
 }
 
-/// Each entry that lies within the text; what a wild write left is not followed.
+/// Calls `visit` for each entry inside the text; stops at damaged entries.
 template <class Visit>
 void SwitchJournal::visit(Visit&& visit) const {
   const std::uint32_t end = std::min<std::uint32_t>(pages_->end.load(kRelaxed), sizeof pages_->text);

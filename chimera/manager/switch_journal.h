@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What must not be forgotten of switches when the manager dies: which one is under way, who asked, and the receipts
-// that are not on the disk yet. In the manager's own block; read by its successor. docs/formats/processes.md.
+// The data about switches that must outlive the manager: the switch under way, its requester, and the receipts that are
+// not on the disk yet. It lies in the manager's own block; the successor reads it. docs/formats/processes.md.
 //
 //   begin -> change... -> put                a switch that was begun
-//   begin -> forget                          nobody was told of it
+//   begin -> forget                          a switch that was never announced
 //   put                                      a request that was refused
 //   put -> filed                             its receipt is on the disk
 //
-// Each is done by one store, the last one: who is killed in the middle has not done it.
+// The last store of each call completes it. A manager that is killed before this store has not made the call.
 #pragma once
 
 #include <atomic>
@@ -25,17 +25,17 @@ namespace chimera::manager {
 
 /// A switch that is under way. Plain value.
 struct BegunSwitch : OrderedSwitch {
-  Asker asked_by;      ///< kNone: a task or reaction did
-  Asker cancelled_by;  ///< kNone: it was not
+  Asker asked_by;      ///< kNone: a task or reaction asked for it
+  Asker cancelled_by;  ///< kNone: it was not cancelled
 };
 
 /// One writer. Context: setup; never blocks.
 class SwitchJournal {
  public:
   struct Pages {
-    std::atomic<std::uint32_t> last{0};   ///< number that was given out last
-    std::atomic<std::uint64_t> begun{0};  ///< number of the switch under way, twice, and which of `slots` tells of it
-    std::atomic<std::uint32_t> end{0};    ///< of `text`, which has an Entry before each receipt
+    std::atomic<std::uint32_t> last{0};   ///< last number in use
+    std::atomic<std::uint64_t> begun{0};  ///< number of the switch under way, twice, and its index in `slots`
+    std::atomic<std::uint32_t> end{0};    ///< end of `text`, which has an Entry before each receipt
     BegunSwitch slots[2];
     alignas(64) char text[128 << 10];
   };
@@ -49,24 +49,24 @@ class SwitchJournal {
   };
   static_assert(sizeof(Pages) <= kJournalBytes);
 
-  /// Over the journal of a block that this process owns.
+  /// Uses the journal of a block that this process owns.
   explicit SwitchJournal(std::span<std::byte> bytes) noexcept;
-  /// Into an empty one: what a dead predecessor left in its block. What does not fit together is left out.
+  /// Copies the journal of a dead predecessor into this empty one. Leaves out data that is inconsistent.
   void take_over(std::span<const std::byte> left);
 
   /// The number of the next switch or refusal.
   std::uint32_t next() const noexcept { return pages_->last.load(std::memory_order_relaxed) + 1; }
-  /// The switch is under way; its number is next(). Requires: none is.
+  /// Records that the switch is under way; its number is next(). Requires: none is.
   void begin(const BegunSwitch& begun) noexcept;
-  /// Of the one that is under way, but for its number.
+  /// Replaces the record of the switch under way, except its number.
   void change(const BegunSwitch& begun) noexcept;
   std::optional<BegunSwitch> begun() const;
-  /// Nobody was told of the one under way: the next one gets its number.
+  /// Removes the switch under way, which was never announced: the next one gets its number.
   void forget() noexcept;
-  /// Keeps a receipt. The switch of that number is not under way any more; a number that is next() is given out.
-  /// False: there is no room, and only the present manager knows it.
+  /// Keeps a receipt. The switch of that number is no longer under way; if the number is next(), it is now used. False
+  /// if there is no room: then only the present manager has the receipt.
   bool put(std::uint32_t number, std::string_view text) noexcept;
-  /// In the order in which they were put, but for those that are filed.
+  /// Receipts that are not filed, in the order of put().
   std::vector<Receipt> unfiled() const;
   void filed(std::uint32_t number) noexcept;
 

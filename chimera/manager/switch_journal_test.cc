@@ -11,7 +11,7 @@
 namespace chimera::manager {
 namespace {
 
-/// The journal of a block. A copy is what a successor finds when the owner is killed now.
+/// The journal of a block. A copy is the journal that a successor finds if the owner is killed now.
 struct Memory {
   alignas(64) std::byte bytes[kJournalBytes] = {};
 
@@ -20,7 +20,7 @@ struct Memory {
 };
 
 struct SwitchJournalTest : ::testing::Test {
-  /// The owner is killed now; from here on `memory` is its successor's.
+  /// The owner is killed now; from here on `memory` belongs to its successor.
   SwitchJournal successor() {
     auto next = std::make_unique<Memory>();
     next->journal().take_over(memory->bytes);
@@ -100,11 +100,11 @@ TEST_F(SwitchJournalTest, WhatIsFiledIsNotHandedOnAndGivesItsRoomBack) {
   EXPECT_FALSE(next.put(5, std::string(sizeof memory->pages().text, 'x')));
 }
 
-// The stores of an act one by one: after each of them its owner may be killed.
+// The stores of an act one by one. After each of them its owner may be killed.
 TEST_F(SwitchJournalTest, WhoIsKilledBetweenTwoStoresHasDoneItOrNot) {
   SwitchJournal journal = memory->journal();
   journal.begin(switch_to(1));
-  memory->pages().last = 0;  // begin(): the number is not given out yet
+  memory->pages().last = 0;  // begin(): the number is not in use yet
   SwitchJournal next = successor();
   EXPECT_EQ(next.begun()->number, 1u);
   EXPECT_EQ(next.next(), 2u);
@@ -115,14 +115,14 @@ TEST_F(SwitchJournalTest, WhoIsKilledBetweenTwoStoresHasDoneItOrNot) {
   EXPECT_FALSE(third.begun());
   EXPECT_EQ(numbers(third), "1:done ");
   EXPECT_TRUE(third.put(2, "refused"));
-  memory->pages().last = 1;  // put(): its number is not given out yet
+  memory->pages().last = 1;  // put(): its number is not in use yet
   SwitchJournal fourth = successor();
   EXPECT_EQ(fourth.next(), 3u);
   fourth.filed(1);
   EXPECT_EQ(numbers(successor()), "2:refused ");
 }
 
-// Killed at any time in a random life, with a disk that is behind: each number has one receipt, in the end.
+// The manager is killed at any time in a random life with a slow disk. At the end each number has one receipt.
 TEST_F(SwitchJournalTest, EachNumberHasOneReceiptWhoeverIsKilled) {
   const auto seed = std::random_device{}();
   SCOPED_TRACE(seed);
@@ -145,7 +145,7 @@ TEST_F(SwitchJournalTest, EachNumberHasOneReceiptWhoeverIsKilled) {
         break;
       case 4:
         for (const auto& [number, text] : journal.unfiled()) {
-          if (filed.count(number) == 0) filed.insert(number);  // as the file, which knows what it has
+          if (filed.count(number) == 0) filed.insert(number);  // as the file does: it knows its receipts
           if (random() % 8 == 0) break;  // killed between the file and the journal
           journal.filed(number);
         }
@@ -162,7 +162,7 @@ TEST_F(SwitchJournalTest, EachNumberHasOneReceiptWhoeverIsKilled) {
   EXPECT_EQ(expected + 1, journal.next());
 }
 
-// The manager that died may have written anything there.
+// A dead manager may have written any value there.
 TEST_F(SwitchJournalTest, GarbageIsNotFollowed) {
   std::mt19937 random(1);
   for (int i = 0; i < 200; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads what rtpus show of themselves, alive or dead, for the orderer of switches.
+// Reads the state of rtpus, alive or dead, for the orders of switches.
 #include "chimera/manager/switch_members.h"
 
 namespace chimera::manager {
@@ -44,7 +44,7 @@ bool ShownMembers::differ(ConstantId constant, std::uint32_t a, std::uint32_t b)
   return one.empty() || one != other;
 }
 
-// As its rtpu shows what the producer made; empty if no value is shown.
+// The constant as the rtpu of its producer publishes it; empty if there is no value.
 std::vector<std::byte> ShownMembers::value(ConstantId constant, std::uint32_t producer) const {
   const TaskId task = world_.spec().constants[constant.index].producers[producer].task;
   const PeerLayout& layout = world_.peers.layout(world_.spec().tasks[task.index].rtpu);

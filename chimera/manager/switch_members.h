@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rtpus as the orderer of switches sees them: by their segments and by what the keeper says of their processes.
+// The rtpus for SwitchOrders: read from their segments and from the keeper's page.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace chimera::manager {
 /// Context: setup.
 class ShownMembers final : public SwitchMembers, private MadeConstants {
  public:
-  /// The state outlives this.
+  /// `world` outlives this object.
   explicit ShownMembers(ManagerState& world) noexcept : world_(world) {}
 
   SwitchPage& page() noexcept override { return world_.page.switching; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes up what tasks ask for, one switch at a time.
+// Carries out the requests of tasks, one switch at a time.
 #include "chimera/manager/switch_wishes.h"
 
 #include "chimera/control/switch_reason.h"
@@ -8,7 +8,7 @@
 namespace chimera::manager {
 namespace {
 
-// The words say anything when their unit has died or writes where it should not.
+// Checks the words: a dead or faulty rtpu may have left any value.
 bool is_in_range(const OpenWish& open, RtpuId rtpu, const ApplicationSpec& spec) {
   const SwitchWish& wish = open.wish;
   const bool is_set = wish.set < spec.sets.size();
@@ -21,7 +21,7 @@ bool is_in_range(const OpenWish& open, RtpuId rtpu, const ApplicationSpec& spec)
 
 }  // namespace
 
-// Also of a unit that is dead: what it asked for is to come about all the more.
+// The open request of an rtpu, even of a dead one: its request is then all the more important.
 std::optional<SwitchWishes::Open> SwitchWishes::read(RtpuId rtpu) const noexcept {
   if (!world_.peers[rtpu].is_there()) return std::nullopt;
   const BlockHead& head = world_.peers[rtpu].block().head();
@@ -59,7 +59,7 @@ void SwitchWishes::look(Nanoseconds now) {
   const bool is_coming = switches_.leads_to(request);
   if (!is_coming && (!switches_.is_free() || !world_.logic.is_settled())) return;
   if (!is_coming) ask(request, now);
-  deal_with_all();  // only now: a manager that dies in between leaves the wish to its successor
+  deal_with_all();  // last, so that a successor finds the request if this manager dies before
 }
 
 void SwitchWishes::ask(SwitchRequest request, Nanoseconds now) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tasks and reactions of the real-time units have asked for: the manager finds it as words in their blocks, has
-// the last of all carried out as a switch, and remembers which it has dealt with. A manager that follows another one
-// finds what is open. docs/formats/processes.md, docs/design/switch.md.
+// Requests for switches by tasks and reactions. They are words in the blocks of the rtpus. The manager carries out the
+// last request as a switch and remembers which ones it has handled; a successor finds the open ones.
+// docs/formats/processes.md, docs/design/switch.md.
 #pragma once
 
 #include <optional>
@@ -19,8 +19,8 @@ class SwitchWishes {
   SwitchWishes(ManagerState& world, SwitchCoordinator& switches)
       : world_(world), switches_(switches), seen_(world.peers.n_rtpus()) {}
 
-  /// Takes up the wish that was made last, when no switch is under way and no task is being brought up; those that were
-  /// made before it are dealt with by that, too.
+  /// Carries out the last request if no switch is under way and no task is being brought up. The requests before it
+  /// count as handled, too.
   void look(Nanoseconds now);
 
  private:
@@ -38,7 +38,7 @@ class SwitchWishes {
 
   ManagerState& world_;
   SwitchCoordinator& switches_;
-  std::vector<std::optional<Open>> seen_;  // by rtpu: not dealt with; also when its block has gone with its process
+  std::vector<std::optional<Open>> seen_;  // by rtpu: not handled yet; kept even if the block has gone with its process
 };
 
 }  // namespace chimera::manager

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the manager does with the wishes of units; the test plays the units.
+// The manager's handling of the requests of rtpus; the test plays the rtpus.
 #include "chimera/manager/switch_wishes.h"
 
 #include <gtest/gtest.h>
@@ -24,12 +24,12 @@ struct SwitchWishesTest : ::testing::Test {
   PlanWord plan() { return SwitchAgreement(page().switching, {}).plan(); }
   DecisionPage& page() { return fake.driver().world().page; }
   SwitchCoordinator& coordinator() { return fake.driver().switches(); }
-  /// As a task of the unit would.
+  /// Requests a switch as a task of the rtpu does.
   void wish(std::uint32_t unit, std::uint16_t set, const char* task, SwitchCause cause = SwitchCause::kRequest) {
     SwitchWishWords& words = fake.rtpu(unit).block().head().wish;
     words.write(words.wish().next({set, cause, fake.task(task)}), {}, now());
   }
-  /// `law` asks for tasks.
+  /// `law` requests tasks.
   void wish_for(const TaskLists& lists) {
     SwitchWishWords& words = fake.rtpu(1).block().head().wish;
     words.write(words.wish().next({UINT32_MAX, SwitchCause::kRequest, fake.task("law"), lists}), lists, now());
@@ -37,7 +37,7 @@ struct SwitchWishesTest : ::testing::Test {
   void rounds(int n = 5) {
     for (int i = 0; i < n; ++i) ASSERT_TRUE(fake.step());
   }
-  /// The units carry out what is ordered.
+  /// The rtpus carry out the order.
   void carry_out() {
     SwitchAgreement agreement(page().switching, fake.page().origin);
     const std::uint16_t number = agreement.plan().number;
@@ -58,7 +58,7 @@ struct SwitchWishesTest : ::testing::Test {
     }
   }
 
-  /// What the file of receipts has.
+  /// The receipts in the file.
   std::vector<std::string> filed() const { return control::ReceiptFile(fake.state() + "/chimera/fake").last(1000); }
 
   FakeSubsystem fake;
@@ -121,7 +121,7 @@ TEST_F(SwitchWishesTest, ASuccessorFindsWhatIsOpenAndOnlyThat) {
   EXPECT_EQ(plan().number, 1);
 }
 
-// It was ordered, and its manager died.
+// The switch was ordered, and its manager died.
 TEST_F(SwitchWishesTest, WhatAPredecessorHasOrderedIsNotOrderedAgain) {
   wish(1, kRest, "law");
   rounds();
@@ -153,7 +153,7 @@ TEST_F(SwitchWishesTest, OfAUnitThatHasDiedSinceStand) {
   EXPECT_TRUE(coordinator().leads_to({kRest, SwitchCause::kRequest, {}}));
 }
 
-// The memory of a unit may hold anything.
+// The memory of an rtpu may hold any value.
 TEST_F(SwitchWishesTest, WhatDoesNotFitTheApplicationIsPassedOver) {
   SwitchWishWords& words = fake.rtpu(1).block().head().wish;
   const auto law = static_cast<std::uint16_t>(fake.task("law").index);

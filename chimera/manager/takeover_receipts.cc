@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads what units tell of takeovers, and makes receipts of it.
+// Reads the takeovers that rtpus publish, and makes receipts of them.
 #include "chimera/manager/takeover_receipts.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace chimera::manager {
 namespace {
 
-// The number of the last takeover of that incarnation that was dealt with.
+// Number of the last handled takeover of that incarnation; 0: none.
 std::uint32_t dealt_with(std::uint64_t word, std::uint32_t incarnation) {
   return word >> 32 == incarnation ? static_cast<std::uint32_t>(word) : 0;
 }
@@ -38,13 +38,13 @@ void TakeoverReceipts::look(Nanoseconds now) {
     if (world_.peers[RtpuId(r)].is_there()) look(RtpuId(r), now);
 }
 
-// A unit that is dead tells nothing more: what it had begun is filed as it is.
+// A dead rtpu publishes nothing more: a takeover that it had begun is filed as it is.
 void TakeoverReceipts::look(RtpuId rtpu, Nanoseconds now) {
   const BlockView block = world_.peers[rtpu].block();
   const std::uint32_t incarnation = block.head().incarnation;
   const RtpuRecord& record = world_.rtpus[rtpu.index];
   const bool is_alive = record.is_alive && record.incarnation == incarnation;
-  std::atomic<std::uint64_t>& word = world_.own.block().memory().takeovers[rtpu.index];  // its only writer is here
+  std::atomic<std::uint64_t>& word = world_.own.block().memory().takeovers[rtpu.index];  // only this process writes it
   std::uint32_t number = dealt_with(word.load(std::memory_order_relaxed), incarnation) + 1;
   if (const std::uint32_t oldest = block.takeovers().oldest(); number < oldest) {
     world_.tell("note", TaskId{}, rtpu, "takeovers without a receipt: " + std::to_string(oldest - number), now);
@@ -56,7 +56,7 @@ void TakeoverReceipts::look(RtpuId rtpu, Nanoseconds now) {
   }
 }
 
-// Of a unit that is dead it may be anything.
+// Checks a takeover: a dead rtpu may have left any value.
 bool TakeoverReceipts::is_possible(const Takeover& takeover, RtpuId rtpu, Nanoseconds now) const {
   const ApplicationSpec& spec = world_.spec();
   const TaskId task = takeover.standby.task;

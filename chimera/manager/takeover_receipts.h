@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files a receipt of each takeover that real-time units made by themselves, maybe while no manager was there: once,
-// whenever managers die. docs/formats/receipt.md.
+// Files one receipt for each takeover that rtpus made by themselves, maybe while there was no manager. It files each
+// one once, no matter when managers die. docs/formats/receipt.md.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +19,11 @@ class TakeoverReceipts {
  public:
   /// Both outlive it.
   TakeoverReceipts(ManagerState& world, ReceiptArchive& archive);
-  /// Files what units have told since.
+  /// Files the takeovers that rtpus have published since the last call.
   void look(Nanoseconds now);
 
  private:
-  /// What tells two takeovers of a run apart.
+  /// The data that identifies a takeover in a run.
   struct Key {
     std::int64_t asked_ns;
     std::string task;

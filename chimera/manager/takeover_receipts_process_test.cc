@@ -21,7 +21,7 @@ configurations: {run: [sensor, filter]}
 
 struct TakeoverReceiptsTest : ::testing::Test {
   TakeoverReceiptsTest() { fake.start_manager(); }
-  /// As the unit of `second` tells of one, some time ago.
+  /// A takeover as the rtpu of `second` publishes it, some time ago.
   Takeover takeover(std::uint32_t number) {
     Takeover one;
     one.number = number;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Follows the taps of real-time units and packs their rows for a subscriber, with every gap counted.
+// Follows the taps of rtpus and packs their rows for a subscriber; counts every gap.
 #include "chimera/manager/tap_feed.h"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ void TapFeed::tap(TaskId task, bool up) {
   world_.own.block().set_tapped(task, users > 0);
 }
 
-/// Goes over to the ring of another incarnation, in which everything is new; false when there is none.
+/// Starts with the ring of another incarnation, whose records are all new; false if there is none.
 bool TapFeed::follow(Ring& ring) {
   auto present = world_.peers.hold(ring.rtpu);
   if (!present->is_there() || present == ring.segment) return false;
@@ -75,7 +75,8 @@ bool TapFeed::follow(Ring& ring) {
   return true;
 }
 
-/// At most kAtOnce records of all rings, the ring after the last one first: others are to be served, too.
+/// Reads at most kAtOnce records of all rings, so that other subscribers get their turn. It begins with the ring after
+/// the last one.
 void TapFeed::pump(const TapSink& sink) {
   std::size_t left = kAtOnce;
   for (std::size_t n = rings_.size(); n > 0 && left > 0; --n) {
@@ -87,7 +88,7 @@ void TapFeed::pump(const TapSink& sink) {
   for (Rows& rows : rows_) flush(rows, sink);
 }
 
-/// Takes up to `left` records, and these from `left`. True: there were no more.
+/// Reads up to `left` records and subtracts them from `left`. True if the ring is empty.
 bool TapFeed::drain(Ring& ring, std::size_t& left, const TapSink& sink) {
   const std::size_t n = ring.reader.read(std::span(buffer_).first(left));
   const std::uint64_t lost = ring.reader.lost() - std::exchange(ring.lost_before, ring.reader.lost()) +
@@ -118,7 +119,7 @@ void TapFeed::take_row(const TapRow& row, const TapSink& sink) {
   Json made = Json::array({row.at.count, row.sequence});
   for (const Column& column : rows->columns) {
     ValueForm form = world_.readings->form(column.variable);
-    form.is_scalar = false;  // always a list, so that a reader need not look
+    form.is_scalar = false;  // always a list, so that a client need not check
     made.push_back(value_of(form, row.payload.subspan(column.offset, std::size_t{form.count} * form.element_bytes)));
   }
   rows->waiting.push_back(std::move(made));
@@ -139,7 +140,7 @@ void TapFeed::flush(Rows& rows, const TapSink& sink) {
   rows.lost = 0;
 }
 
-/// What was lost came behind the records that wait: they are handed on first.
+/// Sends the waiting records first: the lost ones came after them.
 void TapFeed::flush(Ring& ring, std::uint64_t lost, const TapSink& sink) {
   const auto say = [&](std::vector<Json> records, std::uint64_t gone) {
     const std::uint64_t next = ring.first + records.size() + gone;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tap as a subscriber gets it: lossless rows of what the producers of some variables published, or the scheduling
-// records of all real-time units. docs/formats/control.md, "Notifications".
+// The tap for a subscriber: lossless rows of the publications of some variables' producers, or the scheduling records
+// of all rtpus. docs/formats/control.md, "Notifications".
 #pragma once
 
 #include <functional>
@@ -14,25 +14,25 @@
 
 namespace chimera::manager {
 
-/// Takes the parameters of one notification, the subscription left out.
+/// Gets the parameters of one notification, without the subscription.
 using TapSink = std::function<void(Json)>;
 
-/// As long as one lives its tasks are tapped: their rtpus append what they publish. Context: setup.
+/// While one lives its tasks are tapped: their rtpus append each publication to their rings. Context: setup.
 class TapFeed {
  public:
-  /// `variables` empty: scheduling records; `from_oldest`: those that are still there, too, the rest of them counted
-  /// as lost. Requires: not idle; `world` outlives it.
+  /// `variables` empty: scheduling records. `from_oldest`: also the records that are still in the rings; older ones
+  /// count as lost. Requires: not idle; `world` outlives it.
   TapFeed(ManagerState& world, const std::vector<VariableId>& variables, bool from_oldest = false);
   ~TapFeed();
   TapFeed(const TapFeed&) = delete;
   TapFeed& operator=(const TapFeed&) = delete;
 
-  /// Hands on what has come since, at most 4096 records: to be called as long as it hands on, and several times within
-  /// 0.3 s, for the ring holds no more.
+  /// Passes on the records since the last call, at most 4096. Call it again while it passes records on, and several
+  /// times within 0.3 s, because the ring holds no more.
   void pump(const TapSink& sink);
 
  private:
-  /// One task whose publications are wanted.
+  /// A variable among the publications of one task.
   struct Column {
     VariableId variable;
     std::uint32_t offset = 0;  // in the payload
@@ -45,11 +45,11 @@ class TapFeed {
   };
   struct Ring {
     RtpuId rtpu;
-    std::shared_ptr<const PeerSegment> segment;  // whose ring it reads: a dead one's to its end
+    std::shared_ptr<const PeerSegment> segment;  // whose ring it reads; that of a dead rtpu up to its end
     TapReader reader;
     std::unique_ptr<TapRows> assembler;
     std::uint64_t lost_before = 0;
-    std::uint64_t gone = 0;               // before it was followed, and not told yet
+    std::uint64_t gone = 0;               // lost before it was followed, and not reported yet
     std::uint64_t first = 0;              // of scheduling records
     std::vector<Json> waiting;
   };
@@ -68,7 +68,7 @@ class TapFeed {
   std::vector<Rows> rows_;
   std::vector<Ring> rings_;
   std::vector<TapRecord> buffer_;
-  std::size_t next_ = 0;  // ring that is read first, counted on and on
+  std::size_t next_ = 0;  // ring that is read first, counted upward without end
 };
 
 }  // namespace chimera::manager

@@ -20,7 +20,7 @@ class TapFeedTest : public ::testing::Test {
   void pump(TapFeed& feed) {
     feed.pump([this](Json message) { messages_.push_back(std::move(message)); });
   }
-  /// As often as a whole ring takes, and one that nearly stands still.
+  /// Pumps often enough for one whole ring and for another that hardly changes.
   void pump_a_ring(TapFeed& feed) {
     for (std::size_t taken = 0; taken < 2 * kTapRecords; taken += 4096) pump(feed);
   }
@@ -32,7 +32,7 @@ class TapFeedTest : public ::testing::Test {
       return n >= rows;
     });
   }
-  /// The unit `spare` stops, and its ring comes round once.
+  /// The rtpu `spare` stops, and its ring is overwritten once.
   void overwrite_spare() {
     Tap writer(const_cast<TapRing&>(fake_.rtpu(1).block().tap()));
     fake_.rtpu(1).die();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists the tasks that were ON when their unit ended.
+// Lists the tasks that were not turned off when their rtpu ended.
 #include "chimera/manager/unfinished.h"
 
 #include "chimera/manager/cause.h"

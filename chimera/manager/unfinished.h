@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tasks that a real-time unit left without turning them off, of a unit that has ended.
+// Tasks that an ended rtpu left without turning them off.
 #pragma once
 
 #include <string>
@@ -15,8 +15,8 @@ struct Unfinished {
   std::string text;  ///< `not_off_text` (chimera/text/not_off.h)
 };
 
-/// Those in whose `off` or `kill` the unit died, and, when everything ends, those that were still ON. `left` is the
-/// block of the incarnation that ended, `cause` its `cause_text`. Context: setup.
+/// Tasks in whose `off` or `kill` the rtpu died; when the run ends, also tasks that were still ON. `left` is the block
+/// of the incarnation that ended, `cause` its `cause_text`. Context: setup.
 std::vector<Unfinished> unfinished(const ManagerState& world, RtpuId rtpu, const BlockView& left,
                                    const std::string& cause);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads memory and scheduling rights of real-time units from the system and tells of changes for the worse.
+// Reads memory and scheduling rights of rtpus from the system and logs changes for the worse.
 #include "chimera/manager/unit_health.h"
 
 #include <charconv>
@@ -14,7 +14,7 @@ namespace chimera::manager {
 namespace {
 
 constexpr Nanoseconds kEvery = milliseconds(500);
-constexpr Nanoseconds kSettled = seconds(1);  // after it came up: its tasks have what they need
+constexpr Nanoseconds kSettled = seconds(1);  // after it came up: its tasks have allocated their memory
 constexpr std::uint64_t kMegabyte = 1'000'000, kMuch = 64 * kMegabyte;
 
 std::string folder_of(pid_t pid) { return "/proc/" + std::to_string(pid) + "/"; }
@@ -29,7 +29,7 @@ bool has_locked_memory(pid_t pid) {
   std::ifstream status(folder_of(pid) + "status");
   for (std::string line; std::getline(status, line);)
     if (line.starts_with("VmLck:")) return std::strtoull(line.c_str() + std::strlen("VmLck:"), nullptr, 10) > 0;
-  return true;  // it has just ended
+  return true;  // the process has just ended
 }
 
 std::vector<pid_t> threads_of(pid_t pid) {
@@ -48,7 +48,7 @@ std::string policy_text(int policy, int level) {
   return "policy " + std::to_string(policy);
 }
 
-/// The number behind `word`, where that stands in `report`.
+/// The number after `word` in `report`; `none` if there is none.
 int number_behind(std::string_view report, std::string_view word, int none) {
   const std::size_t at = report.find(word);
   if (at == report.npos) return none;
@@ -135,7 +135,7 @@ void UnitHealth::weigh(std::size_t index, Nanoseconds now) {
   seen.told_bytes = bytes;
 }
 
-/// A look at a thread that is just changing its own level would be unfair: what is told was seen twice.
+/// Logs a difference only if two checks in a row find it, because a thread may be changing its own level.
 void UnitHealth::compare(std::size_t index, Nanoseconds now) {
   RtpuRecord& rtpu = world_.rtpus[index];
   Seen& seen = seen_[index];

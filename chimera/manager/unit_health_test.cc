@@ -33,7 +33,7 @@ TEST(UnitHealth, TellsWhatIsNotAsGranted) {
             "thread 7 runs at SCHED_RR 3 instead of SCHED_OTHER");
 }
 
-// Its threads go up and down with their jobs, and below all when one is demoted.
+// The levels of its threads change with their jobs, and go below all others when one is demoted.
 TEST(UnitHealth, APreemptiveUnitMayHaveAnyLevelUpToTheGrantedOne) {
   const GrantedRights granted{80, 1, true};
   EXPECT_EQ(lost_rights(granted, true, {{7, SCHED_FIFO, 61, 1}, {8, SCHED_OTHER, 0, 1}}, true), "");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples the units and the keeper, tells of what hangs, and ends units that stay silent.
+// Samples the rtpus and the keeper, reports hangs, and names the rtpus that must be killed.
 #include "chimera/manager/unit_watch.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace chimera::manager {
 namespace {
 
 constexpr Nanoseconds kWatchEvery = milliseconds(250);
-constexpr Nanoseconds kStartPatience = seconds(10);  // until a unit has begun its first method or answers the manager
+constexpr Nanoseconds kStartPatience = seconds(10);  // until an rtpu has begun its first method or answers the manager
 
 std::string seconds_text(Nanoseconds time) {
   char text[32];
@@ -52,15 +52,15 @@ std::vector<RtpuId> UnitWatch::look(Nanoseconds at) {
   return over;
 }
 
-/// True when the unit has not run for so long that it is to be ended.
+/// True if the rtpu has not run for longer than its limit, so that it must be killed.
 bool UnitWatch::look_at_life(RtpuId rtpu, Nanoseconds at) {
   RtpuRecord& record = world_.rtpus[rtpu.index];
   const BlockHead* head = head_of(world_, rtpu);
   const std::uint32_t beats = head == nullptr ? 0 : head->attended.load(std::memory_order_acquire);
   const ProcessState process = process_state(record.pid);
   LifeLimits limits;
-  limits.spins = milliseconds(900);  // the second window, at the latest, is spun through whole
-  // Before the unit answers the manager, the object or method under way is reported by name and has no limit of time.
+  limits.spins = milliseconds(900);  // a thread that spins fills the second window whole, at the latest
+  // Until the rtpu answers the manager, a running object or method is reported by name and has no time limit.
   const bool is_opening = head != nullptr && head->serving != 0;
   if (beats == 0 && process.letter != 'T') limits = {is_opening ? kNever : kStartPatience, kNever, kNever};
   const LifeVerdict verdict = units_[rtpu.index]->life.look({at, beats, process}, limits);
@@ -88,7 +88,7 @@ void UnitWatch::look_at_methods(RtpuId rtpu, Nanoseconds at) {
   look(unit.serving, head->serving.load(std::memory_order_relaxed));
   look(unit.at_edge, head->at_edge.load(std::memory_order_relaxed));
   look(unit.background, head->background.load(std::memory_order_relaxed));
-  // A preemptive unit tells of jobs that do not end by itself: it knows a wait from a loop.
+  // A preemptive rtpu itself reports jobs that do not end: it can tell a wait from a loop.
   if (world_.spec().rtpus[rtpu.index].preemptive) return;
   const std::uint32_t running = head->running.load(std::memory_order_relaxed);
   const bool is_cycle = (running & 255u) == CHIMERA_CYCLE;

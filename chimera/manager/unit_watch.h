@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Watches the processes that do not watch the manager: the real-time units, the method under way in each of them, and
-// the keeper.
+// Watches the processes that do not watch the manager: the rtpus, the running method in each of them, and the keeper.
 // docs/formats/processes.md, "Who watches whom".
 #pragma once
 
@@ -18,10 +17,10 @@ class UnitWatch {
  public:
   explicit UnitWatch(ManagerState& world);
 
-  /// When look() is due.
+  /// Time when look() is due.
   Nanoseconds due() const noexcept { return due_; }
-  /// Checks all units and the keeper, reports what is new, and records which unit does not run and which method does
-  /// not return. Returns the units that are to be ended.
+  /// Checks all rtpus and the keeper, and reports changes. Records rtpus that do not run and methods that do not
+  /// return. Returns the rtpus that must be killed.
   std::vector<RtpuId> look(Nanoseconds at);
   /// The keeper reports a manager that did not answer.
   void told(const KeeperMessage& hung, Nanoseconds at);

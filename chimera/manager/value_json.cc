@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the values of variables as JSON, and why they are what they are.
+// Writes the values of variables, and the reasons for them, as JSON.
 #include "chimera/manager/value_json.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace chimera::manager {
 namespace {
 
-/// For people, who read no thousand numbers.
+/// A text for people, cut after a hundred numbers.
 std::string short_text(const ValueForm& form, std::span<const std::byte> bytes) {
   constexpr std::size_t kValues = 100;
   std::string text;
@@ -26,7 +26,7 @@ bool is_finite(const ValueForm& form, std::span<const std::byte> bytes) {
   return std::all_of(all.begin(), all.end(), [](double n) { return std::isfinite(n); });
 }
 
-/// NaN and infinity become null where the JSON is written.
+/// NaN and infinity become null when the JSON is written.
 Json plain_of(std::uint32_t type, std::span<const std::byte> at) {
   return std::visit([](const auto& value) { return Json(value); }, load_plain(type, at));
 }
@@ -53,14 +53,14 @@ std::string state_text(const ManagerState& world, VariableId variable, TaskId pr
   return state_name(world.readings->is_operators(variable) ? State::kOn : State::kNotCreated);
 }
 
-/// The only candidate, or the one that wrote last; invalid: several, and none of them was ever created.
+/// The only candidate, or the one that wrote last; invalid: there are several, and none was ever created.
 TaskId likely_producer(const ManagerState& world, VariableId variable) {
   const TaskId producer = world.readings->producer(variable);
   const auto& candidates = world.readings->variables().all()[variable.index].producers;
   return producer.is_valid() || candidates.size() != 1 ? producer : candidates[0].task;
 }
 
-/// In order of gravity.
+/// Counts in the order of gravity.
 std::string timing_text(const Profile& p) {
   const std::pair<std::uint64_t, const char*> counts[] = {
       {p.missed, "missed"},        {p.dropped, "dropped"},           {p.overrun, "over budget"},
@@ -94,7 +94,7 @@ void add_producer(const ManagerState& world, TaskId task, VariableFacts& facts) 
     if (port.kind == CHIMERA_IN_VAR) facts.inputs.emplace_back(world.spec().link_name(port));
 }
 
-/// The shortest stale_after of the tasks that read it; 0: none says so.
+/// The shortest stale_after of its readers; 0: none states one.
 Nanoseconds patience(const ManagerState& world, VariableId variable) {
   Nanoseconds shortest;
   for (const PortOf& reader : world.readings->variables().all()[variable.index].consumers) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The answers about state variables: values, and why they are what they are.
+// The answers about state variables: their values, and the reasons for them.
 #pragma once
 
 #include <span>
@@ -11,11 +11,13 @@
 
 namespace chimera::manager {
 
-/// A value as docs/formats/control.md has it: number, boolean, text, array or object. Context of all: setup.
+/// A value in the form of docs/formats/control.md: number, boolean, text, array or object. Context of all functions:
+/// setup.
 Json value_of(const ValueForm& form, std::span<const std::byte> bytes);
-/// What is known about a value beside itself. Of one that was never written all there is to say.
+/// All that is known about a value except the value itself. For a variable that was never written this is the whole
+/// reading.
 Json reading_head_json(const ManagerState& world, VariableId variable, const VariableReading& reading, Nanoseconds at);
-/// One reading; its age is told at `at`.
+/// One reading, with its age at `at`.
 Json reading_json(const ManagerState& world, VariableId variable, Nanoseconds at);
 /// {name: reading} of these variables.
 Json readings_json(const ManagerState& world, std::span<const VariableId> variables, Nanoseconds at);

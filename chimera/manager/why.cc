@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walks from a variable to its sources and names the first that explains its value.
+// Walks from a variable to its sources and names the first one that explains its value.
 #include "chimera/manager/why.h"
 
 #include <algorithm>
@@ -75,7 +75,7 @@ const WhyLink* find(const std::vector<WhyLink>& chain, std::string_view variable
   return nullptr;
 }
 
-/// From a troubled link up to the one whose own inputs are good: a loop is left where it was entered.
+/// Goes from a link with a trouble up to the one whose own inputs are good. In a loop it stops where it entered.
 const WhyLink& source_of(const std::vector<WhyLink>& chain, const WhyLink& link, std::vector<const WhyLink*>& seen) {
   seen.push_back(&link);
   for (const std::string& input : link.facts.inputs) {
@@ -104,7 +104,8 @@ Why why(std::string_view variable, const FactsOf& facts_of) {
   };
   add(variable, 0);
   for (std::size_t i = 0; i < why.chain.size(); ++i) {
-    const std::vector<std::string> inputs = why.chain[i].facts.inputs;  // the chain moves while it grows
+    // A copy, because the chain moves while it grows.
+    const std::vector<std::string> inputs = why.chain[i].facts.inputs;
     for (const std::string& input : inputs) add(input, why.chain[i].depth + 1);
   }
   const auto bad = std::find_if(why.chain.begin(), why.chain.end(),

@@ -42,7 +42,8 @@ struct LifeVerdict {
 
 /// How long a process may be silent.
 struct LifeLimits {
-  Nanoseconds told = milliseconds(1500);  ///< silence before a report; with the sample period less than 2 s
+  Nanoseconds told = milliseconds(1500);  ///< silence before a report; with the sample period less than 2 s. A lower
+                                          ///< limit would report on every loaded machine
   Nanoseconds patience = seconds(3);      ///< silence before is_over
   Nanoseconds spins = kNever;             ///< use of a whole processor before a report; kNever: allowed
 };

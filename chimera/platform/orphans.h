@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where processes come from, and the end of processes that components started and left behind: Orphans.
-// docs/formats/processes.md, "What components start".
+// docs/formats/processes.md, "What components start". A cgroup would be exact, but a user has one only where the login
+// manager delegated it: not over ssh, not in most containers. A PID namespace needs a user namespace, which takes
+// real-time rights away.
 #pragma once
 
 #include <sys/types.h>

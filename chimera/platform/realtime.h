@@ -56,7 +56,9 @@ bool may_be_realtime(int priority) noexcept;
 
 /// The claim of a CPU for the SCHED_FIFO levels, one on the whole machine: priorities of two subsystems on one CPU are
 /// not comparable, so both would lose their guarantees. Held until its end or the death of the process. Move-only. Not
-/// inherited by exec. The claim is an abstract Unix socket "chimera-cpu-N": "machine" means one network namespace.
+/// inherited by exec. The claim is an abstract Unix socket "chimera-cpu-N": "machine" means one network namespace. A
+/// locked file would stay behind or need a set-up. Any local user can bind the name first and so prevent a start at
+/// real-time priorities, but cannot disturb a running subsystem.
 class CpuClaim {
  public:
   /// Refuses a claimed CPU: names the process and user that hold the claim, and the remedy. Context: setup.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens the shared objects of a unit's tasks and compares each with its descriptor.
+// Opens the shared objects of an rtpu's tasks and compares each with its descriptor.
 #include "chimera/rtpu/components.h"
 
 #include <map>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The code of a real-time unit's tasks: opens their shared objects and holds each against what verification saw.
+// The code of an rtpu's tasks: opens their shared objects and compares each component with the verified one.
 #pragma once
 
 #include <atomic>
@@ -13,10 +13,10 @@
 
 namespace chimera {
 
-/// The component of every task of `rtpu`; nullptr for those of others. Refuses, with the task in `where`: what
-/// SealedObjects::link refuses, and a component that is no longer the one that was verified. Linking an object runs
-/// code of the object: meanwhile `serving` tells the watch of this unit which task it is, and `making` tells who finds
-/// it dead. Context: setup; may block.
+/// Returns the component of every task of `rtpu`; nullptr for tasks of other rtpus. Refuses a component that changed
+/// after it was verified, and every refusal of SealedObjects::link; `where` names the object file.
+/// Linking runs code of the object. During it, `serving` names the task to this rtpu's supervision, and `making` to the
+/// processes that find the rtpu dead. Context: setup; may block.
 Result<std::vector<const chimera_component*>> load_components(const ApplicationImage& image,
                                                               const SealedObjects& objects, RtpuId rtpu,
                                                               std::atomic<std::uint32_t>& serving,

@@ -25,7 +25,7 @@ std::int32_t priority_of(const ApplicationSpec& spec, std::uint32_t me, std::int
   return band_top(members, me, top);
 }
 
-// What the jobs of this unit may use of its CPU: a little less than what the kernel lets it have.
+// CPU time that the jobs of this rtpu may use: a little less than the kernel's limit for it.
 Nanoseconds share(const ApplicationSpec& spec, std::uint32_t me, Nanoseconds window) {
   std::vector<ShareMember> members;
   for (const RtpuSpec& rtpu : spec.rtpus) members.push_back({rtpu.cpu, 0});
@@ -83,7 +83,7 @@ void CyclingThread::make_loop() {
   executive_ = std::make_unique<Executive>(place_.tasks, *clock_, *job_clock_, options());
 }
 
-// The reaction `stop` of a task: all tasks of the unit go OFF, and the unit goes on.
+// The reaction `stop` of a task: all tasks of the rtpu go OFF, and the rtpu goes on.
 void CyclingThread::answer_stop(Releases& releases, Nanoseconds now) noexcept {
   place_.edge.stop_all(releases.signals(), releases.settlement().stopped_by(), now);
   releases.settlement().forget_stop();

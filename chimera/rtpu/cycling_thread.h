@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The real-time thread of a unit: cycles all tasks in one loop, or takes the edges of those that have threads of their
-// own.
+// The real-time thread of an rtpu. It cycles all tasks in one loop; on a preemptive rtpu it runs the cycle boundaries
+// of tasks that have their own threads.
 #pragma once
 
 #include <atomic>
@@ -17,25 +17,25 @@
 
 namespace chimera {
 
-/// Leaves what a unit says of itself in its block, cut to the room there is. Context: setup.
+/// Writes the phase of the rtpu and a text to its block; cuts the text to the room in the block. Context: setup.
 void publish_phase(BlockHead& head, std::string_view text, PeerPhase phase) noexcept;
 
-/// What a unit's real-time thread works with; all of it outlives the thread.
+/// All that the real-time thread of an rtpu works with; it outlives the thread.
 struct CyclingPlace {
   const ApplicationSpec& spec;
   std::uint32_t me;
-  std::int32_t priority;  ///< the highest level any unit may have: ApplicationSettings
+  std::int32_t priority;  ///< the highest level that any rtpu may have: ApplicationSettings
   TaskSet& tasks;
   RtpuControl& edge;
   PeerLinks& others;
   SwitchPeers& switching;
-  BackgroundWriter& writer;  ///< runs what components do beside their cycles
-  Nanoseconds origin;  ///< of the grid of releases that all units share
+  BackgroundWriter& writer;  ///< runs the background methods of components
+  Nanoseconds origin;  ///< of the grid of releases that all rtpus share
   std::atomic<std::uint32_t>& bell;
   int over;  ///< descriptor of a WakeEvent, rung when the thread has ended
 };
 
-/// Started and joined by the main thread.
+/// The main thread starts and joins it.
 class CyclingThread {
  public:
   /// Context: setup.
@@ -43,11 +43,12 @@ class CyclingThread {
   CyclingThread(const CyclingThread&) = delete;
   CyclingThread& operator=(const CyclingThread&) = delete;
 
-  /// Takes real-time rights, says in the block what was granted, and cycles until the edge is over. Context: setup.
+  /// Requests real-time rights, writes the granted ones to the block, and cycles until the control ends the loop.
+  /// Context: setup.
   void start();
-  /// All tasks are killed and nothing cycles any more. Any thread.
+  /// True if all tasks are killed and no task cycles any more. Any thread.
   bool has_ended() const noexcept { return has_ended_; }
-  /// Context: setup; blocks until it has ended.
+  /// Context: setup; blocks until the thread has ended.
   void join() { thread_.join(); }
 
  private:

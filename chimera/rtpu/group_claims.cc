@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes and gives back the claims of one real-time unit.
+// Takes and gives back the claims of one rtpu.
 #include "chimera/rtpu/group_claims.h"
 
 #include <utility>
 
 namespace chimera {
 
-// What a dead process holds is free; so is a word that no unit would write.
+// A claim of a dead process is free; so is a word that no rtpu would write.
 bool GroupClaims::is_held(std::uint64_t claim) const noexcept {
   const std::uint64_t holder = claim >> 32;
   if (holder == 0 || holder > keeper_.n_rtpus || claim == mine_) return false;

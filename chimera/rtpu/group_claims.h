@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who may turn a task of a group of standbys ON: of several real-time units that find the group without a task that is
-// ON, one at a time. DecisionPage::claims; docs/formats/processes.md.
+// Claims on groups of standbys. If several rtpus find a group without a task that is ON, only the one with the claim
+// turns its task ON. DecisionPage::claims; docs/formats/processes.md.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace chimera {
 
-/// Of one unit in one incarnation. Used by the thread that cycles only. Context of everything: cycle boundary;
+/// Claims of one incarnation of an rtpu. Only the cycling thread uses it. Context of all functions: cycle boundary;
 /// wait-free.
 class GroupClaims {
  public:
@@ -18,9 +18,9 @@ class GroupClaims {
   GroupClaims(DecisionPage& decision, const KeeperPage& keeper, std::uint32_t me, std::uint32_t incarnation) noexcept
       : decision_(decision), keeper_(keeper), mine_((std::uint64_t{me} + 1) << 32 | incarnation) {}
 
-  /// True: the claim is this unit's until give_back(). False: another unit that lives has it, or the run ends.
+  /// True if this rtpu now has the claim, until give_back(). False if another live rtpu has it or the run ends.
   bool take(std::size_t group) noexcept;
-  /// All of them: what was done with them has been shown.
+  /// Gives all claims back. Requires: the changes made under them have been published.
   void give_back() noexcept;
 
  private:

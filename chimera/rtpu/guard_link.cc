@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hands the unit's memory and the descriptors of its devices to the guard.
+// Sends the rtpu's memory and the descriptors of its devices to the guard.
 #include "chimera/rtpu/guard_link.h"
 
 #include "chimera/platform/descriptor.h"
@@ -7,13 +7,14 @@
 namespace chimera {
 namespace {
 
-constexpr Nanoseconds kPatience = milliseconds(500);  // the guard is above all others: it takes what comes at once
+constexpr Nanoseconds kPatience = milliseconds(500);  // the guard has the highest priority: it reads a message at once
 
 }  // namespace
 
 void GuardLink::show(int segment, const BlockOwner& block) noexcept {
   block_ = block;
-  (void)send({.kind = GuardMessage::Kind::kSegment}, segment);  // not sent: as if the guard were dead
+  // If the message cannot be sent, the rtpu runs as without a guard.
+  (void)send({.kind = GuardMessage::Kind::kSegment}, segment);
 }
 
 bool GuardLink::keep(TaskId task, std::uint32_t index, int descriptor, Nanoseconds pause) noexcept {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A real-time unit's line to the guard, which writes to the devices when the unit is dead.
+// The line from an rtpu to the guard, which writes to the devices when the rtpu is dead.
 #pragma once
 
 #include "chimera/platform/local_socket.h"
@@ -9,15 +9,16 @@
 
 namespace chimera {
 
-/// What it sends outlives the unit: the guard takes it from the line before it writes. Any thread of the unit.
+/// Messages on the line outlive the rtpu: the guard reads them before it writes. Any thread of the rtpu.
 class GuardLink final : public SafeFrames {
  public:
-  /// Takes over the unit's end of the line; below 0: there is no guard. Context: setup.
+  /// Takes ownership of the rtpu's end of the line; below 0: there is no guard. Context: setup.
   GuardLink(int descriptor, std::uint32_t peer, std::uint32_t incarnation) noexcept
       : line_(descriptor), peer_(peer), incarnation_(incarnation) {}
 
   bool is_there() const noexcept { return line_.is_open(); }
-  /// The memory in which the frames of this unit stand; before the first task is made. Context: setup.
+  /// Shows the guard the memory that holds the frames of this rtpu. Call it before the first task is made. Context:
+  /// setup.
   void show(int segment, const BlockOwner& block) noexcept;
 
   std::span<SafeFrame, kSafeFrames> of(TaskId task) noexcept override { return block_.safe_frames(task); }

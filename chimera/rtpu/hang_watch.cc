@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Judges from counters whether the loop or a method of the unit hangs.
+// Judges from counters whether the loop or a method of the rtpu hangs.
 #include "chimera/rtpu/hang_watch.h"
 
 namespace chimera {

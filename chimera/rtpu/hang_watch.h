@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the methods of a real-time unit still come to an end, asked by its main thread, which none of them delays.
+// Detects methods of an rtpu that hang. The main thread calls it, because no method can delay that thread.
 #pragma once
 
 #include <cstdint>
@@ -8,28 +8,29 @@
 
 namespace chimera {
 
-/// Used by the main thread only. Remembers what it was shown last and since when nothing of it has changed.
+/// Only the main thread uses it. It remembers the last values and since when they have not changed.
 class HangWatch {
  public:
-  /// `method_limit`: how long one method may take.
+  /// `method_limit`: longest time of one method.
   explicit HangWatch(Nanoseconds method_limit) noexcept : limit_(method_limit) {}
 
-  /// True when the one loop has been in one method for longer than the limit: no cycle boundary comes then.
-  /// `running` is the method (BlockHead::running; 0: it waits), `beats` grows with each edge and each job that has
+  /// True if the loop has been in one method for longer than the limit: no cycle boundary comes then. `running` is the
+  /// method (BlockHead::running; 0: the loop waits); `beats` grows with each cycle boundary and each job that has
   /// ended. Context: main thread; wait-free.
   bool loop_hangs(std::uint32_t running, std::uint64_t beats, Nanoseconds now) noexcept;
 
-  /// True when one method that an edge or the service thread called has been under way for longer than the limit.
-  /// `method` is the one (0: none), `progress` grows with each that begins or ends. Context: main thread; wait-free.
+  /// True if a method that a cycle boundary or the service thread called has run for longer than the limit. `method` is
+  /// that method (0: none); `progress` grows when a method begins or ends. Context: main thread; wait-free.
   bool method_hangs(std::uint32_t method, std::uint32_t progress, Nanoseconds now) noexcept;
 
-  /// For how long one method may take.
+  /// Longest time of one method.
   Nanoseconds limit() const noexcept { return limit_; }
 
-  /// From here on the unit ends. Context: main thread; wait-free.
+  /// The rtpu ends from here on. Context: main thread; wait-free.
   void begin_end(Nanoseconds now) noexcept { progress_at_ = now; }
-  /// True when no method of the end has come to its own end for two limits and 100 ms: what waits for others waits one
-  /// limit more than it has itself. `progress` is the number of those that are done. Context: main thread; wait-free.
+  /// True if no further method of the end has ended for two limits and 100 ms. One limit is for the wait for other
+  /// rtpus, one for the own method. `progress` is the number of methods that have ended. Context: main thread;
+  /// wait-free.
   bool end_hangs(std::uint32_t progress, Nanoseconds now) noexcept;
 
  private:

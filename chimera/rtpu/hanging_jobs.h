@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Jobs that do not end: noted at a boundary, read by the thread that supervises the unit and ends it for one.
+// Jobs that do not end: a cycle boundary notes them, and the supervising thread reads them and ends the rtpu.
 #pragma once
 
 #include <atomic>
@@ -15,10 +15,10 @@ namespace chimera {
 class HangingJobs {
  public:
   explicit HangingJobs(std::size_t n_tasks) : is_hanging_(n_tasks) {}
-  /// An event descriptor that is written to by wake_supervisor(). Context: setup.
+  /// Event descriptor that wake_supervisor() writes to. Context: setup.
   void set_supervisor(int descriptor) noexcept { supervisor_ = descriptor; }
 
-  /// `age`: since its release; zero: its thread is gone. Context: cycle boundary.
+  /// `age`: time since the release of the job; zero: the thread of the job is gone. Context: cycle boundary.
   void note(TaskWord job, Nanoseconds age) noexcept {
     is_hanging_[job.task().index] = true;
     age_ = age.count;
@@ -26,7 +26,7 @@ class HangingJobs {
     any_ = true;
     wake_supervisor();
   }
-  /// Nobody waits for the job of that task. Context: cycle boundary.
+  /// True if the job of the task hangs: the rtpu does not wait for it. Context: cycle boundary.
   bool has(TaskId task) const noexcept { return is_hanging_[task.index]; }
   void wake_supervisor() const noexcept {
     if (supervisor_ >= 0) ring_event(supervisor_);
@@ -34,14 +34,15 @@ class HangingJobs {
 
   // Context of the rest: any thread; wait-free.
   bool any() const noexcept { return any_; }
-  /// The last that was noted, as BlockHead::running, and its age then. Requires: any().
+  /// The last noted job, as BlockHead::running, and its age at that time. Requires: any().
   std::uint32_t job() const noexcept { return job_; }
   Nanoseconds age() const noexcept { return {age_}; }
 
  private:
   std::vector<bool> is_hanging_;  // by task
   int supervisor_ = -1;
-  // note() at a boundary, read by the main thread: any_ is stored last and loaded first, so that the others are seen.
+  // A cycle boundary calls note(), the main thread reads. any_ is stored last and loaded first, so that the other
+  // members are seen.
   std::atomic<bool> any_{false};
   std::atomic<std::uint32_t> job_{0};
   std::atomic<std::int64_t> age_{0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the keeper and its children say to each other: docs/formats/processes.md, "Keeper messages".
+// Messages between the keeper and its children: docs/formats/processes.md, "Keeper messages".
 #pragma once
 
 #include <cstddef>
@@ -26,26 +26,26 @@ struct KeeperMessage {
   enum class Kind : std::uint32_t {
     kSegment, kStart, kEndChild, kEnd,                        // to the keeper
     kPeer, kStarted, kEnded, kComplete, kFinish,              // from the keeper
-    kBeat,                                                    // to the keeper: the manager goes round its loop
-    kHung,                                                    // from the keeper: the manager did not
-    kFramesWritten, kSilent, kGuardState                      // from the keeper: what the guard did, and how it is
+    kBeat,                                                    // to the keeper: the manager's loop runs
+    kHung,                                                    // from the keeper: the manager's loop hung
+    kFramesWritten, kSilent, kGuardState                      // from the keeper: actions and state of the guard
   };
   /// kGuardState in `code`.
   enum : std::int32_t { kGuardIsWell, kGuardIsSlow, kGuardIsDead };
 
   Kind kind = Kind::kSegment;
-  std::uint32_t index = 0;        ///< the peer it is about
+  std::uint32_t index = 0;        ///< the peer that the message is about
   std::uint32_t incarnation = 0;
   std::int32_t code = 0;          ///< kEnded: exit status or signal; kEnd: exit code; kHung: Life; kSilent: the task;
-                                  ///< kFramesWritten: how many were; kGuardState
+                                  ///< kFramesWritten: number written; kGuardState
   std::uint32_t by_signal = 0;    ///< kEnded
   std::uint32_t core_dumped = 0;  ///< kEnded
-  std::int32_t pid = 0;           ///< kStarted: for people; kHung: of the debugger
+  std::int32_t pid = 0;           ///< kStarted: for people; kHung: pid of the debugger
   std::uint32_t reserved = 0;
-  Nanoseconds at = {};          ///< kStarted, kEnded: when, CLOCK_MONOTONIC; kFramesWritten: last byte taken
-  Nanoseconds silent = {};      ///< kHung: for how long; kFramesWritten: the death was seen
-  std::uint32_t letter = 0;     ///< kHung: ProcessState::letter; kFramesWritten: how many were not
-  std::uint32_t was_ended = 0;  ///< kHung: by the keeper for that; else it runs again
+  Nanoseconds at = {};          ///< kStarted, kEnded: instant, CLOCK_MONOTONIC; kFramesWritten: last byte taken
+  Nanoseconds silent = {};      ///< kHung: time without a beat; kFramesWritten: instant of the death
+  std::uint32_t letter = 0;     ///< kHung: ProcessState::letter; kFramesWritten: number that failed
+  std::uint32_t was_ended = 0;  ///< kHung: 1: the keeper killed it; 0: it runs again
   std::uint64_t unused = 0;
 };
 static_assert(sizeof(KeeperMessage) == 64 && std::is_trivially_copyable_v<KeeperMessage>);

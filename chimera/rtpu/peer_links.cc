@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows other processes what changed here, and reads what they show.
+// Publishes the changes of this rtpu to other processes, and reads theirs.
 #include "chimera/rtpu/peer_links.h"
 
 #include <cstring>
@@ -114,7 +114,7 @@ void PeerLinks::publish_all(TaskSet& tasks) noexcept {
   if (is_for_all) ring_all();
 }
 
-// True when the others are to look.
+// True if the other processes must read the change.
 bool PeerLinks::publish_status(const Task& task, TaskStatus before, TaskStatus now) noexcept {
   if (now == before) return false;
   block_.set_status(task.id, now);
@@ -134,7 +134,7 @@ bool PeerLinks::publish_flag(const IllegalFlag& flag) noexcept {
   const bool is_raised = flag.is_raised() || flag.is_held();
   const std::uint32_t judged = (flag.is_on_set_legal() ? 0 : kFlagIllegalSet) | (is_raised ? kFlagRaised : 0);
   const std::uint32_t before = block_.head().flag.load(std::memory_order_relaxed);
-  // A unit that ends raises no flag any more: what its tasks lack is what was told to go.
+  // While the run ends, this rtpu raises no flag: the missing tasks were ended on purpose.
   const bool is_told_to_end = keeper_->ending.load(std::memory_order_acquire) != 0;
   const std::uint32_t now = is_told_to_end ? judged & before : judged;
   if (before == now) return false;
@@ -163,7 +163,7 @@ void PeerLinks::publish_fault(const Task& task) noexcept {
 }
 
 void PeerLinks::ring_all() noexcept {
-  // Release pairs with changes(): the words above are seen.
+  // Release pairs with changes(): a reader of the count sees the words written before.
   last_shown_ = 1 + decision_->changes.fetch_add(1, std::memory_order_release);
   for (std::uint32_t peer = 0; peer < peers_->count(); ++peer)
     if (peer != me_) ring(peer);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps the segments of other processes for one real-time unit, and unmaps those that it no longer reads.
+// Maps the segments of other processes for one rtpu, and unmaps those that it no longer reads.
 #include "chimera/rtpu/peers.h"
 
 #include <utility>
@@ -34,7 +34,7 @@ Result<void> MappedPeers::offer(std::uint32_t peer, std::uint32_t incarnation, i
   if (!segment) return segment.error();
   auto made = std::make_unique<Mapping>();
   made->segment = *std::move(segment);
-  // SYNC: pairs with the acquire in adopt(): the mapping is whole before it is seen.
+  // SYNC: pairs with the acquire in adopt(): the mapping is complete before it is seen.
   delete slots_[peer]->offered.exchange(made.release(), std::memory_order_acq_rel);
   return {};
 }

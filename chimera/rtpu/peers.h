@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The segments of the other peers as one real-time unit maps them. The process's main thread offers new ones, the
-// thread that cycles takes them at a cycle boundary; the main thread unmaps those that are no longer read.
+// The segments of the other peers as one rtpu maps them. The main thread of the process offers new segments; the
+// cycling thread adopts them at a cycle boundary. The main thread unmaps segments that are no longer read.
 #pragma once
 
 #include <atomic>
@@ -26,17 +26,16 @@ class MappedPeers {
   std::uint32_t count() const noexcept { return static_cast<std::uint32_t>(slots_.size()); }
   const PeerLayout& layout(std::uint32_t peer) const noexcept { return layouts_[peer]; }
 
-  /// Maps a segment and checks that it is what the application says; adopted at the next edge. Refuses strangers.
-  /// Context: main thread; may block.
+  /// Maps a segment and checks that it matches the application. The cycling thread adopts it at its next cycle
+  /// boundary. Refuses a segment that does not match. Context: main thread; may block.
   Result<void> offer(std::uint32_t peer, std::uint32_t incarnation, int descriptor);
-  /// Unmaps what was let go. Context: main thread; may block.
+  /// Unmaps the released segments. Context: main thread; may block.
   void clear();
 
-  /// Takes over a segment that was offered; true when there is a new one. The one before stays mapped until
-  /// release_mapping().
-  /// Context: cycle boundary; wait-free.
+  /// Starts to use an offered segment; true if there is a new one. The segment before stays mapped until
+  /// release_mapping(). Context: cycle boundary; wait-free.
   bool adopt(std::uint32_t peer) noexcept;
-  /// Nothing reads the predecessor of the adopted segment any more. Context: cycle boundary; wait-free.
+  /// No task reads the predecessor of the adopted segment any more. Context: cycle boundary; wait-free.
   void release_mapping(std::uint32_t peer) noexcept;
   /// The adopted segment; nullptr: none yet. Context: cycle boundary; wait-free.
   const PeerSegment* at(std::uint32_t peer) const noexcept {
@@ -47,21 +46,21 @@ class MappedPeers {
  private:
   struct Mapping {
     PeerSegment segment;
-    Mapping* next = nullptr;  // in the list of those let go
+    Mapping* next = nullptr;  // in the list of released mappings
   };
   struct Slot {
-    // SYNC: offer() (main thread) releases a mapping that is whole; adopt() (thread that cycles) acquires it.
+    // SYNC: offer() (main thread) releases a complete mapping; adopt() (cycling thread) acquires it.
     std::atomic<Mapping*> offered{nullptr};
-    Mapping* present = nullptr;   // by the thread that cycles
-    Mapping* previous = nullptr;  // by the thread that cycles
+    Mapping* present = nullptr;   // used by the cycling thread
+    Mapping* previous = nullptr;  // used by the cycling thread
   };
 
   MappedPeers() = default;
   const ApplicationSpec* spec_ = nullptr;
-  HeapMemory memory_;  // behind the layouts
+  HeapMemory memory_;  // memory of `layouts_`
   std::vector<PeerLayout> layouts_;
   std::vector<std::unique_ptr<Slot>> slots_;
-  // SYNC: release_mapping() (thread that cycles) releases the list; clear() (main thread) acquires it and unmaps.
+  // SYNC: release_mapping() (cycling thread) releases the list; clear() (main thread) acquires it and unmaps.
   std::atomic<Mapping*> released_{nullptr};
 };
 

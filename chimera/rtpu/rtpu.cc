@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps what the keeper handed down, makes the tasks, supervises their thread, and ends in order.
+// Maps the memory from the keeper, makes the tasks, supervises their thread, and ends in order.
 #include "chimera/rtpu/rtpu.h"
 
 #include <csignal>
@@ -32,11 +32,11 @@ namespace chimera {
 namespace {
 
 constexpr int kCouldNotStart = 1, kMethodHangs = 3, kTerminated = 5;
-constexpr Nanoseconds kLongBackground = seconds(1);  // what takes less is no news
+constexpr Nanoseconds kLongBackground = seconds(1);  // shorter background work is not reported
 constexpr int kSuperviseEveryMs = 50;
-constexpr std::size_t kStackBytes = 256 * 1024;  // locked whole, and given back whole when it dies
+constexpr std::size_t kStackBytes = 256 * 1024;  // locked as a whole, and freed as a whole when the thread ends
 
-/// Everything a unit has, in the order in which it is made.
+/// All parts of an rtpu, in the order in which they are made.
 class Rtpu {
  public:
   explicit Rtpu(const RtpuStart& start)
@@ -68,9 +68,9 @@ class Rtpu {
   const RtpuStart start_;
   Channel channel_;
   GuardLink guard_;
-  ThreadStack stacks_{start_.parent != 0 ? kStackBytes : 0};  // of all threads that are started from here on
+  ThreadStack stacks_{start_.parent != 0 ? kStackBytes : 0};  // of all threads that start from here on
   SignalQueue signals_;
-  WakeEvent over_;  // rung when there is something to look at
+  WakeEvent over_;  // rung when the main thread must check for an end or a hang
   FrozenBytes image_bytes_;
   SharedPages decision_pages_;
   MemoryRegion keeper_pages_;
@@ -91,7 +91,7 @@ class Rtpu {
   std::unique_ptr<CyclingThread> cycling_;
   bool is_ending_ = false;
   bool keeper_is_gone_ = false;
-  bool ends_alone_ = false;    // the others go on
+  bool ends_alone_ = false;    // the other rtpus go on
   bool is_giving_up_ = false;  // because a job does not end
   LinuxClock wall_;
 };
@@ -100,21 +100,21 @@ Result<void> Rtpu::prepare() {
   if (start_.parent != 0) {
     for (const int fd :
          {start_.channel, start_.image, start_.decision_page, start_.keeper_page, start_.objects, start_.guard})
-      if (fd >= 0) close_at_exec(fd);  // what a component starts by exec has none of them
-    constexpr int kTaken[] = {SIGTERM};  // a SIGINT or SIGHUP of the terminal is the keeper's to answer
+      if (fd >= 0) close_at_exec(fd);  // programs that a component starts by exec inherit none of them
+    constexpr int kTaken[] = {SIGTERM};  // the keeper answers SIGINT and SIGHUP of the terminal
     auto signals = SignalQueue::open(kTaken);
     if (!signals) return signals.error();
     signals_ = *std::move(signals);
-    signals_.stay_blocked();  // one that comes while everything is taken down changes nothing
+    signals_.stay_blocked();  // a signal after the end has begun has no effect
     if (!follow_parent(start_.parent, SIGTERM)) return Error{ErrorCode::kRefused, {"the keeper is gone"}, {}};
-    start_memory_holder();  // refused: its death is seen later, and nothing else is different
+    start_memory_holder();  // if it fails, only the detection of a death takes longer
   }
   auto over = WakeEvent::open(Message("rtpu"));
   if (!over) return over.error();
   over_ = *std::move(over);
   if (auto mapped = map(); !mapped) return mapped;
   if (auto made = make_segment(); !made) return made;
-  announce();  // from here on the manager sees which object or method is under way
+  announce();  // from here on the manager sees which object or method runs
   if (auto made = make_tasks(); !made) {
     publish_phase(block_.head(), made.error().message.view(), PeerPhase::kEnded);
     return made;
@@ -134,7 +134,7 @@ Result<void> Rtpu::map() {
   if (!decision) return decision.error();
   decision_pages_ = *std::move(decision);
   decision_ = reinterpret_cast<DecisionPage*>(decision_pages_.bytes().data());
-  show_made(decision_->making[start_.peer]);  // what its predecessor died of
+  show_made(decision_->making[start_.peer]);  // shows in which object or method its predecessor died
   auto keeper = MemoryRegion::open_read_only(start_.keeper_page, sizeof(KeeperPage));
   if (!keeper) return keeper.error();
   keeper_pages_ = *std::move(keeper);
@@ -151,7 +151,8 @@ Result<void> Rtpu::make_segment() {
   auto made = MemoryRegion::create("chimera-rtpu", peer_segment_bytes(table, n_tasks));
   if (!made) return made.error();
   segment_ = *std::move(made);
-  if (start_.parent != 0) (void)segment_.keep_from_children();  // a child of a component is not this unit
+  // A child of a component must not use the memory of this rtpu.
+  if (start_.parent != 0) (void)segment_.keep_from_children();
   if (auto owner = SegmentOwner::format(segment_.writable(), table); !owner) return owner.error();
   std::byte* at = segment_.writable().data() + block_offset(table);
   block_ = BlockOwner(at, start_.peer, start_.incarnation, n_tasks, peers_->count());
@@ -216,14 +217,15 @@ int Rtpu::run() {
       is_giving_up_ = give_up(edge_->hanging().job(), edge_->hanging().age());
       end(true);
     }
-    if (is_giving_up_ && edge_->unit_end().is_over()) return kMethodHangs;  // but for the job that does not end
+    // Now all tasks are killed except the one whose job hangs.
+    if (is_giving_up_ && edge_->unit_end().is_over()) return kMethodHangs;
   }
   cycling_->join();
   service_->stop();
   return is_giving_up_ ? kMethodHangs : ends_alone_ ? kTerminated : 0;
 }
 
-// A method that does not come to its end: nothing else ends it than the end of the process.
+// True if a method does not return. Only the end of the process can end such a method.
 bool Rtpu::hangs() {
   const Nanoseconds now = wall_.now(), limit = hang_watch_->limit();
   const BlockHead& head = block_.head();
@@ -231,20 +233,21 @@ bool Rtpu::hangs() {
   const std::uint32_t acting = edge_->supervised().acting() != 0 ? edge_->supervised().acting() : serving;
   const bool is_same_task = TaskWord::found(running).task() == TaskWord::found(acting).task();
   if (hang_watch_->method_hangs(acting, edge_->supervised().progress(), now))
-    return give_up(is_same_task ? running : acting, limit);  // `running` is error, after the method that was called
+    // `running` is then `error`, called after the method in `acting`.
+    return give_up(is_same_task ? running : acting, limit);
   if (loop_hangs()) return give_up(running, limit);
   const bool end_hangs = is_ending_ && hang_watch_->end_hangs(edge_->supervised().progress(), now);
   return end_hangs && give_up(running != 0 ? running : serving, limit);
 }
 
-// Leaves word of why; always true.
+// Writes the hung method and its limit to the block; always true.
 bool Rtpu::give_up(std::uint32_t method, Nanoseconds waited) {
   block_.head().hung_limit = waited.count;
   block_.head().hung = method;
   return true;
 }
 
-// Signs of life for the manager, which watches this process: BlockHead.
+// Writes signs of life to BlockHead for the manager, which watches this process.
 void Rtpu::attend() {
   BlockHead& head = block_.head();
   head.jobs.store(static_cast<std::uint32_t>(jobs_of(TaskWord::found(head.running).task())), std::memory_order_relaxed);
@@ -279,8 +282,8 @@ void Rtpu::read_messages() {
   }
 }
 
-// A segment that is not what the application says is passed over: its owner is not who the keeper takes it for. One
-// that there is no memory for is missed, and nothing that runs here ends for it.
+// Ignores a segment that does not match the application: its owner is not the peer that the keeper assumes. If memory
+// is short, the rtpu goes on without the segment.
 void Rtpu::add_peer(const KeeperMessage& message, int descriptor) {
   if (message.index == start_.peer) return;
   if (const auto offered = peers_->offer(message.index, message.incarnation, descriptor); offered)
@@ -290,8 +293,8 @@ void Rtpu::add_peer(const KeeperMessage& message, int descriptor) {
                  std::string(self().name).c_str(), message.index, offered.error().message.c_str());
 }
 
-// Alone: told so by a plain SIGTERM, or for a job that does not end. A keeper that is gone or ends everything is the
-// end of all, also of one that ends already.
+// Ends this rtpu alone after a plain SIGTERM or for a job that hangs. If the keeper is gone or ends the run, all rtpus
+// end; that also changes an end alone that has begun.
 void Rtpu::end(bool is_alone) {
   if (is_ending_ && (is_alone || !ends_alone_)) return;
   if (!is_ending_) hang_watch_->begin_end(wall_.now());
@@ -301,29 +304,29 @@ void Rtpu::end(bool is_alone) {
   Doorbell(bell()).ring();
 }
 
-// Jobs of that task that have ended, as far as the loop's own thread has counted. Relaxed, pairs with nothing: a figure
-// of which only the growth is looked at.
+// Number of ended jobs of the task, as the loop's own thread has counted. Relaxed, pairs with nothing: only the growth
+// of the number matters.
 std::uint64_t Rtpu::jobs_of(TaskId task) const {
   if (task.index >= tasks_->tasks().size()) return 0;
   return __atomic_load_n(&tasks_->tasks()[task.index].profile.execution[CHIMERA_CYCLE].count, __ATOMIC_RELAXED);
 }
 
-// The preemptive executor has a supervisor of its own for this.
+// Always false on a preemptive rtpu: that executor has its own supervisor.
 bool Rtpu::loop_hangs() {
   if (self().preemptive) return false;
   const std::uint32_t running = block_.head().running;
   return hang_watch_->loop_hangs(running, block_.head().beats + jobs_of(TaskWord::found(running).task()), wall_.now());
 }
 
-// A process that ends closes its channels first and loses its children a little later: a unit without much to do has
-// ended by then, and its parent is the keeper still.
+// True if the keeper is gone. A process that ends closes its channels first and loses its children a little later. A
+// small rtpu may have ended before that, so the parent id alone proves nothing.
 bool Rtpu::is_without_keeper() {
   if (start_.parent == 0) return false;
   read_messages();
   return keeper_is_gone_ || parent_process_id() != start_.parent;
 }
 
-// What components left behind is the keeper's to end, as long as there is one.
+// Ends the processes that components left behind. The keeper does this as long as it lives.
 void end_children_of_this_unit() {
   if (const char* mine = std::getenv(kOriginVariable); mine != nullptr) (void)end_all_from(mine, seconds(1));
 }
@@ -338,8 +341,9 @@ int run_rtpu(const RtpuStart& start) {
   }
   const int code = rtpu.run();
   if (rtpu.is_without_keeper()) end_children_of_this_unit();
-  if (code == kTerminated) end_by_signal(SIGTERM);  // of a process that is not the keeper: the keeper sees the death
-  if (code == kMethodHangs) std::_Exit(kMethodHangs);  // threads are still in components: nothing can be taken down
+  // A process other than the keeper sent SIGTERM. The keeper then sees this signal as the cause of the death.
+  if (code == kTerminated) end_by_signal(SIGTERM);
+  if (code == kMethodHangs) std::_Exit(kMethodHangs);  // threads still run component code, so no destructor may run
   return code;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A real-time unit from its start to its end: docs/formats/processes.md. Three threads: this one (SCHED_OTHER) talks to
-// the keeper and supervises, one cycles, one serves init and kill.
+// An rtpu from its start to its end: docs/formats/processes.md. It has three threads. The main thread (SCHED_OTHER)
+// talks to the keeper and supervises; one thread cycles; one runs init and kill.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,18 @@
 
 namespace chimera {
 
-/// How a unit is started. The descriptors become its own.
+/// Arguments of the start of an rtpu, which takes ownership of the descriptors.
 struct RtpuStart {
   std::uint32_t peer = 0;
   std::uint32_t incarnation = 1;
-  pid_t parent = 0;  ///< the keeper; 0: the same process, nobody to follow
+  pid_t parent = 0;  ///< process id of the keeper; 0: the keeper is in the same process
   int channel = -1, image = -1, decision_page = -1, keeper_page = -1, objects = -1;
-  int guard = -1;    ///< the unit's end of its line to the guard; -1: there is none
+  int guard = -1;    ///< the rtpu's end of its line to the guard; -1: there is none
 };
 
-/// Runs until the keeper says `finish`, SIGTERM comes, or the keeper is gone; then ends its tasks. Answers the exit
-/// code: 0 ended in order; 1 could not start (the reason stands in its block's `grant`); 3 a method took longer than
-/// its limit at the end: the process must exit at once, a thread is still in it. Context: setup; blocks.
+/// Runs until the keeper says `finish`, SIGTERM comes, or the keeper is gone; then ends its tasks. Returns the exit
+/// code: 0 ended in order; 1 could not start (`grant` of its block holds the reason); 3 a method exceeded its limit.
+/// After 3 the process must exit at once, because a thread still runs the method. Context: setup; blocks.
 int run_rtpu(const RtpuStart& start);
 
 }  // namespace chimera

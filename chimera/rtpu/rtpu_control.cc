@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes messages of other processes between two cycles, and carries out the signals in them step by step.
+// Reads messages of other processes between two cycles, and carries out the signals in them step by step.
 #include "chimera/rtpu/rtpu_control.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ RtpuControl::RtpuControl(const ApplicationSpec& spec, TaskSet& tasks, PeerLinks&
       seen_changes_(others.changes() - 1),
       waiting_(spec.tasks.size()),
       commands_(spec.tasks.size()) {
-  set_due({});  // the first edge looks around
+  set_due({});  // due at the first cycle boundary
 }
 
 void RtpuControl::begin() noexcept {
@@ -41,7 +41,7 @@ void RtpuControl::take(BoundarySignals& signals, Nanoseconds now) noexcept {
   others_.block().head().beats.fetch_add(1, std::memory_order_relaxed);
   check_peers(now);
   take_slow(signals, now);
-  if (end_.is_told()) return go_on_ending(signals, now);  // nothing is begun any more
+  if (end_.is_told()) return go_on_ending(signals, now);  // no new signal begins any more
   read_posts();
   const auto may_touch = [&](TaskId task) { return !tasks_.tasks()[task.index].in_service && signals.may_touch(task); };
   waiting_.act(may_touch, [&](std::span<const Post> step) { act(step, signals, now); });
@@ -50,7 +50,7 @@ void RtpuControl::take(BoundarySignals& signals, Nanoseconds now) noexcept {
 void RtpuControl::go_on_ending(BoundarySignals& signals, Nanoseconds now) noexcept {
   if (!end_.go_on(signals, now)) return set_due(now + kLookWhileEnding);
   hanging_.wake_supervisor();
-  set_due(now);  // no wait comes between this and the look at it
+  set_due(now);  // due at once: the loop does not wait before it checks for the end
 }
 
 void RtpuControl::check_peers(Nanoseconds now) noexcept {
@@ -58,7 +58,7 @@ void RtpuControl::check_peers(Nanoseconds now) noexcept {
   const std::uint32_t changes = others_.changes();
   if (!is_new && changes == seen_changes_) return;
   seen_changes_ = changes;
-  others_.watch_flags(tasks_.flag());  // others may live now, or be dead
+  others_.watch_flags(tasks_.flag());  // peers may have started or died
   tasks_.sources().follow_others();
   tasks_.on_set_changed();
   for (Task& task : tasks_.tasks()) task.is_tapped = tasks_.is_mine(task.id) && others_.is_wanted_on_tap(task.id);
@@ -125,7 +125,8 @@ void RtpuControl::turn_on(std::span<const Post> step, BoundarySignals& signals, 
   for (const Post& post : step) {
     const State after = tasks_.tasks()[post.task.index].state;
     const Refusal why = post.task == done.task ? done.why : Refusal::kNone;
-    const bool goes_on = done.is_accepted || done.why == Refusal::kNotYet;  // else all of them are OFF again
+    // If false, all tasks of the step are OFF again.
+    const bool goes_on = done.is_accepted || done.why == Refusal::kNotYet;
     report(post, State::kOff, after, why, goes_on && after == State::kOn, now);
   }
 }
@@ -136,8 +137,8 @@ void RtpuControl::report(const Post& signal, const SignalReport& done, Nanosecon
   report(signal, done.before, done.after, why, arrived, now);
 }
 
-// What is carried out behind the last words is undone by the end of the process: its death is the answer, so that the
-// successor is asked again.
+// Sends no report while the rtpu ends alone, because its end undoes what it carries out now. Its death answers the
+// signal, and the manager asks the successor again.
 void RtpuControl::report(const Post& signal, State before, State after, Refusal why, bool accepted,
                          Nanoseconds now) noexcept {
   if (others_.keeps_last_words()) return;
@@ -150,14 +151,14 @@ void RtpuControl::report(const Post& signal, State before, State after, Refusal 
   post.after = after;
   post.detail = accepted ? 1 : 0;
   if (signal.command == 0) {
-    if (!signal.task.is_valid() || !signal.from.is_valid()) return;  // nobody asked
+    if (!signal.task.is_valid() || !signal.from.is_valid()) return;  // no sender waits for the report
     post.kind = PostKind::kEvent;
     post.happening = accepted ? EventKind::kSignalled : EventKind::kRefused;
   }
   this->post(post);
 }
 
-// What the manager's log says comes after what it is about.
+// Publishes states first, so that the manager's log follows the changes that it names.
 void RtpuControl::post(const Post& post) noexcept {
   publish();
   others_.send(post);
@@ -221,7 +222,7 @@ void RtpuControl::stop_all(BoundarySignals& signals, TaskId stopped_by, Nanoseco
     if (signals.may_touch(id))
       (void)supervised_.carry_out(signals, {&id, 1}, Signal::kOff, now);
     else
-      tasks_.sent().defer(task, Signal::kOff);  // its job is late, and is not waited for
+      tasks_.sent().defer(task, Signal::kOff);  // its job is late: `off` follows at the end of the job
   }
 }
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The control of a real-time unit: what comes from other processes is taken in at its edges, and what its edges changed
-// is shown to them; and its clock, whose wait ends when there is something to take in. docs/formats/processes.md.
+// The control of an rtpu. At each cycle boundary it reads the input of other processes and publishes the changes of the
+// boundary. Its clock ends a wait when input arrives. docs/formats/processes.md.
 //
-//   inputs, in this order           each is looked at by one function of take()
-//     other processes               new segments, who lives, states and flags elsewhere; wishes of the manager
-//     methods that are over         init and kill, run by the service thread
-//     the end of the unit           from then on no signal is begun
-//     signals                       from tasks elsewhere and from the manager
+//   inputs, in this order           one function of take() reads each
+//     other processes               new segments, live peers, states and flags of peers, requests of the manager
+//     finished methods              init and kill, run by the service thread
+//     the end of the rtpu           from then on no signal begins
+//     signals                       from tasks of other rtpus and from the manager
 //   step                            one signal, or one transaction of several: BoundarySignals::signal()
 //   list of changes                 TaskSet::changes(): nothing below this class publishes anything
 //   publication                     publish(), in one place: after every step, because the next method may hang or end
-//                                   the process, and at the end of the edge
+//                                   the process, and at the end of the boundary
 //
-// A change at one instant (a switch) is one more input: a plan that take() looks at before the signals, whose steps are
-// carried out by BoundarySignals and published once, after the last of them.
+// A change at one instant (a switch) is one more input: a plan that take() reads before the signals. BoundarySignals
+// carries out its steps; they are published once, after the last step.
 #pragma once
 
 #include <atomic>
@@ -32,7 +32,7 @@
 
 namespace chimera {
 
-/// Used by the thread that cycles, but for what is marked.
+/// Only the cycling thread uses it, except for marked functions.
 class RtpuControl final : public BoundaryListener {
  public:
   RtpuControl(const ApplicationSpec& spec, TaskSet& tasks, PeerLinks& others, Service& service, DecisionPage& decision,
@@ -46,11 +46,11 @@ class RtpuControl final : public BoundaryListener {
   void gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept override;
   void took_over(TaskId task, TaskId from, Nanoseconds after, Nanoseconds now) noexcept override;
   void hangs(TaskWord job, Nanoseconds age, Nanoseconds now) noexcept override;
-  /// Shows the others how the unit is before its first edge. Setup.
+  /// Publishes the state of the rtpu before its first cycle boundary. Context: setup.
   void begin() noexcept;
-  /// The reaction `stop` of a task: turns all tasks of the unit OFF.
+  /// The reaction `stop` of a task: turns all tasks of the rtpu OFF.
   void stop_all(BoundarySignals& signals, TaskId stopped_by, Nanoseconds now) noexcept;
-  /// Before a wait: shows what the tasks cost, a few of them at a time.
+  /// Called before a wait: publishes the profiles of a few tasks at a time.
   void show_profiles() noexcept;
 
   // For the main thread.
@@ -80,12 +80,12 @@ class RtpuControl final : public BoundaryListener {
   UnitEnd end_;
   std::uint32_t seen_changes_;
   WaitingSignals waiting_;
-  std::vector<Post> commands_;  // by task: the signal that is being served
-  std::size_t shown_ = 0;       // the task whose profile is shown next
+  std::vector<Post> commands_;  // by task: the signal whose init or kill runs
+  std::size_t shown_ = 0;       // the next task whose profile is published
 };
 
-/// The clock of a real-time unit: reads the cycle counter, and waits on the bell of the unit; a ring of the bell ends
-/// the wait. Used by the thread that cycles only.
+/// The clock of an rtpu: reads the cycle counter, and waits on the bell of the rtpu. A ring of the bell ends the wait.
+/// Only the cycling thread uses it.
 class BellClock final : public Clock {
  public:
   /// Context: setup; blocks about 10 ms.

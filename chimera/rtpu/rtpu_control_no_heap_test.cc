@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The edges of real-time units ask the heap for nothing: counted while signals, changes, faults, a restarted unit and
-// a restarted manager come by. What tools/check_cycle_path.py cannot see, vectors within their reserved room, is seen
-// here. Units are stepped by hand, as in rtpu_control_test.cc.
+// The cycle boundaries of rtpus allocate nothing from the heap. The test counts allocations during signals, changes,
+// faults, and restarts of an rtpu and the manager. It also finds vectors that grow beyond their reserved room, which
+// tools/check_cycle_path.py cannot see. The test steps the rtpus, as in rtpu_control_test.cc.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -16,7 +16,7 @@ std::size_t n_allocations = 0;
 
 }  // namespace
 
-// Of the whole test program: every form of new that the library's own default ends in.
+// For the whole test program: every form of new that the library's own default calls in the end.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   if (is_counting) ++n_allocations;
   if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
@@ -66,7 +66,7 @@ class EdgeNoHeap : public ::testing::Test {
     units_->run(milliseconds(1));
     units_->bring_up({kGiver, kTaker});
   }
-  /// Allocations while all units run for `time`.
+  /// Allocations while all rtpus run for `time`.
   std::size_t run(Nanoseconds time) {
     n_allocations = 0;
     is_counting = true;

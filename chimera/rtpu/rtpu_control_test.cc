@@ -47,7 +47,7 @@ struct Follower {
   static inline double fail_at = -1, note_at = -1;
 };
 
-struct Killer {  // kills the follower when told
+struct Killer {  // kills the follower when `now` is set
   In<double> y{"y", "1"};
   void cycle(Cycle c) {
     if (now && c.signal(Signal::kKill, "follower")) now = false;
@@ -78,7 +78,7 @@ struct EdgeTest : ::testing::Test {
   void all_on() { units->bring_up({kSource, kFollower, kKiller}); }
   testing::Unit& first() { return *units->units[0]; }
   testing::Unit& second() { return *units->units[1]; }
-  /// What its fault group shows to others.
+  /// The fault group of the follower, as other processes read it.
   FaultRecord shown_of_follower() {
     HeapMemory heap;
     const auto layout = PeerLayout::of(app.spec, 1, heap);
@@ -131,7 +131,7 @@ TEST_F(EdgeTest, TheManagersWishDecidesWhatGoesToTheTap) {
   units->change();
   units->run(milliseconds(1));
   EXPECT_TRUE(first().tasks->tasks()[kSource.index].is_tapped);
-  EXPECT_FALSE(first().tasks->tasks()[kFollower.index].is_tapped);  // of the other unit
+  EXPECT_FALSE(first().tasks->tasks()[kFollower.index].is_tapped);  // a task of the other rtpu
   EXPECT_TRUE(second().tasks->tasks()[kFollower.index].is_tapped);
   units->manager->block.set_tapped(kSource, false);
   units->change();

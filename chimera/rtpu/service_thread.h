@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The SCHED_OTHER thread of a real-time unit that runs init and kill.
+// The SCHED_OTHER thread of an rtpu that runs init and kill.
 #pragma once
 
 #include <atomic>
@@ -12,17 +12,17 @@
 
 namespace chimera {
 
-/// Started and stopped by the main thread; asked by the thread that cycles.
+/// The main thread starts and stops it; the cycling thread requests methods.
 class ServiceThread final : public Service {
  public:
-  /// `bell` rings when a task was served. Context: setup.
+  /// `bell` rings when a method has ended. Context: setup.
   ServiceThread(std::size_t n_tasks, Doorbell bell) : asked_(n_tasks), served_(n_tasks), cycling_(bell) {}
   ServiceThread(const ServiceThread&) = delete;
   ServiceThread& operator=(const ServiceThread&) = delete;
   ~ServiceThread() { stop(); }
 
   void start(TaskSet& tasks);
-  /// Ends the thread after what it is doing. May block as long as that takes.
+  /// Ends the thread after the present method. May block until that method returns.
   void stop();
 
   void ask(TaskId task) noexcept override;
@@ -34,7 +34,7 @@ class ServiceThread final : public Service {
   TaskQueue asked_, served_;
   Doorbell cycling_;
   std::atomic<std::uint32_t> word_{0};  // a bell: the ring pairs with Doorbell::read()
-  std::atomic<bool> stopping_{false};   // by stop(), which rings afterwards: seen by the thread after the bell
+  std::atomic<bool> stopping_{false};   // stop() stores it and rings the bell: the thread sees it after the bell
   std::thread thread_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A standby in another real-time unit takes over by what status words and the keeper's page say, without a manager.
+// A standby in another rtpu takes over, using only status words and the keeper's page, without a manager.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -46,7 +46,7 @@ struct User {
 
 constexpr TaskId kPrimary{0u}, kUser{1u}, kSpare{2u}, kLast{3u};
 
-/// The primary, what reads it, and its two standbys, each in a unit of its own, as processes are.
+/// The primary, its reader, and its two standbys, each in its own rtpu.
 struct StandbyLinksTest : ::testing::Test {
   StandbyLinksTest() { begin(); }
   void begin() {
@@ -71,7 +71,7 @@ struct StandbyLinksTest : ::testing::Test {
     User::illegal = 0;
   }
   State state(TaskId task) const { return units->units[app.tasks[task.index].rtpu.index]->state(task); }
-  /// What the unit with the task told last of takeovers; `is_alive`: as of a process that lives.
+  /// The last published takeover of the task's rtpu; `is_alive`: read as from a live process.
   Takeover told_by(TaskId task, std::uint32_t number, bool is_alive = true) const {
     Takeover takeover;
     const BlockView block = units->units[app.tasks[task.index].rtpu.index]->segment.block.view();
@@ -148,7 +148,7 @@ TEST_F(StandbyLinksTest, OneWhoseOnFailsMakesPlace) {
 }
 
 TEST_F(StandbyLinksTest, AnotherUnitWithTheClaimIsWaitedForUnlessItIsDead) {
-  units->decision.claims[0] = std::uint64_t{4} << 32 | 1;  // the unit of `last`
+  units->decision.claims[0] = std::uint64_t{4} << 32 | 1;  // the rtpu of `last`
   Primary::fails = true;
   units->run(milliseconds(3));
   EXPECT_EQ(state(kSpare), State::kOff);
@@ -185,13 +185,13 @@ TEST_F(StandbyLinksTest, AProcessThatEndsWithTheRunIsNotReplaced) {
 }
 
 TEST_F(StandbyLinksTest, ASecondOnOfTheGroupIsRefusedByTheUnitItself) {
-  units->send(Signal::kOn, {kSpare});  // a manager that knew of nothing
+  units->send(Signal::kOn, {kSpare});  // the manager does not know of the takeover
   units->run(milliseconds(2));
   EXPECT_EQ(state(kSpare), State::kOff);
   EXPECT_EQ(claim(), 0u);
 }
 
-/// Its `on` is not ready for a while.
+/// Its `on` is not ready at first.
 struct Slow {
   Out<double> w{"w", "1", initial = 0.0};
   static inline int asked = 0;
@@ -203,7 +203,7 @@ struct Other {
   void cycle(Cycle) { *w = 1; }
 };
 
-/// Two groups: what fails in the first unit is replaced in the second, in the first group later than in the other.
+/// Two groups fail in the first rtpu and are replaced in the second, in the first group later than in the other.
 TEST(StandbyLinks, TakeoversOfTwoGroupsAreToldInTheOrderInWhichTheyCameToSomething) {
   constexpr TaskId kOther{0u}, kFirst{1u}, kSlow{2u}, kQuick{3u};
   const std::vector<StandbySpec> two{{kOther, kSlow}, {kFirst, kQuick}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells the supervising thread which method a signal has called, for as long as it is under way.
+// Shows the supervising thread the method that a signal has called, while it runs.
 #include "chimera/rtpu/supervised_signals.h"
 
 #include "chimera/runtime/task_word.h"
@@ -7,7 +7,7 @@
 namespace chimera {
 namespace {
 
-// The first that a signal calls.
+// The first method that a signal calls.
 Method method_of(Signal signal) noexcept {
   switch (signal) {
     case Signal::kSpawn:

@@ -12,7 +12,7 @@ using testing::component;
 
 const SupervisedSignals* watched = nullptr;
 
-/// Sees what a supervisor would see while its methods are under way.
+/// Reads in each method what a supervisor would read then.
 struct Seer {
   Out<double> x{"x", "1", initial = 0.0};
   void on(Cycle) { seen_on = watched->acting(), progress = watched->progress(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads how far other units have come with a switch, and shows how far this one has.
+// Reads the progress of other rtpus in a switch, and publishes the progress of this one.
 #include "chimera/rtpu/switch_links.h"
 
 namespace chimera {
@@ -32,14 +32,15 @@ void SwitchLinks::tell_over(const SwitchReceipt& receipt) noexcept {
   others_.ring_all();
 }
 
-// The manager's log and its receipts come after what they are about.
+// Publishes the states first, so that the manager's log and receipts follow the changes that they name.
 void SwitchLinks::tell_takeover(const Takeover& takeover) noexcept {
   others_.publish(tasks_);
   others_.block().takeovers().put(takeover);
   if (takeover.ended != kNever) others_.ring_all();
 }
 
-// What a dead manager has dealt with stays so: its successor takes the words over.
+// True if a manager has handled the request. This stays true after its death, because its successor takes the words
+// over.
 bool SwitchLinks::was_dealt_with(const BlockHead& head, std::uint32_t unit, std::uint16_t wish) const noexcept {
   const PeerSegment* const manager = mapped_.at(others_.manager());
   if (manager == nullptr) return false;
@@ -58,10 +59,10 @@ bool SwitchLinks::is_wish_open() const noexcept {
   return false;
 }
 
-// States that it follows from are shown before it.
+// Publishes a request for a switch, after the states that led to it.
 void SwitchLinks::wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds now) noexcept {
   BlockHead& head = others_.block().head();
-  const OpenWish last = head.wish.read();  // its only writer is here
+  const OpenWish last = head.wish.read();  // only this thread writes it
   const bool is_open = last.wish.is_there() && !was_dealt_with(head, me_, last.wish.number);
   if (!is_new_wish(request.is_for(last.request()), changes_nothing, is_open)) return;
   others_.publish(tasks_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a real-time unit knows of the other units in a switch, and what it tells them: words of the decision page and of
-// the blocks. docs/formats/processes.md.
+// State of the other rtpus in a switch, and of this one for them: words of the decision page and of the blocks.
+// docs/formats/processes.md.
 #pragma once
 
 #include "chimera/rtpu/peer_links.h"
@@ -8,7 +8,7 @@
 
 namespace chimera {
 
-/// Used by the thread that cycles only. Everything given outlives this.
+/// Only the cycling thread uses it. All its arguments outlive it.
 class SwitchLinks final : public SwitchPeers {
  public:
   SwitchLinks(TaskSet& tasks, PeerLinks& others, const MappedPeers& mapped, DecisionPage& decision,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A switch over real-time units, stepped in virtual time: the variable u of plant gets another producer in the same
-// unit, or in the other one, or by way of a new task in the other one.
+// A switch over rtpus, stepped in virtual time. The new producer of the variable u of plant is in the same rtpu, in the
+// other one, or a new task in the other one.
 #include "chimera/rtpu/switch_links.h"
 
 #include <gtest/gtest.h>
@@ -79,7 +79,7 @@ TEST_F(SwitchLinksTest, TwoUnitsChangeAtOneInstant) {
   EXPECT_EQ(units->part(1).n_tasks, 3u);  // reader, one, two
   EXPECT_EQ(part(1, kOne).move, TaskMove::kLeaves);
   EXPECT_GE(part(1, kOne).off, Nanoseconds{});
-  EXPECT_EQ(units->part(1).n_variables, 1u);  // u; z goes to a task of the first unit
+  EXPECT_EQ(units->part(1).n_variables, 1u);  // u; z goes to a task of the first rtpu
   EXPECT_TRUE(units->part(1).variables[0].step_of_on.is_known);
 }
 
@@ -201,7 +201,7 @@ TEST_F(SwitchLinksTest, ASignalToAMemberAborts) {
   EXPECT_EQ(state(kOne), State::kOff);
   EXPECT_EQ(state(kTwo), State::kOff);
   EXPECT_EQ(state(kObserver), State::kOff);
-  EXPECT_TRUE(units->flag_is_up());  // nobody produces u
+  EXPECT_TRUE(units->flag_is_up());  // u has no producer
 }
 
 TEST_F(SwitchLinksTest, TheDeathOfAMemberBeforeTheChangeAborts) {
@@ -215,7 +215,7 @@ TEST_F(SwitchLinksTest, TheDeathOfAMemberBeforeTheChangeAborts) {
   EXPECT_TRUE(units->flag_is_up());
 }
 
-// The unit of the leaving producer dies when all have agreed: nobody waits for it.
+// The rtpu of the leaving producer dies after all have agreed: the others do not wait for it.
 TEST_F(SwitchLinksTest, TheDeathOfAMemberAfterTheCommitDoesNotHoldUpTheChange) {
   const std::uint16_t number = units->switch_to(kBeside, milliseconds(5));
   SwitchAgreement agreement(units->decision.switching, units->keeper.origin);
@@ -249,10 +249,10 @@ TEST_F(SwitchLinksTest, AnOrderThatNobodyWroteIsAborted) {
   EXPECT_EQ(scene.illegal, 0);
 }
 
-// Between its own agreement and the commit a unit still aborts when a task that takes part fails.
+// Between its own agreement and the commit an rtpu still aborts if a task of the switch fails.
 TEST_F(SwitchLinksTest, WhatComesAfterTheOwnAgreementStillAborts) {
   (void)units->switch_to(kObserved, milliseconds(20));
-  testing::Unit* agreed = nullptr;  // steps the units one by one, until one has agreed and the other has not
+  testing::Unit* agreed = nullptr;  // steps the rtpus one by one, until one has agreed and the other has not
   while (agreed == nullptr) {
     units->now = units->now + microseconds(100);
     for (const auto& unit : units->units) {
@@ -264,7 +264,7 @@ TEST_F(SwitchLinksTest, WhatComesAfterTheOwnAgreementStillAborts) {
     }
   }
   agreed->tasks->flag().raise(true);
-  units->change();  // an edge
+  units->change();  // a cycle boundary
   units->now = units->now + microseconds(100);
   (void)agreed->executive->run(units->now - units->keeper.origin);
   EXPECT_EQ(PlanWord::of(units->decision.switching.plan).phase, SwitchPhase::kAborted);

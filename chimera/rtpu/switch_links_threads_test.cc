@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slow switches over two real-time units, each of which cycles in a thread of its own while time really passes: also
-// under the thread sanitizer. The thread of the test is the manager.
+// Slow switches over two rtpus, each of which cycles in its own thread in real time; also under the thread sanitizer.
+// The thread of the test plays the manager.
 #include "chimera/rtpu/switch_links.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 using namespace testing::tool_scene;
 using testing::Units;
 
-/// Lets the units cycle. The clock of each is stepped to the time that has passed, by its own thread.
+/// Lets the rtpus cycle. The thread of each steps its clock to the elapsed time.
 class CyclingUnits {
  public:
   explicit CyclingUnits(Units& units) : units_(units), origin_(units.now) {
@@ -33,7 +33,7 @@ class CyclingUnits {
     for (std::thread& thread : threads_) thread.join();
   }
 
-  /// The manager's time is that of now.
+  /// Sets the manager's time to now.
   void follow() { units_.now = now(); }
 
  private:
@@ -76,7 +76,7 @@ struct SwitchLinksThreads : ::testing::Test {
       return (state(task) == State::kOn) == (std::ranges::count(tasks, task) != 0);
     });
   }
-  /// Both tools produce `grip`: when one of them is to go ON, the other one is not shown as ON.
+  /// Both tools produce `grip`: while one goes ON, the other is never shown as ON.
   void watch_producers() {
     shop.in_step = [this](const std::string& what) {
       EXPECT_TRUE(what != "on heavy" || state(kLight) != State::kOn);
@@ -96,7 +96,7 @@ struct SwitchLinksThreads : ::testing::Test {
     EXPECT_EQ(units.part(1).reinitialised[0], kLaw);
     EXPECT_GE(units.part(0).flag, milliseconds(1)) << "the arm has acted on it";
   }
-  /// `on` of the tool of `to` failed, which is in ERROR, and the other one is back.
+  /// `on` of the tool of `to` failed: this tool is in ERROR, and the other one is ON again.
   void expect_taken_back(std::uint32_t to) {
     const std::string tool = to == kWithHeavy ? "heavy" : "light", other = to == kWithHeavy ? "light" : "heavy";
     EXPECT_EQ(shop.story, (std::vector<std::string>{"off " + other, "reinit arm", "reinit law", "on " + tool,

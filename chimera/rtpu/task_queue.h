@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tasks handed from one thread to one other. Each task is in the queue at most once, so it never overflows.
+// Tasks that one thread passes to another. Each task is in the queue at most once, so the queue never overflows.
 #pragma once
 
 #include <atomic>
@@ -19,9 +19,9 @@ class TaskQueue {
   void push(TaskId task) noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     tasks_[head % tasks_.size()] = task;
-    head_.store(head + 1, std::memory_order_release);  // pairs with pop(): the entry is whole
+    head_.store(head + 1, std::memory_order_release);  // pairs with pop(): the entry is complete
   }
-  /// False when it is empty. Context: any, the one reader; wait-free.
+  /// False if the queue is empty. Context: any, the one reader; wait-free.
   bool pop(TaskId& task) noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
     if (tail == head_.load(std::memory_order_acquire)) return false;
@@ -33,7 +33,7 @@ class TaskQueue {
  private:
   std::vector<TaskId> tasks_;
   alignas(64) std::atomic<std::size_t> head_{0};  // store-release by push() pairs with the acquire of pop()
-  alignas(64) std::atomic<std::size_t> tail_{0};  // of the reader alone: pairs with nothing
+  alignas(64) std::atomic<std::size_t> tail_{0};  // used by the reader alone: pairs with nothing
 };
 
 }  // namespace chimera

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ends the tasks of a unit step by step, with patience for the tasks of other units that come first.
+// Ends the tasks of an rtpu step by step, and waits a limited time for tasks of other rtpus that must end first.
 #include "chimera/rtpu/unit_end.h"
 
 namespace chimera {
@@ -17,17 +17,18 @@ bool UnitEnd::go_on(BoundarySignals& signals, Nanoseconds now) noexcept {
   return true;
 }
 
-// True when none of ours is ON any more. Tasks of others that come first are waited for, not for ever.
+// True if no task of this rtpu is ON any more. Tasks of other rtpus that must end first are waited for, for a limited
+// time.
 bool UnitEnd::turn_off_next(BoundarySignals& signals, Nanoseconds now) noexcept {
   for (; next_off_ < tasks_.spec().end_order.size(); ++next_off_) {
     const TaskId id = tasks_.spec().end_order[next_off_];
     if (!tasks_.is_mine(id)) {
-      const bool is_awaited = !is_alone_ && !hanging_.any();  // while this unit ends alone the others stay ON
+      const bool is_awaited = !is_alone_ && !hanging_.any();  // if this rtpu ends alone, the others stay ON
       if (is_awaited && others_.state(id) == State::kOn && now < patience_) return false;
       continue;
     }
     if (tasks_.tasks()[id.index].state != State::kOn) continue;
-    if (!signals.may_touch(id)) {  // its job ends, or hangs
+    if (!signals.may_touch(id)) {  // its job ends soon, or hangs
       if (now < patience_ && !hanging_.has(id)) return false;
       continue;
     }
@@ -37,7 +38,7 @@ bool UnitEnd::turn_off_next(BoundarySignals& signals, Nanoseconds now) noexcept 
   return true;
 }
 
-// True when all of ours are killed.
+// True if all tasks of this rtpu are killed.
 bool UnitEnd::kill_next(BoundarySignals& signals, Nanoseconds now) noexcept {
   bool is_done = true;
   for (const TaskId id : tasks_.spec().end_order) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The end of a unit: turns its tasks OFF in reverse data-flow order over the whole application, then kills them.
+// The end of an rtpu: turns its tasks OFF in reverse data-flow order over the whole application, then kills them.
 // docs/formats/processes.md, "Ending".
 #pragma once
 
@@ -10,25 +10,25 @@
 
 namespace chimera {
 
-/// Everything given outlives this.
+/// All arguments outlive this object.
 class UnitEnd {
  public:
   UnitEnd(TaskSet& tasks, PeerLinks& others, SupervisedSignals& supervised, const HangingJobs& hanging,
           Nanoseconds method_limit) noexcept
       : tasks_(tasks), others_(others), supervised_(supervised), hanging_(hanging), method_limit_(method_limit) {}
 
-  /// From now on all tasks of the unit end. `is_alone`: the others go on, and a successor brings back what is ON now;
-  /// may be said again. Context: any thread; wait-free.
+  /// From now on all tasks of the rtpu end. `is_alone`: the other rtpus go on, and a successor turns the tasks that are
+  /// ON now ON again. A second call may change it. Context: any thread; wait-free.
   void tell(bool is_alone) noexcept {
     is_alone_ = is_alone;
     is_told_ = true;
   }
   bool is_told() const noexcept { return is_told_; }
-  /// Set when all tasks are killed: the loop's RunOptions::stop. Context: any thread.
+  /// Set when all tasks are killed: RunOptions::stop of the loop. Context: any thread.
   const std::atomic<bool>& is_over() const noexcept { return over_; }
 
-  /// Does what can be done at this boundary; true when that was the last. Requires: is_told(). Context: cycle boundary;
-  /// as long as the methods take.
+  /// Carries out the steps of the end that are possible at this boundary. True when the last one is done. Requires:
+  /// is_told(). Context: cycle boundary; takes as long as the methods.
   bool go_on(BoundarySignals& signals, Nanoseconds now) noexcept;
 
  private:
@@ -42,11 +42,12 @@ class UnitEnd {
   const Nanoseconds method_limit_;
   bool has_begun_ = false;
   std::size_t next_off_ = 0;  // in ApplicationSpec::end_order
-  Nanoseconds patience_;      // with the tasks of others
-  // tell() by the main thread, read at boundaries: sequentially consistent, so that is_alone_ is seen with is_told_.
+  Nanoseconds patience_;      // end of the wait for tasks of others and for late jobs
+  // The main thread calls tell(), boundaries read. Sequentially consistent: a reader that sees is_told_ also sees
+  // is_alone_.
   std::atomic<bool> is_told_{false};
   std::atomic<bool> is_alone_{false};
-  // Stored at a boundary, loaded by the loop (RunOptions::stop) and by the main thread; pairs with nothing.
+  // A boundary stores it; the loop (RunOptions::stop) and the main thread load it. It pairs with nothing.
   std::atomic<bool> over_{false};
 };
 

@@ -21,7 +21,7 @@ struct Taker {
 
 constexpr TaskId kGiver{0u}, kTaker{1u};
 
-// The taker, in a unit of its own, is to be turned off before the giver.
+// The taker, in its own rtpu, must go OFF before the giver.
 struct UnitEndTest : ::testing::Test {
   UnitEndTest() {
     app.rtpus = {{"gives", 0, Policy::kEdf}, {"takes", 1, Policy::kEdf}};
@@ -44,7 +44,7 @@ TEST_F(UnitEndTest, KillsItsTasksAndSaysSo) {
   EXPECT_FALSE(end_of(1).is_told());
   end_of(1).tell(false);
   units->change();
-  units->run(milliseconds(1100));  // its patience with the giver is a second
+  units->run(milliseconds(1100));  // its rtpu waits one second for the giver
   EXPECT_TRUE(end_of(1).is_over());
   EXPECT_EQ(unit(1).state(kTaker), State::kNotCreated);
   EXPECT_EQ(phase(1), PeerPhase::kEnded);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signals that came from other processes and wait until their task can take them.
+// Signals of other processes that wait until their task can accept them.
 #pragma once
 
 #include <algorithm>
@@ -12,11 +12,11 @@
 
 namespace chimera {
 
-/// A *step* is a signal with those that belong to one transaction with it. A task keeps the order of its signals.
-/// Context of all but the constructor: cycle boundary; no allocation.
+/// A *step* is a signal, or all signals of one transaction. A task keeps the order of its signals. Context of all
+/// functions but the constructor: cycle boundary; no allocation.
 class WaitingSignals {
  public:
-  /// More stay in the rings of the processes that sent them.
+  /// Further posts stay in the rings of their senders.
   static constexpr std::size_t kMost = 512;
 
   explicit WaitingSignals(std::size_t n_tasks) : is_blocked_(n_tasks) {}
@@ -24,8 +24,8 @@ class WaitingSignals {
   /// Requires: not full.
   void add(const Post& post) noexcept { (void)posts_.try_push(post); }
 
-  /// Takes out each whole step whose tasks may all be touched and have no earlier signal waiting, in the order in which
-  /// they came: `may_touch(TaskId)`, `act(std::span<const Post>)`.
+  /// Removes each whole step whose tasks may all be touched and have no earlier signal waiting, in order of arrival.
+  /// Calls `may_touch(TaskId)` and `act(std::span<const Post>)`.
   template <class MayTouch, class Act>
   void act(MayTouch&& may_touch, Act&& act) noexcept {
     std::fill(is_blocked_.begin(), is_blocked_.end(), false);
@@ -44,7 +44,7 @@ class WaitingSignals {
   }
 
  private:
-  // 0: the rest of the step is still to come.
+  // Number of signals of the step; 0: the rest of the step has not arrived yet.
   std::size_t step_length(std::size_t first) const noexcept {
     for (std::size_t i = first; i < posts_.size(); ++i)
       if (!posts_[i].more) return i - first + 1;

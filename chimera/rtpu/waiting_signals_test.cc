@@ -10,7 +10,7 @@ namespace chimera {
 namespace {
 
 struct WaitingSignalsTest : ::testing::Test {
-  /// Of the task with that letter; `more`: another one of the same transaction follows.
+  /// Adds a signal for the task with that letter; `more`: another one of the same transaction follows.
   void add(char task, int command, bool more = false) {
     Post post;
     post.task = TaskId(static_cast<std::uint32_t>(task - 'a'));
@@ -18,7 +18,7 @@ struct WaitingSignalsTest : ::testing::Test {
     post.more = more;
     waiting.add(post);
   }
-  /// The steps that are taken out, while the tasks in `busy` may not be touched.
+  /// The steps that act() removes while the tasks in `busy` may not be touched.
   std::string acted(const std::string& busy = "") {
     std::string text;
     waiting.act([&](TaskId task) { return busy.find(static_cast<char>('a' + task.index)) == std::string::npos; },

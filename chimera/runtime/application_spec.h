@@ -61,30 +61,30 @@ struct RtpuSpec {
 
 /// The standby takes over the outputs of the primary when that fails. Both have the same outputs.
 struct StandbySpec {
-  TaskId primary;  ///< of no standby a primary itself
+  TaskId primary;  ///< not a standby itself
   TaskId standby;  ///< of one primary
   Nanoseconds stale_after{};  ///< above 0: a primary on another rtpu whose outputs are older is killed; kStalePeriods
   bool hot = false;           ///< it cycles while the primary is ON, unread; without resources and out-consts
 };
 
-/// A primary that is killed because it is silent may miss at least so many of its periods.
+/// A primary that is killed because it is silent may miss at least this many of its periods.
 inline constexpr std::int64_t kStalePeriods = 2;
 
-/// What the reaction `restart` of a task does: TaskSpec::on_fault.
+/// Parameters of the reaction `restart` of a task: TaskSpec::on_fault.
 struct RestartSpec {
   TaskId task;
-  std::uint32_t most = 1;           ///< restarts `within` so long; at most kMostRestarts
+  std::uint32_t most = 1;           ///< restarts in each window of length `within`; at most kMostRestarts
   Nanoseconds within;               ///< above 0
   OnFault then = OnFault::kError;   ///< beyond them, or where it cannot be restarted; `switch` to on_fault_set
 };
 
-/// What the task reads and was published longer ago than this is not valid for it.
+/// A value that the task reads is invalid for it if it was published longer than `after` ago.
 struct StaleSpec {
   TaskId task;
   Nanoseconds after;  ///< above 0
 };
 
-/// More restarts than that are not remembered.
+/// At most this many restarts are remembered.
 inline constexpr std::uint32_t kMostRestarts = 100;
 
 /// A configuration of the description: tasks that may be ON together.

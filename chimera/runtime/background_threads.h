@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads for what components do beside their cycles, as the calls of methods see them. On a machine without threads
-// there are none (null), and a background runs before kill alone.
+// Interface to the threads that run the background of components. On a machine without threads it is null, and a
+// background runs before kill only.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace chimera {
 class BackgroundThreads {
  public:
   /// From now on `background` is called with `instance`, until it answers with a fault. False when the system gives no
-  /// thread. `tag` is the TaskWord of who runs there.
+  /// thread. `tag` is the TaskWord of the task that runs there.
   [[nodiscard]] virtual bool add(void* instance, chimera_background background, std::uint32_t tag) = 0;
 
   enum class End {

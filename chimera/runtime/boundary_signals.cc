@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Carries out signals at an edge and records them.
+// Carries out signals at a cycle boundary and records them.
 #include "chimera/runtime/boundary_signals.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The signals that an edge carries out: of the script, of tasks, and of whoever takes part in the edge. All of them are
-// recorded on the tap.
+// The signals that a cycle boundary carries out: from the script, from tasks, and from the BoundaryListener. All of
+// them are recorded on the tap.
 #pragma once
 
 #include <span>
@@ -23,36 +23,38 @@ struct RefusedSignal {
   TaskId task;
   Signal signal = Signal::kOn;
   Refusal why = Refusal::kNone;
-  State state = State::kNotCreated;  ///< of the task, then
+  State state = State::kNotCreated;  ///< of the task at `at`
 };
 
 inline constexpr std::size_t kRefusedKept = 64;
 
-/// The same request of a task is passed on again after this time. It waits until then, and gives way to another one.
+/// A task's repeated request is passed on after this time. While it waits, another request replaces it.
 inline constexpr Nanoseconds kAskAgain = milliseconds(100);
 
-/// Context of everything not marked: edge; as long as the methods of components take; no allocation but theirs.
+/// Context of everything not marked: cycle boundary; as long as the methods of components take; no allocation but
+/// theirs.
 class BoundarySignals {
  public:
-  /// Everything given outlives this, but `options`, whose script is kept and whose guest is told. Context: setup.
+  /// All arguments outlive this but `options`, whose script is kept and whose listener gets the reports. Context:
+  /// setup.
   BoundarySignals(TaskSet& set, const RunOptions& options, ContextTap& tap, Settlement& settlement, JobThreads& threads,
                   Switching& switching) noexcept
       : set_(set), script_(options.script), tap_(tap), settlement_(settlement), threads_(threads),
         switching_(switching), guest_(options.guest) {}
-  /// Switches are ordered here, by these, which outlive this; else elsewhere. Context: setup.
+  /// From now on, `switches` orders the switches; it outlives this. Without it, they are ordered elsewhere. Context:
+  /// setup.
   void order_by(LocalSwitches& switches) noexcept { orders_ = &switches; }
 
   /// The script counts from `origin`.
   void begin(Nanoseconds origin) noexcept;
-  /// From when on an edge has something to do: an act of the script, a step of a switch, a standby that has not come;
-  /// kNever: nothing is left.
-  /// Context: cycle; wait-free.
+  /// The first instant at which a cycle boundary has something to do: an act of the script, a step of a switch, a
+  /// standby that has not come. kNever: nothing is left. Context: cycle; wait-free.
   Nanoseconds next_act() const noexcept { return next_act_; }
-  /// The same while jobs wait, none of which is under way at an edge. Context: cycle; wait-free.
+  /// As next_act(), while jobs wait of which none is under way at a cycle boundary. Context: cycle; wait-free.
   Nanoseconds next_act_in_row() const noexcept { return next_act_in_row_; }
-  /// The next instant at which that is so although no job ends before. Context: cycle; wait-free.
+  /// The next instant with something to do even if no job ends before. Context: cycle; wait-free.
   Nanoseconds next_wake() const noexcept { return next_wake_; }
-  /// All of an edge is done: next_act() and next_wake() anew; `due` and `wake` are those of Recovery.
+  /// Ends a cycle boundary: computes next_act() and next_wake() anew. `due` and `wake` are those of Recovery.
   void look_ahead(Nanoseconds due, Nanoseconds wake) noexcept;
   /// Carries out the acts of the script that are due, and step().
   void act(Nanoseconds now) noexcept;
@@ -63,13 +65,13 @@ class BoundarySignals {
   /// Carries out the signals that tasks sent to tasks of this context; those for a task with an unfinished job wait.
   void carry_out_pending(Nanoseconds now) noexcept;
 
-  /// True when an edge may touch the task now: no job of it is under way.
+  /// True if a cycle boundary may touch the task now: no job of it is under way.
   bool may_touch(TaskId task) noexcept { return threads_.claim(task); }
-  /// As TaskLife::signal. Requires: may_touch() of all.
+  /// Calls TaskLife::signal. Requires: may_touch() of all.
   SignalReport signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept;
-  /// As TaskLife::warm_up. Requires: may_touch().
+  /// Calls TaskLife::warm_up. Requires: may_touch().
   void warm_up(TaskId task, Nanoseconds now) noexcept;
-  /// As TaskLife::finish_slow.
+  /// Calls TaskLife::finish_slow.
   SignalReport finish_slow(TaskId task, Nanoseconds now) noexcept;
 
   /// The first kRefusedKept signals that were refused. Context: setup.

@@ -28,7 +28,7 @@ struct Reader {
 
 constexpr TaskId kSender{0u}, kReader{1u};
 
-/// Takes part in the edges and writes down what it is told.
+/// A listener at cycle boundaries that records all reports.
 struct Guest final : BoundaryListener {
   explicit Guest(const std::atomic<std::uint32_t>& bell) : BoundaryListener(bell) {}
   void take(BoundarySignals& signals, Nanoseconds now) noexcept override {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an edge changed, as a list: what other processes are to see of it. Nothing is published where something changes;
-// whoever takes part in the edges (BoundaryListener) publishes the list and clears it.
+// The changes of one cycle boundary that other processes must see, as a list. Nothing is published where something
+// changes; the BoundaryListener publishes the list and clears it.
 #pragma once
 
 #include <cstddef>
@@ -25,8 +25,8 @@ struct Change {
   TaskStatus before, now;
 };
 
-/// In the order in which things changed first; what changes again before the list is published stands in its first
-/// place with its latest status. Context of everything not marked: edge; O(changes); no allocation.
+/// Changes in the order of their first occurrence. A change that repeats before publication keeps its first place with
+/// its latest status. Context of everything not marked: cycle boundary; O(changes); no allocation.
 class Changes {
  public:
   /// Room for everything that `n_tasks` tasks can change. Nothing is listed before that. Context: setup.

@@ -19,7 +19,7 @@ struct Constant {
 };
 
 /// By ConstantId of the specs, which outlive it. A constant has a value for each of its producers, one of which counts:
-/// the first, until choose() says otherwise. Context: setup and edge; never cycle.
+/// the first, until choose() says otherwise. Context: setup and cycle boundary; never cycle.
 class ConstantStore {
  public:
   ConstantStore() = default;
@@ -36,7 +36,7 @@ class ConstantStore {
   void choose(ConstantId id, std::uint32_t producer) noexcept { counts_[id.index] = first_[id.index] + producer; }
   /// Sets the value of the producer; true when it differs from the one before or was not known.
   bool set(ConstantId id, std::uint32_t producer, std::span<const std::byte> value) noexcept;
-  /// The same by the task that produces it.
+  /// Sets the value by the task that produces it.
   bool set_by(TaskId producer, ConstantId id, std::span<const std::byte> value) noexcept;
   /// The value that counts as a whole number, for extents. `fallback` when it is not known or not a whole number.
   std::int64_t integer(ConstantId id, std::int64_t fallback) const noexcept;

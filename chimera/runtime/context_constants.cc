@@ -110,8 +110,8 @@ void ContextConstants::publish(TaskId task) noexcept {
   writer.publish(Nanoseconds{}, ~std::uint64_t{0});
 }
 
-// The entries, by dimension, of the list that the description gives for what the port is linked to: its constant, or
-// its operator variable; else of the port's own value.
+// The entries, by dimension, of the list that the description gives: for the port's own value, or for the constant or
+// operator variable that the port is linked to.
 std::span<const std::uint32_t> ContextConstants::listed(const PortSpec& port) const noexcept {
   if (!port.value.empty()) return port.listed;
   if (port.constant.is_valid()) return spec_->constants[port.constant.index].listed;

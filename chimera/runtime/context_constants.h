@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The constants of one context, from those who make them to those who are initialised with them: its own, and those of
-// tasks of other contexts, which are read from the groups that these publish.
+// The constants of one context: passed from tasks that make them to tasks that are initialised with them. Constants of
+// other contexts are read from the groups that those publish.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@
 
 namespace chimera {
 
-/// Where several tasks produce a constant, the configuration in force says which of them counts: at first the one that
-/// is the start set. Context of everything not marked: edge; no allocation.
+/// If several tasks produce a constant, the configuration in force selects one: at first the configuration that is the
+/// start set. Context of everything not marked: cycle boundary; no allocation.
 class ContextConstants final : public MadeConstants {
  public:
   /// `memories[t]` is planned for the tasks of this context and empty for those of others; `others` null: there are
@@ -26,25 +26,25 @@ class ContextConstants final : public MadeConstants {
   void prepare(const ApplicationSpec& spec, const ContextTable& table, std::span<TaskMemory> memories,
                const PeerView* others, SetupMemory& memory);
 
-  /// Copies the present constants into the task and fixes its extents, before init or reinit. False with `why` when one
+  /// Copies the present constants into the task and fixes its extents, before init or reinit. False with `why` if one
   /// has no value, an extent is out of range, or a list of values has another length than the constant says.
   bool give(TaskId task, FixedString<160>& why) noexcept;
   /// Takes over what init or reinit of the task made, fixes its extents, and shows the constants to other contexts.
   /// False with `why` as give().
   bool collect(TaskId task, FixedString<160>& why) noexcept;
-  /// The last collect() brought a value that is another than before.
+  /// True if the last collect() brought a new value.
   bool has_new() const noexcept { return has_new_; }
-  /// A constant that the task was initialised with has another value by now. Requires: it was constructed.
+  /// True if a constant that the task was initialised with has a new value. Requires: it was constructed.
   bool uses_changed(TaskId task) noexcept;
   /// Some constant has several producers.
   bool has_choice() const noexcept { return has_choice_; }
-  /// From now on the constants of that configuration are in force. Nobody is re-initialised by it.
+  /// From now on the constants of that configuration are in force. This re-initialises no task.
   void put_in_force(std::uint32_t set) noexcept { in_force_ = set; }
-  /// kNoSet: the application has none that is its start set.
+  /// kNoSet: no configuration of the application is its start set.
   std::uint32_t in_force() const noexcept { return in_force_; }
-  /// Could the task be initialised with the constants that are in force? As give(), and changes nothing.
+  /// True if the task could be initialised with the constants in force. As give(), but changes nothing.
   bool would_take(TaskId task, FixedString<160>& why) noexcept;
-  /// Of the values as they were read last.
+  /// Compares the values that were read last.
   bool differ(ConstantId constant, std::uint32_t a, std::uint32_t b) const noexcept override;
   /// Takes over what tasks of other contexts have made since. O(constants of others).
   void read_foreign() noexcept;

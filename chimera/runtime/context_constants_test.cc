@@ -76,7 +76,7 @@ struct ContextConstantsTest : ::testing::Test {
   ~ContextConstantsTest() override {
     for (std::size_t t = 0; t < memories.size(); ++t) memories[t].destroy(tasks[t]);
   }
-  /// What init of the maker does.
+  /// Does what init of the maker does.
   void makes(std::int32_t n) { std::memcpy(memories[0].constants()[0].local, &n, sizeof n); }
   std::int32_t seen_by_user() const {
     std::int32_t n;

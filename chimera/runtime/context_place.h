@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where one context stands in the application: whose tasks it runs, in which memory, beside which others.
+// Place of one context in the application: its tasks, its memory, and the other contexts.
 #pragma once
 
 #include <atomic>
@@ -19,16 +19,16 @@ struct ContextPlace {
   RtpuId rtpu;                     ///< whose tasks are its own; invalid: all
   std::span<std::byte> table;      ///< zeroed bytes for PeerLayout::of(spec, rtpu); empty: memory of its own
   PeerView* others = nullptr;
-  SafeFrames* safe_frames = nullptr;  ///< null: nobody writes them
+  SafeFrames* safe_frames = nullptr;  ///< null: no process writes them
   Service* service = nullptr;  ///< null: init and kill run where the signal is taken
-  // Words for whoever finds the process dead or hanging (TaskWord): written relaxed, pair with nothing.
-  /// Told which task and method runs, as BlockHead::running says: by the context, and by the service thread.
+  // Words for the process that finds this one dead or hanging (TaskWord): written relaxed, pair with nothing.
+  /// Shows which task and method runs, as BlockHead::running: written by the context, and by the service thread.
   std::atomic<std::uint32_t>* running = &running_untold;
   std::atomic<std::uint32_t>* serving = &running_untold;
   bool preemptive = false;  ///< tasks preempt each other: each reads through copies of its own
-  /// Told which method is called where a signal is taken; `running` goes on telling of jobs meanwhile.
+  /// Shows which method is called at a cycle boundary. `running` shows only jobs.
   std::atomic<std::uint32_t>* at_edge = &running_untold;
-  /// Told for which task a state is constructed, by show_making().
+  /// Shows for which task a state is constructed, by show_making().
   std::atomic<std::uint32_t>* making = &running_untold;
 };
 

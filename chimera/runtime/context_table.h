@@ -15,7 +15,7 @@
 
 namespace chimera {
 
-/// Context of everything not marked: edge; wait-free.
+/// Context of everything not marked: cycle boundary; wait-free.
 class ContextTable {
  public:
   /// Lays out the groups of the application and, of these, the groups of `place.rtpu`, in `place.table`. Operator

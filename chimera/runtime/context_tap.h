@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one context writes to its tap: what happens to its tasks, and every publication of those that are tapped.
+// The records that one context writes to its tap: events of its tasks, and every publication of tapped tasks.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace chimera {
 
-/// Context of everything not marked: cycle; wait-free, by whoever may append to the tap.
+/// Context of everything not marked: cycle; wait-free, by the thread that may append to the tap.
 class ContextTap {
  public:
   /// `tap` null: nothing is recorded. With `keeps`, records of a task with a job under way stay with the thread of the
@@ -21,8 +21,8 @@ class ContextTap {
   ContextTap(std::span<const Task> tasks, Tap* tap, std::uint8_t rtpu, bool keeps, SetupMemory& memory);
 
   bool is_on() const noexcept { return tap_ != nullptr; }
-  /// Writes one record, if anybody wants it. An invalid task: of the context. Also by the thread of a task, about it,
-  /// where records are kept.
+  /// Writes one record if there is a tap. An invalid task: of the context. Where records are kept, the thread of a task
+  /// may call this for its task.
   void record(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept {
     if (tap_ != nullptr) append(kind, at, task, a, b);
   }
@@ -43,7 +43,7 @@ class ContextTap {
   void append_row(const Task& task) noexcept;
 
  private:
-  /// One job has fewer.
+  /// Room for more records than one job makes.
   using Kept = FixedVector<TapRecord, 16>;
   struct Rows {
     std::uint64_t last = 0;   // sequence of the publication

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The non-preemptive loop (2000 paper, figure 11): signals at the edge, releases, the most urgent job, again.
+// The non-preemptive loop (2000 paper, figure 11): signals at the cycle boundary, releases, the most urgent job,
+// again.
 // One loop for real and for virtual time; `Time` says what the clock shows and how long a job took.
 #pragma once
 

@@ -35,7 +35,7 @@ void IllegalFlag::follow(std::span<const bool> on, bool is_uncovered) noexcept {
   judge();
 }
 
-// What tasks raised that are in another state now, or all did.
+// Lowers the flag for tasks that are no longer in the state in which their reaction raised it, or for all tasks.
 void IllegalFlag::lower(bool for_all) noexcept {
   raised_by_ = TaskId();
   for (const Task& task : tasks_) {

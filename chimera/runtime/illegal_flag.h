@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The illegal-configuration flag as one context sees it: up while the tasks that are ON are no legal set, while
-// somebody holds it up, or while it is up in another process.
+// The illegal-configuration flag as one context sees it: up while the tasks that are ON are no legal set, while a task,
+// an operator or a slow switch holds it up, or while it is up in another process.
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@
 
 namespace chimera {
 
-/// Context of everything not marked: edge; no allocation.
+/// Context of everything not marked: cycle boundary; no allocation.
 class IllegalFlag {
  public:
   /// Down until the first follow(). Everything given outlives this. Context: setup.
@@ -30,10 +30,9 @@ class IllegalFlag {
   /// The tasks that are ON over all contexts obey the two set equations, and none that failed lacks a standby, as of
   /// the last follow(). Wait-free.
   bool is_on_set_legal() const noexcept { return is_on_set_legal_; }
-  /// Somebody of this context holds it up, legal or not. Wait-free.
+  /// A reaction or raise() of this context holds it up, legal or not. Wait-free.
   bool is_raised() const noexcept { return is_raised_ || raised_by_.is_valid(); }
-  /// Raises or lowers the part of the flag that does not follow from the ON set. Lowered, it is also for the tasks
-  /// that hold it up.
+  /// Raises or lowers the part of the flag that does not follow from the ON set. Lowering also ends the holds of tasks.
   void raise(bool up) noexcept;
   /// A slow switch holds it up, in each context, until it is over.
   void hold(bool up) noexcept;
@@ -61,7 +60,7 @@ class IllegalFlag {
   bool is_raised_ = false;
   bool is_held_ = false;
   bool is_on_set_legal_ = true;
-  bool is_up_here_ = false;  // what these come to, for every job
+  bool is_up_here_ = false;  // result of the words above, for every job
 };
 
 }  // namespace chimera

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time as a running method sees it: the executor's clock, and what using time means there.
+// Time as a running method sees it: the executor's clock, and the way to use time there.
 #pragma once
 
 #include "chimera/base/time.h"

@@ -23,12 +23,12 @@ void JobCycle::conclude(const Job& job, const CycleTime& time, BodyEnd body, Nan
   }
   const std::uint64_t cycles = task.profile.cycles;
   const State state = end_cycle(task, body, time, end, may_publish, &clock_);
-  if (task.profile.cycles != cycles) record.dropped -= time.dropped;  // this cycle was told of those
+  if (task.profile.cycles != cycles) record.dropped -= time.dropped;  // this cycle has seen those
   if (failed && MissPolicy::is_out_of_patience(task) && state == State::kOn) misses_.give_up(task, end);
   look_after(task);
 }
 
-// What a job left for others to see.
+// Collects the results of a job that others must see.
 void JobCycle::look_after(Task& task) noexcept {
   JobRecord& record = records_[task.id.index];
   task.has_news = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One job of a task: may it start, its beginning, its end. The same for every executor; what differs is who waits for
-// releases and how long a job takes.
+// One job of a task: the decision to start, its beginning, its end. Equal for all executors, which differ only in who
+// waits for releases and in how long a job takes.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,15 @@ namespace chimera {
 /// call.
 class JobCycle {
  public:
-  /// `listens`: faults and notes are reported by edges, so that a job with a new one leaves kSettle. `is_tapped`: as
-  /// tap.is_on(). Everything given outlives this. Context: setup.
+  /// `listens`: cycle boundaries report faults and notes, so that a job with a new one leaves kSettle. `is_tapped`: as
+  /// tap.is_on(). All arguments outlive this. Context: setup.
   JobCycle(std::span<JobRecord> records, ContextTap& tap, MissPolicy& misses, MissCause* cause, JobClock& clock,
            bool listens) noexcept
       : records_(records), cause_(cause), is_tapped_(tap.is_on()), listens_(listens), tap_(tap), misses_(misses),
         clock_(clock) {}
 
-  /// A job of the task is released, or about to begin: no edge touches the task before close(), and nothing was
-  /// reported of the job yet. Context: whoever hands the job out; wait-free.
+  /// A job of the task is released, or about to begin: no cycle boundary touches the task before close(), and nothing
+  /// was reported of the job yet. Context: the thread that hands the job out; wait-free.
   void open(TaskId task) noexcept { open(records_[task.index]); }
   /// No job of the task is under way any more. Context: as open().
   void close(TaskId task) noexcept { records_[task.index].task->is_busy = false; }
@@ -37,7 +37,7 @@ class JobCycle {
     if (is_tapped_) tap_.record_release(job);
     return !record.skip_next && now + record.start_margin <= job.deadline;
   }
-  /// False when the job must not start: its release is then counted as dropped, with all that follows.
+  /// False if the job must not start. Its release is then counted as dropped, with all that follows.
   bool may_start(const Job& job, Nanoseconds now) noexcept {
     return can_start(job, now) || misses_.decide_start(job, now);
   }
@@ -51,12 +51,12 @@ class JobCycle {
     open(record);
     return begin(record, job, time, illegal);
   }
-  /// The body of the job began at `start` and is over at `end`, having used `used` of execution time: judges failures
-  /// of time, publishes, handles errors. What others must look at is left in JobRecord::left.
+  /// The body of the job began at `start` and is over at `end`, having used `used` of execution time. Judges failures
+  /// of time, publishes, handles errors. JobRecord::left lists the work left for others.
   void conclude(const Job& job, const CycleTime& time, BodyEnd body, Nanoseconds start, Nanoseconds end,
                 Nanoseconds used) noexcept;
-  /// close() and conclude() in one, for executors that run jobs where edges are taken. True when JobRecord::left says
-  /// that there is something to settle.
+  /// close() and conclude() in one, for executors that run jobs in the thread of the cycle boundaries. True if
+  /// JobRecord::left lists something to settle.
   [[gnu::always_inline]] bool close_and_conclude(const Job& job, const CycleTime& time, BodyEnd body,
                                                  Nanoseconds start, Nanoseconds end, Nanoseconds used) noexcept {
     JobRecord& record = records_[job.task.index];
@@ -68,7 +68,7 @@ class JobCycle {
       count_times(task, job, start, end, used);
       task.profile.missed_in_a_row = 0;
       cycle_step::publish(task, time, end);
-      record.dropped -= time.dropped;  // this cycle was told of those
+      record.dropped -= time.dropped;  // this cycle has seen those
       if (task.has_news || task.is_tapped) [[unlikely]] look_after(task);
     } else {
       conclude(job, time, body, start, end, used);

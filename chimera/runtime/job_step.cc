@@ -23,7 +23,7 @@ void note_fault(Task& task, Method method, Nanoseconds at) noexcept {
   std::memcpy(task.faults.off_text, task.faults.last.text, CHIMERA_FAULT_TEXT);
 }
 
-// What the method said of its fault becomes the task's last one.
+// The method's report of its fault becomes the last fault of the task.
 void take_fault(Task& task, Method method, Nanoseconds at) noexcept {
   task.said.text[CHIMERA_FAULT_TEXT - 1] = '\0';
   task.faults.last = task.said;
@@ -97,7 +97,7 @@ Answer publish(Task& task, Method method, std::uint64_t valid, Nanoseconds now) 
 
 namespace {
 
-// Says meanwhile which method it is. Relaxed, pairs with nothing: it is told, and not acted upon.
+// Shows the method while it runs. Relaxed, pairs with nothing: it is only reported.
 Answer call_beside_cycle(Task& task, Method method, Nanoseconds at) noexcept {
   std::atomic_ref(task.job_method).store(method, std::memory_order_relaxed);
   const Answer answer = call_method(task, method, at);

@@ -26,11 +26,11 @@ struct CycleTime {
   bool illegal = false;       ///< the illegal-configuration flag, read once per job
 };
 
-/// What begin_cycle found, to be handed to end_cycle. `method` is the one that answered last.
+/// Result of begin_cycle(), the input of end_cycle(). `method` is the one that answered last.
 struct BodyEnd {
   Answer answer = Answer::kOk;
   Method method = Method::kCycle;
-  bool is_partial = false;  ///< it gave up with a result of use
+  bool is_partial = false;  ///< it gave up with a usable result
 
   /// It went to its end and made a whole result.
   bool is_good() const noexcept { return answer == Answer::kOk && !is_partial; }
@@ -43,9 +43,9 @@ BodyEnd begin_cycle(Task& task, const CycleTime& time) noexcept;
 /// Publishes what a cycle made that went well: the second half of most jobs. Context: cycle; wait-free; O(1).
 void publish_cycle(Task& task, const CycleTime& time, Nanoseconds end) noexcept;
 
-/// The second half of any job. Publishes what an ok cycle made (`may_publish` false: a late cycle that is held), or
-/// handles its fault by the rules of the state machine. Returns the state the task is in afterwards. `clock` null: the
-/// method error is not timed. Context: cycle.
+/// The second half of any job. Publishes the outputs of an ok cycle, or handles its fault by the rules of the state
+/// machine. `may_publish` false: a late cycle whose outputs are held. Returns the new state of the task. `clock` null:
+/// the method error is not timed. Context: cycle.
 State end_cycle(Task& task, BodyEnd body, const CycleTime& time, Nanoseconds end, bool may_publish,
                 JobClock* clock) noexcept;
 
@@ -72,12 +72,12 @@ State follow_error(Task& task, Next first, Nanoseconds now, JobClock* clock) noe
 /// Records a fault that the framework itself found. `text` is cut at CHIMERA_FAULT_TEXT - 1. Context: cycle; wait-free.
 void record_fault(Task& task, Method method, const char* text, Nanoseconds at) noexcept;
 
-/// Leaves a note for people, as one of the task; the next edge sees it as it sees a fault. `text` is cut at
+/// Leaves a note of the task for the user; the next cycle boundary finds it as it finds a fault. `text` is cut at
 /// CHIMERA_FAULT_TEXT - 1. Context: cycle; wait-free.
 void record_note(Task& task, const char* text) noexcept;
 
-/// Calls what the component does beside its cycles; a fault is recorded as one of `method`, and then it is not called
-/// again. Requires: task.background. Context: virtual time, or where kill may run; may block.
+/// Calls the background of the component. A fault is recorded as one of `method`, and then it is not called again.
+/// Requires: task.background. Context: virtual time, or where kill may run; may block.
 void run_background(Task& task, Method method, Nanoseconds at) noexcept;
 
 // The part that every cycle of every task runs, put in place where it is used: as calls its three functions would cost
@@ -105,14 +105,14 @@ namespace cycle_step {
   for (Output& output : task.outputs) output.port->value = staging + output.offset;
 }
 
-/// Says which method runs, for whoever finds the process dead.
+/// Shows which method runs, for the process that finds this one dead.
 [[gnu::always_inline]] inline void show_running(Task& task, std::uint32_t method) noexcept {
   task.running->store(TaskWord(task.id, method).word(), std::memory_order_relaxed);
 }
 
-/// sync() of an aperiodic task: kOk when there is an event.
+/// sync() of an aperiodic task: kOk if there is an event.
 Answer ask_sync(Task& task, Nanoseconds at) noexcept;
-/// What a cycle that did not simply answer kOk, or that wrote to safety ports, comes to. Puts down its faults.
+/// Judges a cycle that did not simply answer kOk, or that wrote to safety ports. Records its faults.
 BodyEnd judge_body(Task& task, std::int32_t answer, Nanoseconds at) noexcept;
 
 /// begin_cycle()

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which tasks take part in releases: those that are ON.
+// Follows the tasks that take part in releases: those that are ON.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,22 @@
 
 namespace chimera {
 
-/// Makes the ready queue follow the states of the tasks. Context of everything not marked: edge; no allocation.
+/// Makes the ready queue follow the states of the tasks. Context of everything not marked: cycle boundary; no
+/// allocation.
 class Members {
  public:
-  /// Everything given outlives this; `guest` null: nobody is shown profiles. Context: setup.
+  /// All arguments outlive this. A null listener: profiles are not shown. Context: setup.
   Members(std::span<Task> tasks, std::span<JobRecord> records, ReadyQueue& queue, ContextTap& tap,
           BoundaryListener* guest) noexcept
       : tasks_(tasks), records_(records), queue_(queue), tap_(tap), guest_(guest) {}
 
   /// The task was ON at the last follow(). Context: cycle; wait-free.
   bool is_on(TaskId task) const noexcept { return records_[task.index].is_on; }
-  /// Some task is. Context: cycle; wait-free.
+  /// Some task was ON at the last follow(). Context: cycle; wait-free.
   bool is_any_on() const noexcept { return n_on_ > 0; }
-  /// Tasks that went ON join the releases, those that are ON no more leave; not while a job of them is under way.
+  /// Tasks that went ON join the releases; those that are no longer ON leave. Not while a job of them is under way.
   void follow_all(Nanoseconds now) noexcept;
-  /// Of one task. Requires: no job of it is under way.
+  /// Follows one task. Requires: no job of it is under way.
   void follow(Task& task, Nanoseconds now) noexcept;
 
  private:

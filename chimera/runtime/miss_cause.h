@@ -25,11 +25,11 @@
 
 namespace chimera {
 
-/// One verdict at a time, by edges; jobs report what they used from their own threads.
+/// Cycle boundaries judge, one verdict at a time. Jobs report their execution times from their own threads.
 class MissCause {
  public:
   struct Verdict {
-    TaskId culprit;    ///< whose execution time it was; invalid: of no task of this context
+    TaskId culprit;    ///< the task that used the time; invalid: no task of this context
     Nanoseconds used;  ///< by the culprit; without one: for how long, at least, the processor was away
     bool is_blocked = false;  ///< the culprit is the task itself, which waits in a system call
   };
@@ -39,7 +39,8 @@ class MissCause {
 
   /// A job of the task ended at `end` and had used `used`. Context: cycle, on the task's own thread; wait-free.
   void ended(TaskId task, Nanoseconds used, Nanoseconds end) noexcept { recent_[task.index].add(used, end); }
-  /// The task missed the deadline of this release. Context: cycle, on the task's own thread, or edge; wait-free.
+  /// The task missed the deadline of this release. Context: cycle, on the task's own thread, or
+  /// cycle boundary; wait-free.
   void missed(TaskId task, Nanoseconds release) noexcept {
     std::atomic<std::int64_t>& waits = waits_[task.index].since;
     if (release.count < waits.load(std::memory_order_relaxed)) waits.store(release.count, std::memory_order_relaxed);
@@ -53,7 +54,7 @@ class MissCause {
  private:
   static constexpr Nanoseconds kSeldom = milliseconds(100);
 
-  // What the last jobs of a task used and when they ended: it may have had several since the release that was missed.
+  // Execution times and ends of a task's last jobs: it may have had several since the release that was missed.
   class Recent {
    public:
     void add(Nanoseconds used, Nanoseconds end) noexcept {
@@ -67,16 +68,16 @@ class MissCause {
 
    private:
     static constexpr std::uint32_t kJobs = 8;
-    // Relaxed, pair with nothing: written by the task's own thread, read by edges. A pair of which an edge reads one
-    // number of the old job and one of the new misjudges one miss.
+    // Relaxed, pair with nothing: written by the task's own thread, read by cycle boundaries. If a reader gets one
+    // number of the old job and one of the new, it misjudges one miss.
     std::atomic<std::int64_t> used_[kJobs]{}, end_[kJobs]{};
     std::uint32_t next_ = 0;  // by the task's own thread
   };
 
   // The first release of the task that was missed since the last verdict; kNever: none.
   struct Waits {
-    // Relaxed, pairs with nothing: lowered by the task's own thread and by edges, taken by judge(). Of two that lower
-    // it at once one is forgotten.
+    // Relaxed, pairs with nothing: lowered by the task's own thread and by cycle boundaries, cleared by judge(). If
+    // both lower it at once, one of the two misses is forgotten.
     std::atomic<std::int64_t> since{kNever.count};
   };
 

@@ -5,7 +5,7 @@
 namespace chimera {
 namespace {
 
-// What remains to be done at the end of a job whose failure was reported while the job was under way.
+// Returns the reaction that remains for the end of the job, if its failure was reported while the job was under way.
 OnMiss left_of(OnMiss reaction, bool was_reported) noexcept {
   const bool acts_at_once = reaction == OnMiss::kFlag || reaction == OnMiss::kStop || reaction == OnMiss::kSwitch;
   const bool is_done = was_reported && acts_at_once;
@@ -105,7 +105,7 @@ void MissPolicy::drop_on_purpose(const DroppedRelease& dropped) noexcept {
   tap_.record(TapKind::kDrop, dropped.last, dropped.task, dropped.count);
 }
 
-// False when `what` was reported before, or the job has ended.
+// False if `what` was reported before, or the job has ended.
 bool MissPolicy::report_once(TaskId task, JobRecord::Report what) noexcept {
   const int before = records_[task.index].reported.fetch_or(what, std::memory_order_acq_rel);
   return (before & (what | JobRecord::kEnded)) == 0;

@@ -32,9 +32,9 @@
 
 namespace chimera {
 
-/// Judges jobs that fail in time, one thread at a time for each task. What it leaves for edges to do stands in
-/// JobRecord::left. Context of everything not marked: cycle, on the task's own thread; wait-free but for the method
-/// error of a component.
+/// Judges jobs that fail in time, one thread at a time for each task. Work that it leaves for cycle boundaries
+/// stands in JobRecord::left. Context of everything not marked: cycle, on the task's own thread; wait-free but for the
+/// method error of a component.
 class MissPolicy {
  public:
   /// `cause` null: causes are not looked for. Everything given outlives this. Context: setup.
@@ -59,7 +59,7 @@ class MissPolicy {
   /// Releases of the task that will not run for lack of time.
   void drop(const DroppedRelease& dropped) noexcept;
 
-  /// A job of the task is released of which nothing was reported yet. Before anybody else knows of the job.
+  /// A job of the task is released of which nothing was reported yet. Call it before any other thread knows of the job.
   void forget_reports(TaskId task) noexcept { records_[task.index].reported.store(0, std::memory_order_relaxed); }
   /// The deadline of the job has come and it is not over. The cause is reported, and where the job has begun `flag`
   /// and `stop` act, unless the miss is tolerated; its end counts the miss. Once a job. Context: cycle boundary.

@@ -5,8 +5,8 @@
 //   writer: ring[posted mod N] = post; posted = posted + 1 (release)
 //   reader: taken..posted (acquire) | copy | progress = taken (release)
 //   writer: room while posted - progress < N (acquire)
-// Invariant: the writer never stores to a place between progress and posted, so a post is read whole. Whoever dies
-// leaves all of it true.
+// Invariant: the writer never stores to a place between progress and posted, so a post is read whole. The death of
+// either process keeps the invariant.
 #pragma once
 
 #include <atomic>
@@ -22,7 +22,7 @@ namespace chimera {
 
 enum class PostKind : std::uint8_t { kSignal, kReport, kRequest, kEvent };
 
-/// What an event is about.
+/// Subject of an event.
 enum class EventKind : std::uint8_t {
   kState,      ///< task went from `before` to `after`
   kFault,      ///< method `detail` of the task failed; its text stands in the task's fault group
@@ -31,11 +31,11 @@ enum class EventKind : std::uint8_t {
   kFlag,       ///< this rtpu's flag word went to `detail`; `from` raised it, if a task did
   kStop,       ///< reaction `stop` of the task: the rtpu turned all its tasks OFF
   kMissed,     ///< the task missed its deadline; `from` used the processor most, for `detail` ns: more than its budget
-               ///< when somebody did. Invalid `from`: for so long nobody here had the processor
+               ///< if a task did. Invalid `from`: for that time no task here had the processor
   kHang,       ///< a job of the task does not end: it was released `detail` ns ago; 0: its thread is gone. The rtpu
                ///< ends
-  kGaveWay,    ///< a job of the task goes on below all others: jobs of the rtpu used `detail` ns lately, nearly all
-               ///< that the kernel lets real-time threads have
+  kGaveWay,    ///< a job of the task goes on below all others: jobs of the rtpu used `detail` ns of the last window,
+               ///< nearly all that the kernel grants real-time threads
   kBlocked,    ///< the task missed its deadline with a job that waits in a system call, having used `detail` ns
   kNote,       ///< the task left a note; its text stands in the task's fault group
   kTakeover,   ///< the task went ON in place of `from`, `detail` ns after this rtpu found that one lost
@@ -46,7 +46,7 @@ inline constexpr auto kLastHappening = EventKind::kTakeover;
 struct Post {
   std::uint64_t command = 0;  ///< number of the command it belongs to; 0: none
   Nanoseconds at;
-  TaskId task;                ///< target, or whom it is about
+  TaskId task;                ///< target, or subject
   TaskId from;                ///< the sending task
   Signal signal = Signal::kOn;
   PostKind kind = PostKind::kSignal;
@@ -60,9 +60,9 @@ struct Post {
 };
 static_assert(sizeof(Post) == 64);
 
-inline constexpr std::size_t kPosts = 256;  ///< of one ring
+inline constexpr std::size_t kPosts = 256;  ///< in one ring
 
-/// In the sender's segment.
+/// Lies in the sender's segment.
 struct PostRing {
   std::atomic<std::uint64_t> posted{0};  ///< store-release of Outbox::try_post() pairs with the acquire of Inbox::take
   std::uint64_t reserved[7] = {};
@@ -81,14 +81,14 @@ class Outbox {
   Outbox(PostRing& ring, const PostProgress* progress, std::uint32_t my_incarnation) noexcept
       : ring_(&ring), progress_(progress), incarnation_(my_incarnation) {}
 
-  /// False when the reader is a whole ring behind (or there is no reader: progress null and the ring full).
+  /// False if the reader is a whole ring behind (or there is no reader: progress null and the ring full).
   /// Context: cycle; wait-free.
   [[nodiscard]] bool try_post(const Post& post) noexcept;
   /// Posts that would still be taken. Context: cycle; wait-free.
   std::uint64_t room() const noexcept;
-  /// Does the reader take the posts of this incarnation (and none from before)? Context: cycle; wait-free.
+  /// True if the reader takes the posts of this incarnation (and none from before). Context: cycle; wait-free.
   bool is_followed() const noexcept;
-  /// Another incarnation of the reader; null: none. Context: cycle boundary.
+  /// Sets another incarnation of the reader; null: none. Context: cycle boundary.
   void set_reader(const PostProgress* progress) noexcept { progress_ = progress; }
 
  private:
@@ -103,12 +103,12 @@ class Inbox {
   Inbox() noexcept = default;
   /// Begins behind everything posted so far. Context: cycle boundary.
   Inbox(const PostRing& ring, PostProgress& progress, std::uint32_t sender_incarnation) noexcept;
-  /// Goes on where `progress` stands, copied from a predecessor's; begins behind everything when that was of another
+  /// Goes on where `progress` stands, copied from a predecessor's. Begins behind everything if that belonged to another
   /// incarnation of the sender. Context: cycle boundary.
   static Inbox resume(const PostRing& ring, PostProgress& progress, std::uint32_t sender_incarnation) noexcept;
 
-  /// The next post; false when there is none. Nothing read from the ring is used as index or length by this class, and
-  /// what no sender would write (a word that is no value of its enumeration) is passed over.
+  /// The next post; false if there is none. This class uses nothing read from the ring as index or length. It passes
+  /// over posts that no sender would write (a word that is no value of its enumeration).
   /// Context: cycle; wait-free.
   bool take(Post& post) noexcept;
   bool is_attached() const noexcept { return ring_ != nullptr; }

@@ -19,7 +19,7 @@ class GroupList {
   std::span<const GroupSpec> groups() const noexcept { return groups_.first(n_groups_); }
 
   void add(const VariableSpec& variable) noexcept { variables_[n_variables_++] = variable; }
-  /// What was added since the last group is the next one.
+  /// Makes a group of the variables added since the last group.
   void end_group(std::string_view owner) noexcept {
     groups_[n_groups_++] = {owner, variables_.subspan(begun_, n_variables_ - begun_)};
     begun_ = n_variables_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where every group of a peer lies: computed by all processes from the same specs, told by nobody.
+// Where every group of a peer lies. All processes compute it from the same specs, so no message carries it.
 // docs/formats/processes.md, "Groups of an rtpu's segment".
 #pragma once
 
@@ -20,9 +20,9 @@ inline constexpr std::string_view kFaultVariable = "fault";
 /// Context of making: setup; of reading: any, wait-free.
 class PeerLayout {
  public:
-  /// Of rtpu number `peer`, or of the manager when `peer` is the number of rtpus. Refuses what TableLayout refuses.
+  /// Layout of rtpu number `peer`, or of the manager if `peer` is the number of rtpus. Fails where TableLayout fails.
   static Result<PeerLayout> of(const ApplicationSpec& spec, std::uint32_t peer, SetupMemory& memory);
-  /// Of all tasks and all operator variables together: a single context without other processes.
+  /// Layout of all tasks and all operator variables together: a single context without other processes.
   static Result<PeerLayout> of_everything(const ApplicationSpec& spec, SetupMemory& memory);
 
   const TableLayout& table() const noexcept { return table_; }
@@ -33,7 +33,7 @@ class PeerLayout {
   }
   GroupId constants(TaskId task) const noexcept { return GroupId(first_group_[task.index] + 2); }
   GroupId fault(TaskId task) const noexcept { return GroupId(first_group_[task.index] + 3); }
-  /// Of operator variable `index` of the specs; of the manager only.
+  /// The group of operator variable `index` of the specs. Only in the layout of the manager.
   GroupId operator_group(std::size_t index) const noexcept { return GroupId(first_operator_ + index); }
 
   const GroupPlace& place(GroupId group) const noexcept { return table_.group(group); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tasks of one context know of the rest of the application: the other rtpus and the operator. A context
-// without others has none. docs/formats/processes.md.
+// The view that the tasks of one context have of the rest of the application: the other rtpus and the operator. A
+// context without others has none. docs/formats/processes.md.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@ struct PeerPresence {
   bool has_seen = true;   ///< its process has looked at all that this context has shown, or is dead
 };
 
-/// Asked by the thread of the context, at edges; an answer is good until the next edge. What this context changes is
-/// not told here: runtime/changes.h.
+/// Used by the thread of the context, at cycle boundaries; an answer is good until the next one. runtime/changes.h has
+/// the changes of this context.
 class PeerView {
  public:
   /// State of a task of another context; ERROR when its process is dead. Context: cycle boundary; wait-free.

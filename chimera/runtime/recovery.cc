@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns standbys ON and restarts tasks at edges.
+// Turns standbys ON and restarts tasks at cycle boundaries.
 #include "chimera/runtime/recovery.h"
 
 #include <algorithm>
@@ -10,10 +10,10 @@
 namespace chimera {
 namespace {
 
-// How often it is looked whether another context has seen that a task failed: nobody rings for that.
+// Interval of the check whether another context has seen that a task failed. That context rings no bell for it.
 constexpr Nanoseconds kLookForSeen = microseconds(200);
 
-/// Of a task whose `on` was not ready.
+/// Returns when to call `on` again of a task that was not ready.
 Nanoseconds ask_again_at(const Task& task, Nanoseconds now) noexcept {
   return now + std::max(task.spec->period, TaskLife::kAskAgain);
 }
@@ -49,7 +49,7 @@ void Recovery::prepare(SwitchPeers* peers) {
   }
 }
 
-// A task that may not be touched yet is looked at again with the next edge.
+// A task that may not be touched yet is checked again at the next cycle boundary.
 void Recovery::act(Nanoseconds now) noexcept {
   Standbys& standbys = parts_.set.standbys();
   if (restarts_.empty() && standbys.n_groups() == 0) return;
@@ -110,9 +110,9 @@ bool Recovery::give_up_resource(std::size_t group, TaskId to, Nanoseconds now) n
   if (!set.is_mine(failed) || !set.life().judge().rivals().are(failed, to)) return true;
   Task& task = set.tasks()[failed.index];
   if (task.in_service || task.state != State::kError) return true;
-  if (!set.is_mine(to)) {  // killed first, it would look as if somebody had killed it
+  if (!set.is_mine(to)) {  // its context must see the ERROR first: a kill alone is no failure
     TaskId& closes = takeovers_[group].closes;
-    const bool is_shown = closes == failed;  // at the end of the last edge
+    const bool is_shown = closes == failed;  // at the end of the last cycle boundary
     closes = failed;
     if (!is_shown || !set.others()->presence(to).has_seen) {
       look_again(now + kLookForSeen, now + kLookForSeen);
@@ -126,7 +126,7 @@ bool Recovery::give_up_resource(std::size_t group, TaskId to, Nanoseconds now) n
   return true;
 }
 
-// False: it is not OFF, and the end of `init` or of a rival is told; or it is ruled out.
+// False: the task is not OFF yet, and this context learns of the end of `init` or of a rival; or it is ruled out.
 bool Recovery::create(std::size_t group, Task& task, Nanoseconds now) noexcept {
   TaskSet& set = parts_.set;
   TaskId& created = takeovers_[group].created;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Brings back what failed in one context, at edges and without anybody being asked: turns standbys ON in place of tasks
-// that failed here or elsewhere (runtime/standbys.h says which), has hot standbys cycle beside them before,
-// and carries out the reaction `restart` of on_fault. A standby with a resource of the task that failed is created for
-// it, when that one is killed, or its process is dead. A
-// task that failed and has a standby is replaced first; restarted, it is only cleared then, and stays OFF.
+// Brings tasks back that failed, at cycle boundaries of one context and without a request. It turns standbys ON in
+// place of tasks that failed here or elsewhere; runtime/standbys.h chooses them. Hot standbys cycle before that. It
+// also carries out the reaction `restart` of on_fault. A standby that needs a resource of the failed task is created
+// after that task is killed, or its process is dead. A failed task that has a standby is replaced first; `restart` then
+// only clears it, and it stays OFF.
 #pragma once
 
 #include <algorithm>
@@ -19,10 +19,11 @@
 
 namespace chimera {
 
-/// Context of everything not marked: edge; as long as the methods of components take; no allocation but theirs.
+/// Context of everything not marked: cycle boundary; as long as the methods of components take; no allocation but
+/// theirs.
 class Recovery {
  public:
-  /// All of it outlives this.
+  /// All parts outlive Recovery.
   struct Parts {
     TaskSet& set;
     Settlement& settlement;
@@ -30,22 +31,22 @@ class Recovery {
     BoundarySignals& signals;
     ReadyQueue& queue;
     JobThreads& threads;
-    BoundaryListener* guest;  ///< null: nobody is told
+    BoundaryListener* guest;  ///< null: no report
   };
   explicit Recovery(const Parts& parts) noexcept
       : parts_(parts),
         gap_(parts.set.tasks(), parts.queue, parts.threads),
         record_(parts.set, parts.threads) {}
-  /// Takeovers are told to the peers, which outlive this; null: they are not told. Context: setup.
+  /// Sets the peers that get the records of takeovers, which outlive this; null: none gets any. Context: setup.
   void prepare(SwitchPeers* peers);
 
-  /// Does what is due. Of no effect where no task has a standby or is restarted.
+  /// Does what is due. No effect if no task has a standby or is restarted.
   void act(Nanoseconds now) noexcept;
-  /// The run is over: takeovers whose first cycle is waited for are told of.
+  /// The run is over: also reports takeovers that still wait for a first cycle.
   void end(Nanoseconds now) noexcept { record_.look(now, true); }
-  /// From when on act() may have something to do although no state has changed; kNever: only then. Wait-free.
+  /// The first instant at which act() may have something to do although no state has changed; kNever: none. Wait-free.
   Nanoseconds due() const noexcept { return std::min(parts_.set.standbys().due(), due_); }
-  /// The next instant at which that is so although no job ends before. Wait-free.
+  /// The first such instant even if no job ends before. Wait-free.
   Nanoseconds wake() const noexcept { return std::min(parts_.set.standbys().due(), wake_); }
 
  private:
@@ -56,17 +57,17 @@ class Recovery {
     bool is_answered = false;     // the task is in ERROR, and stays there
   };
 
-  /// What is under way in one group.
+  /// Takeover under way in one group.
   struct UnderWay {
     TaskId closes;         // its ERROR is to be seen in another context before it is killed here
     TaskId created;        // here; its `init` may be under way
-    Nanoseconds again_at;  // a standby whose device is not ready is asked then
+    Nanoseconds again_at;  // when to call a standby again whose device was not ready
   };
 
-  /// One that cycles beside the task that is ON.
+  /// A standby that cycles beside the task that is ON.
   struct HotStandby {
     TaskId task;
-    Nanoseconds again_at;  // its `on` was not ready: it is asked then
+    Nanoseconds again_at;  // when to call its `on` again, which was not ready
   };
 
   void keep_warm(Nanoseconds now) noexcept;

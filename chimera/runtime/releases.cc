@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds the common half of an executor and takes the edges of its context.
+// Builds the common half of an executor and handles the cycle boundaries of its context.
 #include "chimera/runtime/releases.h"
 
 #include "chimera/base/assert.h"
@@ -104,7 +104,7 @@ void Releases::take_edge(Nanoseconds now, bool puts_off) noexcept {
   signals_.act(now);
   if (guest_ != nullptr) {
     guest_->take(signals_, now);
-    signals_.step(now);  // the guest has heard the bell for what changed after the step in act(): no one rings again
+    signals_.step(now);  // take() heard the bell for changes since the step in act(): it does not ring again
   }
   signals_.carry_out_pending(now);
   recovery_.act(now);

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The common half of all executors of one context: when what is due, and the order in which the parts act.
+// The common half of all executors of one context: the instants at which work is due, and the order of its parts.
 //
-//   edge: inputs of the guest, script acts, signals   -> tasks join and leave the queue     BoundarySignals, Members
+//   edge: inputs of listener, script acts, signals    -> tasks join and leave the queue     BoundarySignals, Members
 //   release_due: releases                             -> ready queue; what is dropped is counted
 //   may_start: last chance to say no                  -> begin: inputs and body
 //                                                     -> end: failures, publication, profile JobCycle, MissPolicy
 //   settle: what jobs left for others to see                                                Settlement
 //
-// Executors differ in how long a job takes, in how they wait, and in who runs a job. Those whose jobs run in the thread
-// that takes the edges use may_start() and end_job() of this class, which settle at once; those with a thread for each
-// task use jobs() and misses() by that thread, and settlement() at edges.
+// Executors differ in the time that a job takes, in the way they wait, and in the thread that runs a job. If jobs run
+// in the thread that handles cycle boundaries, the executor uses may_start() and end_job(), which settle at once. An
+// executor with a thread for each task calls jobs() and misses() in that thread, and settlement() at cycle boundaries.
 #pragma once
 
 #include <algorithm>
@@ -33,47 +33,48 @@ namespace chimera {
 
 /// A task may ask for a switch: there are configurations and more than one task, or a reaction leads to one.
 bool may_request(const ApplicationSpec& spec) noexcept;
-/// So many receipts are kept of what no script asks for: switches that tasks ask for, and takeovers by standbys.
+/// Number of receipts kept for unscripted events: switches that tasks ask for, and takeovers by standbys.
 std::size_t kept_of_unscripted(const ApplicationSpec& spec) noexcept;
 
 /// Owns the parts, which work in the memory that the set was built in. Context of everything not marked: cycle; no
 /// allocation, no system call.
 class Releases {
  public:
-  /// `clock` is what methods see, and is made the clock of the set. Requires: no task of this context with the reaction
-  /// switch where there are other contexts without switch_peers, nor demote unless that can be done. Everything given
-  /// outlives this. Context: setup.
+  /// `clock` is the one that methods see, and becomes the clock of the set. Requires: no task of this context with the
+  /// reaction switch where there are other contexts without switch_peers, nor demote unless that can be done.
+  /// Everything given outlives this. Context: setup.
   Releases(TaskSet& set, JobClock& clock, const RunOptions& options);
   Releases(const Releases&) = delete;
   Releases& operator=(const Releases&) = delete;
 
-  /// The grid of releases starts at `origin`; whoever is ON by now is released from there on. Context: cycle boundary.
+  /// The grid of releases starts at `origin`. Tasks that are ON now are released from there on. Context: cycle
+  /// boundary.
   void begin(Nanoseconds origin) noexcept;
   Nanoseconds origin() const noexcept { return origin_; }
 
-  /// True when something else than the next job may be due: an edge, a release, the end of the run. False for most
-  /// jobs of a row. Whoever gets true looks at all of them and then calls rest().
+  /// True if a cycle boundary, a release or the end of the run may be due. False for most jobs of a row. On true, the
+  /// caller checks all three and then calls rest().
   bool must_look(Nanoseconds now) const noexcept {
     return now >= calm_until_ || stop_requested() || (guest_ != nullptr && guest_->is_due(now));
   }
-  /// Everything that is due by now was looked at; the run ends at `until`.
+  /// Everything that is due has been checked. The run ends at `until`.
   void rest(Nanoseconds until) noexcept {
     const bool is_calm = !set_.sent().has_pending() && !settlement_.task_stopped();
     calm_until_ = is_calm ? std::min({queue_.next_release(), signals_.next_act(), until}) : kAtOnce;
   }
   /// The next must_look() is true.
   void look_again() noexcept { calm_until_ = kAtOnce; }
-  /// True when take_edge has something to do.
+  /// True if take_edge() has something to do.
   bool edge_is_due(Nanoseconds now) const noexcept {
     return set_.sent().has_pending() || signals_.next_act() <= now || (guest_ != nullptr && guest_->is_due(now));
   }
-  /// Carries out the acts and signals that are due; signals for a task with an unfinished job wait for its end.
-  /// `puts_off`: no job is ever under way at an edge, and one that only waits for the end of jobs is not taken before
-  /// none waits any more, or the next release is due.
+  /// Carries out the acts and signals that are due. A signal for a task with an unfinished job waits for its end.
+  /// `puts_off`: no job is ever under way at a cycle boundary. A cycle boundary that is due only for the end of jobs
+  /// is put off until no job waits, or the next release is due.
   void take_edge(Nanoseconds now, bool puts_off = false) noexcept;
-  /// The next instant at which an edge or a release may be due.
+  /// The next instant at which a cycle boundary or a release may be due.
   Nanoseconds next_event() const noexcept { return std::min(queue_.next_release(), next_edge()); }
-  /// The same for edges alone, where releases have threads of their own.
+  /// The next instant at which a cycle boundary may be due. For executors whose releases have threads of their own.
   Nanoseconds next_edge() const noexcept {
     return guest_ == nullptr ? signals_.next_wake() : std::min(signals_.next_wake(), guest_->next_due());
   }
@@ -81,7 +82,7 @@ class Releases {
   bool anything_left() const noexcept {
     return members_.is_any_on() || set_.sent().has_pending() || signals_.next_act() != kNever || guest_ != nullptr;
   }
-  /// The run is over: what is under way of switches and takeovers ends.
+  /// The run is over: ends all switches and takeovers that are under way.
   void end(Nanoseconds now) noexcept {
     recovery_.end(now);
     switching_.end(now);
@@ -101,9 +102,9 @@ class Releases {
   /// The illegal-configuration flag, to be read once for each job.
   bool is_illegal() const noexcept { return set_.flag().is_up(); }
 
-  // Where jobs run in the thread that takes the edges.
+  // Where jobs run in the thread that handles cycle boundaries.
 
-  /// False when the job must not start: its release is then counted as dropped, with all that follows.
+  /// False if the job must not start. Its release is then counted as dropped, with all that follows.
   [[gnu::always_inline]] bool may_start(const Job& job, Nanoseconds now) noexcept {
     return jobs_.can_start(job, now) || decide_start(job, now);
   }
@@ -112,7 +113,8 @@ class Releases {
                                       Nanoseconds end, Nanoseconds used) noexcept {
     if (jobs_.close_and_conclude(job, time, body, start, end, used)) settle_job(job.task, end);
   }
-  /// What jobs of the task left for others to see. Requires: none is under way. Context: cycle boundary.
+  /// Handles the failures and signals that jobs of the task left. Requires: no job is under way. Context: cycle
+  /// boundary.
   void settle_job(TaskId task, Nanoseconds now) noexcept;
 
   ReadyQueue& queue() noexcept { return queue_; }
@@ -122,9 +124,10 @@ class Releases {
   Members& members() noexcept { return members_; }
   BoundarySignals& signals() noexcept { return signals_; }
   Settlement& settlement() noexcept { return settlement_; }
-  /// Of the switches and takeovers of a context that is alone; none of another one. Context: setup, between runs.
+  /// Receipts of switches and takeovers, if the application has one context; otherwise none. Context: setup, between
+  /// runs.
   const SwitchReceipts& receipts() noexcept { return switches_ ? switches_->receipts() : kNoReceipts; }
-  /// What happens is recorded here.
+  /// The trace that events of this context are recorded in.
   ContextTap& tap() noexcept { return tap_; }
 
  private:
@@ -143,7 +146,7 @@ class Releases {
   ContextTap tap_;
   JobsInLoop in_loop_;
   JobThreads& threads_;
-  std::optional<MissCause> cause_;  // with a guest, which reports it
+  std::optional<MissCause> cause_;  // only with a listener, which reports it
   ReadyQueue queue_;
   MissPolicy misses_;
   JobCycle jobs_;

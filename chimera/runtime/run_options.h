@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the tasks of a context are to be run, and why a run ended.
+// How an executor runs the tasks of a context, and why a run ended.
 #pragma once
 
 #include <atomic>
@@ -16,19 +16,19 @@
 
 namespace chimera {
 
-/// What it points at outlives the executor. Context: setup.
+/// All pointers of it outlive the executor. Context: setup.
 struct RunOptions {
   Policy policy = Policy::kEdf;
   Script script;
   Tap* tap = nullptr;                        ///< null: nothing is recorded
   std::uint8_t rtpu = 0;                     ///< for the records
-  BoundaryListener* guest = nullptr;         ///< null: nobody else takes part in the edges
-  const std::atomic<bool>* stop = nullptr;   ///< looked at before every job; may be set by a signal handler
+  BoundaryListener* guest = nullptr;         ///< null: cycle boundaries have no listener
+  const std::atomic<bool>* stop = nullptr;   ///< checked before every job; may be set by a signal handler
   SwitchPeers* switch_peers = nullptr;       ///< null: switches are asked for by the script, or there are none
-  /// What lists of tasks lead to; null: with `switch_peers` others know, else nobody may ask for lists.
+  /// Target sets of lists of tasks. Null: with `switch_peers` others know them, otherwise no task may ask for lists.
   AskedTasks* asked = nullptr;
-  JobThreads* threads = nullptr;             ///< null: jobs run where the edges do
-  BackgroundThreads* writer = nullptr;        ///< runs what components do beside their cycles; MethodRunner::writer
+  JobThreads* threads = nullptr;             ///< null: jobs run in the thread of the cycle boundaries
+  BackgroundThreads* writer = nullptr;        ///< runs the background of components; MethodRunner::writer
   bool preemptive = false;                   ///< jobs preempt each other, and may go on below all others
 };
 

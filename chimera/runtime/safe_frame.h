@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is to be written to a device when the process that drives it is dead: docs/design/guard.md.
+// The frame that is written to a device when the process that drives it is dead: docs/design/guard.md.
 #pragma once
 
 #include <atomic>
@@ -43,12 +43,12 @@ class SafeFrame {
   std::byte buffers_[2][kSafeBytes];
 };
 
-/// The safe frames of a context: where their bytes stand, and who keeps the descriptors that they go to.
+/// The safe frames of a context: their bytes, and the keeper of the descriptors that they go to.
 class SafeFrames {
  public:
-  /// Those of a task of the context. Context: any; wait-free.
+  /// The frames of a task of the context. Context: any; wait-free.
   virtual std::span<SafeFrame, kSafeFrames> of(TaskId task) noexcept = 0;
-  /// Hands on a copy of `descriptor` (below 0: the frame is given up). False when nobody takes it. Requires: index <
+  /// Hands on a copy of `descriptor` (below 0: the frame is given up). False if no process takes it. Requires: index <
   /// kSafeFrames. Context: setup; may block.
   virtual bool keep(TaskId task, std::uint32_t index, int descriptor, Nanoseconds pause) noexcept = 0;
 

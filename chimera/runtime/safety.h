@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a safety port refuses: NaN, infinity, or a value outside its declared range.
+// Values that a safety port refuses: NaN, infinity, or a value outside its declared range.
 #pragma once
 
 #include "chimera/task/task.h"

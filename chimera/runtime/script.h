@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an operator would do, written down with times: signals, the illegal-configuration flag, values of operator
-// variables, switches of configurations. Tests and `run` hand one to an executor, which acts at the first cycle edge at
-// or after each time.
+// Actions of an operator, written down with times: signals, the illegal-configuration flag, values of operator
+// variables, switches of configurations. Tests and `run` hand one to an executor, which acts at the first cycle
+// boundary at or after each time.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@ struct ScriptAct {
   const TaskLists* lists = nullptr;       ///< kSwitch only: in place of `set`
   RtpuId rtpu = {};                       ///< kDie only, which no single context can carry out: virtual/virtual_rtpus.h
 
-  /// Of kSwitch. Context: any; wait-free.
+  /// The request of a kSwitch act. Context: any; wait-free.
   SwitchRequest request() const noexcept {
     return {set, SwitchCause::kScript, {}, lists != nullptr ? *lists : TaskLists()};
   }

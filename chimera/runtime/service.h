@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who runs init and kill: methods that may take long and may block, so they never run on the thread that cycles.
+// The thread that runs init and kill: these may take long and may block, so they never run on the thread that cycles.
 #pragma once
 
 #include "chimera/base/ids.h"
@@ -7,7 +7,7 @@
 namespace chimera {
 
 /// A thread of ordinary priority beside the context. It calls SlowMethods::run(task); then the context's thread
-/// calls TaskLife::finish_slow(task) at an edge.
+/// calls TaskLife::finish_slow(task) at a cycle boundary.
 class Service {
  public:
   /// Takes over the task until it is served. Context: cycle boundary; wait-free.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deals with what jobs left for others to see.
+// Handles the results of jobs that others must see.
 #include "chimera/runtime/settlement.h"
 
 #include <utility>
@@ -15,7 +15,7 @@ void Settlement::settle_job(TaskId id, Nanoseconds now) noexcept {
 void Settlement::settle_at_once(TaskId id, Nanoseconds now) noexcept {
   std::uint8_t left = parts_.records[id.index].left.fetch_and(JobRecord::kSettle, std::memory_order_relaxed);
   const Task& task = parts_.set.tasks()[id.index];
-  if (task.is_unread) left &= JobRecord::kFindCause;  // nobody waits for what it does
+  if (task.is_unread) left &= JobRecord::kFindCause;  // no task reads its outputs
   const TaskSpec& spec = *task.spec;
   if (left & JobRecord::kRaiseFlag) raise_flag(id, State::kOn, now);
   if (left & JobRecord::kStop) stop(id);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What jobs left for others to see, dealt with between jobs: faults and notes, signals sent, the flag, the reactions
-// stop and switch, a state that is ON no more, causes of missed deadlines.
+// Handles the results of jobs that others must see, between jobs: faults and notes, signals sent, the flag, the
+// reactions stop and switch, a state that is no longer ON, causes of missed deadlines.
 #pragma once
 
 #include <span>
@@ -14,10 +14,10 @@
 
 namespace chimera {
 
-/// Context of everything: edge; no allocation. By the thread that takes the edges.
+/// Context of everything: cycle boundary; no allocation. By the thread that handles cycle boundaries.
 class Settlement {
  public:
-  /// What a settlement works on; all of it outlives the settlement. `cause` and `guest`: both or neither.
+  /// The parts of a settlement; all of them outlive it. The cause and the listener: both or neither.
   struct Parts {
     TaskSet& set;
     std::span<JobRecord> records;
@@ -32,9 +32,9 @@ class Settlement {
   bool is_unsettled(TaskId task) const noexcept {
     return parts_.records[task.index].left.load(std::memory_order_relaxed) != 0;
   }
-  /// Everything that jobs of the task left. Requires: none is under way.
+  /// Handles everything that jobs of the task left. Requires: no job is under way.
   void settle_job(TaskId task, Nanoseconds now) noexcept;
-  /// Only what does not wait for the end of a job: the flag, stop, the cause of a missed deadline.
+  /// Handles only work that does not wait for the end of a job: the flag, stop, the cause of a missed deadline.
   void settle_at_once(TaskId task, Nanoseconds now) noexcept;
   /// settle_at_once() at `now` reports a missed deadline of the task with its cause. Wait-free.
   bool has_unreported_miss(TaskId task, Nanoseconds now) const noexcept {
@@ -51,7 +51,7 @@ class Settlement {
   /// One of the reactions error, flag, stop and switch of on_fault.
   void react_to_fault(Task& task, OnFault reaction, Nanoseconds now) noexcept;
 
-  /// Has what changed published, if anything did.
+  /// Publishes the changes, if there are any.
   void publish() noexcept;
 
   bool task_stopped() const noexcept { return task_stopped_; }

@@ -77,7 +77,7 @@ bool SignalJudge::would_be_legal(std::span<const TaskId> tasks) noexcept {
   set_.standbys().add_covered(wanted_, tasks);
   for (TaskId id : tasks) wanted_[id.index] = true;
   if (is_legal_set(set_.spec().variables, wanted_)) return true;
-  // What a standby reads may have failed with its primary: the last values stand, and the flag is up for that.
+  // The producers of a standby's inputs may have failed with its primary: the last values stand, and the flag is up.
   const Standbys& standbys = set_.standbys();
   const std::size_t group = tasks.size() == 1 ? standbys.group_of(tasks[0]) : standbys.n_groups();
   if (group == standbys.n_groups() || standbys.next(group) != tasks[0]) return false;

@@ -10,8 +10,8 @@
 
 namespace chimera {
 
-/// `safe_after` of one task, or the `stale_after` of a standby of it. A look that comes more than half a period late
-/// counts for nothing: whoever looks was held up, so the task may have been. Context: any; wait-free.
+/// `safe_after` of one task, or the `stale_after` of a standby of it. A check that comes more than half a period late
+/// counts for nothing: the checking thread was delayed, so the task may have been, too. Context: any; wait-free.
 class Silence {
  public:
   Silence(TaskId task, Nanoseconds period, std::uint32_t most) noexcept : task_(task), period_(period), most_(most) {}
@@ -26,11 +26,11 @@ class Silence {
   }
 
   TaskId task() const noexcept { return task_; }
-  /// Invalid: it is counted for the sake of devices.
+  /// The standby that takes over; invalid: the count protects devices.
   TaskId standby() const noexcept { return standby_; }
   Nanoseconds due() const noexcept { return due_; }
-  /// What its unit shows at `now`: whether the task is ON, and how often it has published. True when it has been silent
-  /// for too long; then the count begins anew.
+  /// `is_on` and `published` are the state and the count of publications that its rtpu shows at `now`. True if the task
+  /// has been silent for too long; then the count begins anew.
   bool look(bool is_on, std::uint64_t published, Nanoseconds now) noexcept {
     const bool is_late = now - due_ > Nanoseconds{period_.count / 2};
     due_ = is_late ? now + period_ : due_ + period_;

@@ -12,33 +12,33 @@
 
 namespace chimera {
 
-/// One thing at a time for each task: asked for at an edge, run by the service thread, finished at an edge. The queues
-/// of the service thread order what both threads touch.
+/// One request at a time for each task. A cycle boundary asks, the service thread runs, a cycle boundary finishes. The
+/// queues of the service thread order the data that both threads touch.
 class SlowMethods {
  public:
-  /// What came of it.
+  /// Result of a construction or a method.
   struct Outcome {
     bool is_construction = false;  ///< else a method
     Answer answer = Answer::kOk;
     Nanoseconds used;              ///< by the method
   };
 
-  /// `service` null: there is no such thread. `serving` is told which task and method it runs, as BlockHead::serving;
-  /// `hosts[t]` is what task t asks of the framework. Everything given outlives this. Context: setup.
+  /// `service` null: there is no such thread. `serving` shows which task and method it runs, as BlockHead::serving.
+  /// `hosts[t]` is the interface of task t to the framework. All arguments outlive this. Context: setup.
   void prepare(std::span<Task> tasks, std::span<TaskHost> hosts, TaskMethods& methods, Service* service,
                std::atomic<std::uint32_t>& serving, SetupMemory& memory);
 
   /// True when there is a service thread.
   bool is_there() const noexcept { return service_ != nullptr; }
-  /// True when the method is run by the service thread.
+  /// True if the service thread runs the method.
   bool takes(Method method) const noexcept {
     return service_ != nullptr && (method == Method::kInit || method == Method::kKill);
   }
-  /// Hands the task over; nobody else touches it before finish(). A task that is being killed is ON no more, whatever
-  /// its kill does. Context: cycle boundary; wait-free.
+  /// Hands the task over; no other thread touches it before finish(). A task that is being killed is no longer ON,
+  /// whatever its kill does. Context: cycle boundary; wait-free.
   void ask_construction(Task& task) noexcept { ask(task, {true, Method::kInit, {}}); }
   void ask(Task& task, Method method) noexcept { ask(task, {false, method, {}}); }
-  /// Runs what was asked for with the task. Context: the service thread; may block.
+  /// Runs the request for the task. Context: the service thread; may block.
   void run(TaskId task, JobClock& clock);
   /// The task is back. Requires: run() is over. Context: cycle boundary; wait-free.
   Outcome finish(Task& task) noexcept;

@@ -99,7 +99,7 @@ void SourceCopies::plan(TaskId consumer, const Source& source, SetupMemory& memo
   for (std::uint32_t half = 0; half < 2; ++half) fill(source, copies_.back().group.values_of_half(half));
 }
 
-// What stands in a copy before its producer was ever seen.
+// Fills a copy with the values that it has before its producer was ever seen.
 void SourceCopies::fill(const Source& source, std::span<std::byte> values) const noexcept {
   if (!source.task.is_valid()) return;
   const auto places = table_->everything().variables(table_->everything().outputs(source.task, 0));

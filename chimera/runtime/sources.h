@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the value of every state variable comes from at present, and the inputs that follow it. Producers of the same
-// context are read in place; all others (another context, the operator) through the register into local copies, one for
-// each pair of a task and a group, so that variables of one group are always of one publication. Where tasks preempt
-// each other each of them is a context of its own.
+// The present source of every state variable, and the inputs that follow it. Producers of the same context are read in
+// place. All others (another context, the operator) are read through the register into local copies, one for each pair
+// of a task and a group, so that variables of one group are always of one publication. Where tasks preempt each other,
+// each task counts as a context of its own.
 //
-// A task whose job is under way keeps what it reads from; it follows with adopt() before its next one.
+// A task whose job is under way keeps its sources; it follows with adopt() before its next job.
 //
-// Until a producer goes ON its consumers look at the initial values, or the never-written fill, of the first one.
+// Until a producer goes ON its consumers read the initial values, or the never-written fill, of the first producer.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@
 
 namespace chimera {
 
-/// Who produces a variable and where its value stands in the group.
+/// Producer of a variable, and place of the value in its group.
 struct Source {
   TaskId task;                ///< invalid: the operator
   std::size_t operator_index = 0;
@@ -42,7 +42,7 @@ constexpr bool is_same_group(const Source& a, const Source& b) noexcept {
 /// and a group. Context of everything not marked: cycle boundary; no allocation. What prepare() is given outlives this.
 class SourceCopies {
  public:
-  /// As Sources::prepare(). Context: setup.
+  /// Arguments as of Sources::prepare(). Context: setup.
   void prepare(const ApplicationSpec& spec, const ContextTable& table, std::span<Task> tasks,
                std::span<TaskMemory> memories, const PeerView* others, bool preemptive, SetupMemory& memory);
 
@@ -54,14 +54,14 @@ class SourceCopies {
   /// The task has a copy of a group of the producer.
   bool has(TaskId consumer, TaskId producer) const noexcept;
 
-  /// Copies of producers that are ON, and of the operator, follow their present groups. Those of others keep what they
-  /// have: a restarted process shows a group without values before its tasks are ON again.
+  /// Copies of producers that are ON, and of the operator, follow their present groups. Other copies keep their values:
+  /// a restarted process shows a group without values before its tasks are ON again.
   void follow(TaskId consumer) noexcept;
-  /// The copy of that source follows the present group whatever the state of the producer. No effect without a copy.
+  /// The copy of that source follows the present group in any state of the producer. No effect without a copy.
   void follow_now(TaskId consumer, const Source& source) noexcept;
-  /// What was read from groups of the producer (invalid: the operator) is not read any more, and kept.
+  /// Stops reading the groups of the producer (invalid: the operator), and keeps the values read last.
   void let_go(TaskId producer) noexcept;
-  /// The producer has new groups: what was kept of it is not worth keeping.
+  /// The producer has new groups: kept values of it are not worth keeping.
   void forget(TaskId producer) noexcept;
   /// Lists in Task::copies the copies that the task reads.
   void list(TaskId consumer) noexcept;
@@ -98,7 +98,7 @@ inline Source operator_source(const Variable& variable) noexcept {
   return {TaskId(), variable.operator_index, 0, 0, {}};
 }
 
-/// Context of everything not marked: edge; no allocation. Everything given to prepare() outlives it.
+/// Context of everything not marked: cycle boundary; no allocation. Everything given to prepare() outlives it.
 class Sources {
  public:
   /// `memories[t]` is planned for the tasks of this context and empty for those of others; `others` null: there are
@@ -106,36 +106,36 @@ class Sources {
   void prepare(const ApplicationSpec& spec, const ContextTable& table, std::span<Task> tasks,
                std::span<TaskMemory> memories, const PeerView* others, bool preemptive, SetupMemory& memory);
 
-  /// The task, of this context, went ON: whoever reads its variables reads them from its group now.
+  /// The task, of this context, went ON: readers of its variables now read them from its group.
   void take_outputs_of(const Task& task) noexcept;
   /// Inputs of the task, which is OFF, read the new producers of the handovers that are among `armed`. All others read
   /// the present producers: a producer that is not armed yet has not written a value for this switch.
   void read_ahead(TaskId consumer, std::span<const Handover> handovers, std::span<const TaskId> armed) noexcept;
-  /// From now on the variables of `handovers`, which outlive this, come from where they come from now, whatever the
-  /// states of tasks elsewhere say; from hand_over() on from where the handovers say. That ends with end_handover().
+  /// Freezes the sources of `handovers`, which outlive this: they stay as they are now, whatever the states of tasks
+  /// elsewhere say. From hand_over() on they are those of the handovers. end_handover() ends that.
   void begin_handover(std::span<const Handover> handovers) noexcept { handed_over_ = handovers; }
-  /// The instant of the change. A task t with has_old_job[t] keeps what it reads from until old_job_ended().
+  /// The instant of the change. A task t with has_old_job[t] keeps its sources until old_job_ended().
   void hand_over(std::span<const bool> has_old_job) noexcept;
   void old_job_ended(TaskId consumer) noexcept;
   void end_handover() noexcept;
-  /// Something changed elsewhere: follows producers that went ON or were replaced.
+  /// The state of another context changed: follows producers that went ON or were replaced.
   void follow_others() noexcept;
-  /// From now on nothing is read from the groups of that task (invalid: the operator): their memory may go. What was
-  /// read last stays, until follow_others() finds it produced again.
+  /// From now on nothing is read from the groups of that task (invalid: the operator), so their memory may be unmapped.
+  /// The values read last stay, until follow_others() finds a producer again.
   void let_go(TaskId producer) noexcept;
-  /// The task reads from where its variables come from now; one with an old job (hand_over()) does not yet. Requires:
-  /// no job of it has begun. Wait-free.
+  /// The task reads from the present sources of its variables, unless it has an old job (hand_over()). Requires: no job
+  /// of it has begun. Wait-free.
   void adopt(TaskId consumer) noexcept;
-  /// It does not yet.
+  /// True if the task has not followed its sources yet.
   bool is_behind(TaskId consumer) const noexcept { return is_behind_[consumer.index]; }
-  /// Some task may still read what was let go.
+  /// True if some task may still read from a group that was let go.
   bool is_any_behind() const noexcept;
 
   const Source& source(VariableId variable) const noexcept { return sources_[variable.index]; }
   /// The latest slot of the group that the variable comes from: in place, or copied into memory of this object that is
-  /// good until the next call. Null when there is none yet.
+  /// good until the next call. Null if there is none yet.
   const chimera_slot* latest(VariableId variable) noexcept;
-  /// True when publication `sequence` of that group holds initial values: no method of its task has made it.
+  /// True if publication `sequence` of that group holds initial values: no method of its task has made it.
   bool is_initial(VariableId variable, std::uint64_t sequence) const noexcept;
   /// The present value. Requires: the variable is produced, or held, in this context.
   VariableView view(VariableId variable) const noexcept;

@@ -21,7 +21,7 @@ namespace chimera {
 /// Sporadic or deferrable, as the server is. Context: cycle; wait-free; no allocation. One thread at a time.
 class SporadicJob {
  public:
-  /// What the server says of the job from now on.
+  /// The server's decision about the job from now on.
   struct Grant {
     bool may_run = false;               ///< there is capacity
     bool has_another_deadline = false;  ///< than at the last grant: the job belongs elsewhere among the ready ones
@@ -43,16 +43,16 @@ class SporadicJob {
   bool has_event() const noexcept { return has_event_; }
   /// When the present event was accepted: the release of its job.
   Nanoseconds release() const noexcept { return release_; }
-  /// Of the server at the last grant: how urgent the job is.
+  /// Deadline of the server at the last grant: the urgency of the job.
   Nanoseconds deadline() const noexcept { return deadline_; }
 
   /// Brings the server up to `now`. Requires: accept() was true.
   Grant grant(Nanoseconds now) noexcept;
-  /// The job used so much of its processor.
+  /// Charges the server with the processor time `used` of the job.
   void charge(Nanoseconds used) noexcept { server_.charge(used); }
   /// How long the job may run from `now` on. Requires: grant(now), or nothing changed by itself since then.
   Nanoseconds allowance(Nanoseconds now) const noexcept { return server_.allowance(now); }
-  /// When another grant may come out differently though nothing is charged; kNever: not by itself.
+  /// When another grant may differ though nothing is charged; kNever: not by itself.
   Nanoseconds next_change(Nanoseconds now) const noexcept { return server_.next_change(now); }
 
  private:

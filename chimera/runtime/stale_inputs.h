@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The age of what one task reads, judged before each of its cycles: an input older than `stale_after` is not valid for
-// it. Stands in the place of the component's cycle, so that jobs of other tasks pay nothing for it.
+// The age of the inputs of one task, judged before each of its cycles: an input older than `stale_after` is not valid
+// for it. Replaces the component's cycle, so that jobs of other tasks pay nothing for it.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,12 @@ namespace chimera {
 
 class StaleInputs {
  public:
-  /// Of the task with that memory. What the operator produces holds until it is set: it is never too old.
-  /// Context: setup.
+  /// Makes the judge for the task with that memory. Values of the operator hold until the next one: they are never too
+  /// old. Context: setup.
   static StaleInputs& make(Nanoseconds after, TaskMemory& task, std::span<const Variable> variables,
                            SetupMemory& memory);
-  /// From now on the task's cycles are judged, if it has a StaleInputs (TaskHost::stale) and a cycle. Context: edge.
+  /// From now on the task's cycles are judged, if it has a StaleInputs (TaskHost::stale) and a cycle. Context: cycle
+  /// boundary.
   static void judge_cycles_of(Task& task) noexcept;
 
  private:

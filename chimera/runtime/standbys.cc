@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Follows who is ON in each group of a primary and its standbys, and who takes over.
+// Follows the task that is ON in each group of a primary and its standbys, and the task that takes over.
 #include "chimera/runtime/standbys.h"
 
 #include <algorithm>
@@ -53,7 +53,7 @@ void Standbys::follow(Group& group, Nanoseconds now) noexcept {
   const bool is_in_error = state(group.on) == State::kError;
   if (!group.is_lost && is_in_error) lose(group, now);
   if (group.is_lost) group.is_waiting = group.is_waiting && next(group).is_valid();
-  // Turned OFF, or cleared when nobody was to take over any more.
+  // Turned OFF, or cleared when no task could take over any more.
   if (!is_in_error && !group.is_waiting) {
     group.on = TaskId();
     group.is_lost = false;

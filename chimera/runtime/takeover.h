@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What became of one takeover: a task was to go ON in place of one that failed, without anybody being asked. Plain data
-// in memory that outlives its context; whoever files receipts makes one of it. docs/formats/receipt.md.
+// Record of one takeover: a task was to go ON in place of one that failed, without a request. Plain data in memory that
+// outlives its context; the filer of receipts makes a receipt of it. docs/formats/receipt.md.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace chimera {
 struct Takeover {
   static constexpr std::uint32_t kVariablesKept = 16, kSaid = 160;
 
-  std::uint32_t number = 0;        ///< of those of its context, from 1 in the order in which they were told of
+  std::uint32_t number = 0;        ///< among those of its context, from 1 in the order of their first reports
   std::uint32_t set = kNoSet;      ///< that was in force, in ApplicationSpec::sets, with standbys for their primaries
   TaskId from;                     ///< the task that failed
   bool was_death = false;          ///< its process died; else it is in ERROR
@@ -28,13 +28,13 @@ struct Takeover {
   Nanoseconds lost = kNever;       ///< its loss was found
   Nanoseconds at = kNever;         ///< the standby was ON
   Nanoseconds ended = kNever;      ///< its first cycle was seen, or none came; or it could not go ON
-  Nanoseconds flag;                ///< so long nobody stood in for the loss: the flag was up
+  Nanoseconds flag;                ///< how long no task stood in for the loss: the flag was up
   TaskPart standby;
   std::uint32_t n_variables = 0;   ///< handed over; only kVariablesKept of them are kept
   std::array<VariablePart, kVariablesKept> variables;
 };
 
-/// As a receipt, in its lists, which hold as much: TaskParts for two tasks. Context: any; wait-free.
+/// Writes the takeover as a receipt, whose lists have room for two tasks and all variables. Context: any; wait-free.
 inline void write_receipt(const Takeover& takeover, SwitchReceipt& receipt) noexcept {
   receipt.before = receipt.after = takeover.set;
   receipt.cause = SwitchCause::kStandby;
@@ -59,7 +59,7 @@ inline void write_receipt(const Takeover& takeover, SwitchReceipt& receipt) noex
   std::copy_n(takeover.variables.begin(), receipt.variables.size(), receipt.variables.begin());
 }
 
-/// Keeps a receipt of a takeover that is over, if there is room. Context: edge; wait-free.
+/// Keeps a receipt of a takeover that is over, if there is room. Context: cycle boundary; wait-free.
 inline void keep_receipt(const Takeover& takeover, SwitchReceipts& receipts) noexcept {
   if (takeover.ended == kNever) return;
   const std::uint32_t number = receipts.next_number();
@@ -69,18 +69,18 @@ inline void keep_receipt(const Takeover& takeover, SwitchReceipts& receipts) noe
   write_receipt(takeover, receipt);
 }
 
-/// The last takeovers of one context. One writer; a reader is told when a place was written anew while it read.
+/// The last takeovers of one context. One writer. A reader detects that a place was written anew while it read.
 class TakeoverRing {
  public:
   static constexpr std::uint32_t kKept = 16;
 
-  /// Takeover `number` is the next one, or one before it that is told anew: of no effect when that is kept no more.
-  /// Context: edge; wait-free.
+  /// Takeover `number` is the next one, or an earlier one that is reported anew. No effect if it is no longer kept.
+  /// Context: cycle boundary; wait-free.
   void put(const Takeover& takeover) noexcept {
     if (takeover.number < oldest()) return;
     Place& place = places_[takeover.number % kPlaces];
     place.over.store(0, std::memory_order_relaxed);
-    // SYNC: pairs with the fence in read(): whoever copies a byte of this takeover sees that none is over here.
+    // SYNC: pairs with the fence in read(): a reader that copies a byte of this takeover sees that none is over here.
     shared_copy::release_fence();
     place.takeover = takeover;
     const bool is_over = takeover.ended != kNever;
@@ -89,13 +89,13 @@ class TakeoverRing {
     const bool is_new = takeover.number > last_.load(std::memory_order_relaxed);
     if (is_new) last_.store(takeover.number, std::memory_order_release);
   }
-  /// The lowest number that is kept; those from there on can be read. Context: setup.
+  /// The lowest number that is kept; takeovers from there on can be read. Context: setup.
   std::uint32_t oldest() const noexcept {
     const std::uint32_t last = last_.load(std::memory_order_acquire);
     return last <= kKept ? 1 : last - kKept + 1;
   }
-  /// False: it has not begun, or is not over and its context lives, or another one was put in its place meanwhile.
-  /// Context: setup.
+  /// False: the takeover has not begun, or is not over and its context lives, or another one replaced it during the
+  /// read. Context: setup.
   bool read(std::uint32_t number, bool is_alive, Takeover& to) const noexcept {
     if (number < oldest() || number > last_.load(std::memory_order_acquire)) return false;
     const Place& place = places_[number % kPlaces];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures takeovers by standbys of its own context, and tells of them.
+// Measures takeovers by standbys of its own context, and reports them.
 #include "chimera/runtime/takeover_record.h"
 
 #include <algorithm>

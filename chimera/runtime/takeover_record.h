@@ -12,27 +12,27 @@
 
 namespace chimera {
 
-/// Of standbys of its own context, one for each group at a time. Context of everything not marked: edge; no
-/// allocation.
+/// Records takeovers by standbys of its own context, one for each group at a time. Context of everything not marked:
+/// cycle boundary; no allocation.
 class TakeoverRecord {
  public:
-  /// All of it outlives this.
+  /// The set and the threads outlive this.
   TakeoverRecord(TaskSet& set, JobThreads& threads) noexcept : set_(set), threads_(threads), steps_(set) {}
-  /// Tells the peers, which outlive this; null: nothing is told. Context: setup.
+  /// Sets the peers that get the records, which outlive this; null: none gets any. Context: setup.
   void prepare(SwitchPeers* peers);
 
-  /// The standby is about to go ON in place of the one that failed in its group: what that one published last is kept.
-  /// Of no effect while the record of the two is open.
+  /// The standby is about to go ON in place of the task that failed in its group. The last values of that task are
+  /// kept. No effect while the record of the two is open.
   void begin(std::size_t group, TaskId standby) noexcept;
-  /// Its `on` took so long.
+  /// Sets the execution time of its `on`.
   void took(std::size_t group, Nanoseconds time) noexcept { open_[group].takeover.standby.on = time; }
-  /// It is ON: its first cycle is waited for.
+  /// The standby is ON. The record waits for its first cycle.
   void done(std::size_t group, Nanoseconds now) noexcept;
-  /// It cannot go ON.
+  /// The standby cannot go ON.
   void failed(std::size_t group, NoSwitch why, Nanoseconds now) noexcept;
-  /// Tells of those whose first cycle was seen, or has not come in time. With `is_last`: of all.
+  /// Reports each takeover whose first cycle was seen, or has not come in time. With `is_last`: all of them.
   void look(Nanoseconds now, bool is_last) noexcept;
-  /// look() is worth while until then, with the end of each job; kNever: nothing is waited for. Wait-free.
+  /// Call look() until this instant at the end of each job; kNever: no record waits. Wait-free.
   Nanoseconds due() const noexcept { return due_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the runtime tells about itself while it runs: fixed-size records in a bounded ring.
+// Trace of the runtime: fixed-size records in a bounded ring.
 // Traces, timelines, logs and the scope read these and nothing else.
 #pragma once
 
@@ -22,12 +22,12 @@ enum class TapKind : std::uint8_t {
   kFault,    ///< a = method
   kState,    ///< a = new state
   kFlag,     ///< a = 1 raised, 0 lowered
-  kGroup,    ///< a row begins: what `task` published at `at`; a = words that follow, b = sequence of the publication
+  kGroup,    ///< a row begins: publication of `task` at `at`; a = words that follow, b = sequence of the publication
   kValue,    ///< a word of the row; a = its place from 0, b = 8 bytes of the payload as they lie in memory
   kOverrun,  ///< a job was seen to have used more than its budget, mostly while it ran; b = ns used
   kHang,     ///< a job does not end by itself; b = ns used
 };
-/// Their words in traces and in the control protocol. Rows are told in a form of their own there.
+/// Their words in traces and in the control protocol. Rows have a format of their own there.
 inline constexpr std::array kTapKinds = {"release", "run",   "preempt", "miss",  "drop",    "signal", "fault",
                                          "state",   "flag",  "group",   "value", "overrun", "hang"};
 static_assert(kTapKinds.size() == static_cast<std::size_t>(TapKind::kHang) + 1);

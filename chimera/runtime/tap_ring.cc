@@ -16,7 +16,7 @@ namespace {
 
 static_assert(std::is_trivially_copyable_v<TapRecord> && (kTapRecords & (kTapRecords - 1)) == 0);
 
-constexpr std::uint64_t kWhole = kTapRecords - 2;  // so many behind the head are never being overwritten
+constexpr std::uint64_t kWhole = kTapRecords - 2;  // this many records behind the head are never being overwritten
 constexpr int kTries = 4;
 
 const std::byte* place(const TapRing& ring, std::uint64_t number) noexcept {
@@ -40,7 +40,7 @@ constexpr std::uint64_t oldest(std::uint64_t head) noexcept { return head > kWho
 
 // Word by word in both builds: four moves out of registers, where a copy would be a call.
 inline void Tap::append(std::uint64_t at, std::uint64_t b, std::uint64_t a_and_task, std::uint64_t rest) noexcept {
-  // SYNC: pairs with the fence in read(): whoever copies a byte of this record sees the head of before it.
+  // SYNC: pairs with the fence in read(): a reader that copies a byte of this record sees the head of before it.
   shared_copy::release_fence();
   std::byte* to = reinterpret_cast<std::byte*>(&ring_->records[head_ % kTapRecords]);
   shared_copy::word(to).store(at, kStore);
@@ -87,7 +87,7 @@ std::size_t TapReader::read(std::span<TapRecord> out) noexcept {
     shared_copy::acquire_fence();
     head = ring_->head.load(std::memory_order_acquire);
     const std::uint64_t end = begin + n;
-    const std::uint64_t valid = std::clamp(oldest(head), begin, end);  // before it: perhaps overwritten meanwhile
+    const std::uint64_t valid = std::clamp(oldest(head), begin, end);  // records before it may be overwritten
     lost_ += valid - next_;
     next_ = end;
     std::copy(out.begin() + static_cast<std::ptrdiff_t>(valid - begin), out.begin() + static_cast<std::ptrdiff_t>(n),

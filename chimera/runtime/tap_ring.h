@@ -30,7 +30,7 @@ class Tap {
  public:
   explicit Tap(TapRing& ring) noexcept : ring_(&ring), head_(ring.head.load(std::memory_order_relaxed)) {}
   void append(const TapRecord& record) noexcept;
-  /// What `task` published, as one kGroup and a kValue for each 8 bytes: row number `row` of the task. The payload
+  /// A publication of `task`, as one kGroup and a kValue for each 8 bytes: row number `row` of the task. The payload
   /// follows `slot`. O(payload). Requires: payload_bytes a multiple of 8.
   void append_row(const chimera_slot& slot, std::uint32_t payload_bytes, TaskId task, std::uint8_t rtpu,
                   std::uint32_t row) noexcept;
@@ -48,8 +48,8 @@ class TapReader {
   TapReader() noexcept = default;
   /// Begins with the next record (or with the oldest still there). Context: setup.
   explicit TapReader(const TapRing& ring, bool from_oldest = false) noexcept;
-  /// Moves up to out.size() records to `out`; returns how many. What was overwritten before it could be read is
-  /// added to lost(). Context: any; wait-free but for O(out).
+  /// Moves up to out.size() records to `out`; returns how many. Records that were overwritten before they could be read
+  /// are added to lost(). Context: any; wait-free but for O(out).
   std::size_t read(std::span<TapRecord> out) noexcept;
   std::uint64_t lost() const noexcept { return lost_; }
   /// Number of the next record to be read, from 0 at the start of the ring.

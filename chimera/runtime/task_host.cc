@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers what a component asks while one of its methods runs.
+// Answers the calls of a component to the framework while one of its methods runs.
 #include "chimera/runtime/task_host.h"
 
 #include <cstring>

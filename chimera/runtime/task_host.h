@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a component may ask of the framework while one of its methods runs: chimera_host of chimera/task/abi.h.
+// Services of the framework for a component while one of its methods runs: chimera_host of chimera/task/abi.h.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@ namespace chimera {
 class TaskSet;
 class StaleInputs;
 
-/// Of one task; chimera_call::context points at it.
+/// Data of one task; chimera_call::context points at it.
 struct TaskHost {
   TaskSet* set = nullptr;
   Task* task = nullptr;
   JobClock* clock = nullptr;  ///< of the thread that runs the method; null: that of the context
-  StaleInputs* stale = nullptr;  ///< judges the age of its inputs; null: nobody does
+  StaleInputs* stale = nullptr;  ///< judges the age of its inputs; null: their age is not judged
 
   /// The functions behind chimera_call::host.
   static const chimera_host kCalls;

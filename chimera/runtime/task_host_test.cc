@@ -45,7 +45,7 @@ struct TaskHostTest : ::testing::Test {
   void* context() { return task().call.context; }
   std::int32_t send(std::uint32_t signal, const char* name) { return host().signal(context(), signal, name); }
   static std::string_view view(chimera_text text) { return {text.at, text.size}; }
-  /// Of port number `index` of the asking task.
+  /// The port number `index` of the asking task.
   const chimera_port* port(std::size_t index) {
     const std::uint32_t at = task().component->ports[index].live_offset;
     return reinterpret_cast<const chimera_port*>(static_cast<const std::byte*>(task().instance) + at);

@@ -169,7 +169,7 @@ SignalReport TaskLife::warm_up(TaskId id, Nanoseconds now) {
   return report;
 }
 
-// Whoever reads its variables reads them from its group now.
+// Readers of the task's variables now read them from its group.
 SignalReport TaskLife::show(Task& task) {
   task.is_unread = false;
   set_.sources().take_outputs_of(task);
@@ -276,7 +276,7 @@ Answer TaskLife::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
     }
     progress_[task.id.index].has_new_constants = set_.constants().has_new();
   }
-  // What clear leaves as it was, was published when it was made: it stays as old as it is.
+  // Outputs that clear did not change keep the age of their publication.
   if (step.step == Step::kClear && !has_changed_outputs(task)) return Answer::kOk;
   if (step.after_ok & kWriteOut) {
     const bool turns_on = step.step == Step::kOn;

@@ -16,7 +16,7 @@ namespace chimera {
 
 class TaskSet;
 
-/// What became of a signal. Plain data: no text is made on the cycle path; explain() makes it.
+/// Result of a signal. Plain data: no text is made on the cycle path; explain() makes it.
 struct SignalReport {
   bool is_accepted = false;
   bool is_deferred = false;  ///< the service thread has it: the rest comes from TaskLife::finish_slow()
@@ -29,7 +29,7 @@ struct SignalReport {
   explicit operator bool() const noexcept { return is_accepted; }
 };
 
-/// Acts on the tasks that a TaskSet holds. Context of everything not marked: edge; as long as the methods take.
+/// Acts on the tasks that a TaskSet holds. Context of everything not marked: cycle boundary; as long as methods take.
 class TaskLife {
  public:
   explicit TaskLife(TaskSet& set) noexcept : set_(set), judge_(set) {}
@@ -40,8 +40,8 @@ class TaskLife {
   /// ON as one transaction. Reports the first task that said no; whatever was spawned stays as it is. In words:
   /// refusal_text.h.
   SignalReport start(Nanoseconds now);
-  /// The same, and asks tasks whose `on` answers not yet again, for at most kPatience. `wait` returns the time at about
-  /// the instant that it is given.
+  /// Starts the tasks as start(now) does. If `on` of a task answers "not yet", asks again, for at most kPatience.
+  /// `wait` returns the time at about the instant that it is given.
   template <class Wait>
   SignalReport start(Nanoseconds now, Wait wait) {
     SignalReport report = start(now);
@@ -51,31 +51,31 @@ class TaskLife {
     return report;
   }
   static constexpr Nanoseconds kPatience = seconds(10), kAskAgain = milliseconds(1);
-  /// off (reverse of the start order), then kill, for every task that is there.
+  /// Turns OFF (reverse of the start order), then kills, every task that is created.
   void shut_down(Nanoseconds now);
   /// Carries out one signal and all that follows from it (re-initialisation of users of a changed constant, the
-  /// illegal-configuration flag). Nothing changes when it is refused.
+  /// illegal-configuration flag). A refused signal changes nothing.
   SignalReport signal(TaskId task, Signal signal, Nanoseconds now) { return this->signal({&task, 1}, signal, now); }
-  /// Turns tasks ON (or OFF) as one transaction: refused as a whole when the set would be illegal. Where `on` of one
-  /// answers not yet, those before it are ON, those behind it were not asked: to be asked again for the rest.
+  /// Turns tasks ON (or OFF) as one transaction: refused as a whole if the set would be illegal. If `on` of one task
+  /// answers "not yet", the tasks before it are ON and those behind it were not asked: ask again for the rest.
   SignalReport signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now);
-  /// Goes on with the signal of which the service thread has run a method; deferred again while there is more.
+  /// Goes on with a signal after the service thread ran a method for it. Deferred again while more methods are left.
   SignalReport finish_slow(TaskId task, Nanoseconds now);
-  /// A step of a slow switch: the signal, whatever the tasks that are ON then come to, and without what else follows
-  /// from it: nobody is re-initialised, which is another step.
+  /// A step of a slow switch: carries out the signal even if the ON tasks are then no legal set. Re-initialises no
+  /// users of constants, because that is another step.
   SignalReport move(TaskId task, Signal signal, Nanoseconds now);
-  /// Runs `on` of a task that is OFF, beside whoever produces its variables: it takes over what stands, publishes into
-  /// its own group, and stays OFF. When that went well it owes `off`; what it sent is not delivered. Nobody reads from
-  /// the task yet, but for readers of a variable that nobody else ever produced.
+  /// Runs `on` of a task that is OFF, beside the task that produces its variables. The armed task takes over the
+  /// present values, publishes into its own group, and stays OFF. After success it owes `off`; what it sent is not
+  /// delivered. No task reads from it yet, except readers of a variable that no other task ever produced.
   SignalReport arm(TaskId task, Nanoseconds now);
-  /// Runs `on` of a hot standby, which is OFF, beside the task that is ON: it takes over what stands, publishes into
-  /// its own group, and cycles from now on without being read. `on` as a signal then only lets it be read; any other
-  /// signal has `off` run first. What it sent is not delivered.
+  /// Runs `on` of a hot standby, which is OFF, beside the task that is ON. The standby takes over the present values,
+  /// publishes into its own group, and cycles from now on without readers. The signal `on` later only connects readers;
+  /// any other signal runs `off` first. What it sent is not delivered.
   SignalReport warm_up(TaskId task, Nanoseconds now);
-  /// Runs the `off` that a task owes. Requires: it does. Any other signal to the task has that done first.
+  /// Runs the `off` that a task owes. Requires: it owes one. Any other signal to the task does this first.
   SignalReport settle_off(TaskId task, Nanoseconds now);
 
-  /// Whether signals may be carried out.
+  /// Decides whether signals may be carried out.
   SignalJudge& judge() noexcept { return judge_; }
 
  private:

@@ -20,8 +20,8 @@ struct ConstantPort {
   std::byte* local = nullptr;
 };
 
-/// Knows what a Task points at, all of it taken from given memory. Copyable before construct(). Context: setup and
-/// edge.
+/// Manages the data that a Task points at, all of it taken from given memory. Copyable before construct(). Context:
+/// setup and cycle boundary.
 class TaskMemory {
  public:
   /// Plans the memory for `spec`. Refuses a specification that does not fit the component's declaration
@@ -38,7 +38,7 @@ class TaskMemory {
   /// Leaves task.group published with the initial values (never-written fill where there are none).
   Result<void> construct(Task& task, Nanoseconds now);
   void destroy(Task& task) noexcept;
-  /// As destroy, but the state is left as it is for ever: somebody may still be in it.
+  /// As destroy, but never frees the state: a call of the background that hangs may still use it.
   void abandon(Task& task);
 
   /// Copies constants in; false with `why` when one has no value. Sets extents that constants fix.
@@ -47,29 +47,29 @@ class TaskMemory {
   int write_constants(ConstantStore& store, TaskId task) noexcept;
   /// Fixes the extents of all ports from known constants; false with `why` when one is out of range.
   bool fix_extents(const ConstantStore& store, FixedString<160>& why) noexcept;
-  /// Could it be initialised with these constants? As read_constants(), and changes nothing.
+  /// True if the task could be initialised with these constants. As read_constants(), but changes nothing.
   bool would_take(const ConstantStore& store, FixedString<160>& why) const noexcept;
 
   /// The group that consumers may be bound to before the task was ever spawned: the never-written fill.
   GroupReader reader() const noexcept;
-  /// How often it was constructed: outputs go to group incarnation modulo 2.
+  /// Number of constructions: outputs go to group incarnation modulo 2.
   std::uint32_t incarnation() const noexcept { return incarnation_; }
   /// False for the memory of a task of another context.
   bool is_planned() const noexcept { return component_ != nullptr; }
   std::span<Input> inputs() noexcept { return inputs_; }
   std::span<const ConstantPort> constants() const noexcept { return constants_; }
   std::uint64_t initial_valid() const noexcept { return initial_valid_; }
-  /// Where output `i` lies in the payload, what was specified for it, and its live half (nullptr: not constructed).
+  /// Place of output `i` in the payload, its specification, and its live half (nullptr: not constructed).
   std::uint32_t output_offset(std::size_t i) const noexcept { return outputs_[i].offset; }
   const PortSpec& input_spec(std::size_t i) const noexcept { return *input_specs_[i]; }
   const PortSpec* output_spec(std::size_t i) const noexcept { return outputs_[i].spec; }
   const chimera_port* output_port(std::size_t i) const noexcept { return is_constructed_ ? outputs_[i].port : nullptr; }
-  /// What was specified for the port with this live half; nullptr: there is none. Context: any; wait-free; O(ports).
+  /// The specification of the port with this live half; nullptr: there is none. Context: any; wait-free; O(ports).
   const PortSpec* spec_of(const chimera_port* port) const noexcept;
-  /// True when a constant that the component was initialised with, or that is an extent of a port, has another value
-  /// by now. Requires: it was constructed.
+  /// True if a constant that the component was initialised with, or that is an extent of a port, has another value now.
+  /// Requires: the component was constructed.
   bool uses_changed(const ConstantStore& store) const noexcept;
-  /// True when the staged value of output `i` is still the never-written fill.
+  /// True if the staged value of output `i` is still the never-written fill.
   bool is_unwritten(const Task& task, std::size_t i) const noexcept;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls methods of components, and begins and ends what runs beside them.
+// Calls methods of components, and begins and ends their background.
 #include "chimera/runtime/task_methods.h"
 
 #include "chimera/runtime/making.h"

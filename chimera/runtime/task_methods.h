@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls the methods of tasks but their cycles, and begins and ends what components do beside them: construction of a
-// state, background methods, event sources.
+// Calls the methods of tasks except their cycles. Also constructs states, and begins and ends background methods and
+// event sources.
 #pragma once
 
 #include <atomic>
@@ -15,20 +15,20 @@
 
 namespace chimera {
 
-/// By whom the methods of a context are run. What it points at outlives the tasks.
+/// Clock and threads for the methods of a context. All pointers of it outlive the tasks.
 struct MethodRunner {
-  JobClock* clock = nullptr;    ///< what methods see; null: methods are not timed
-  JobThreads* threads = nullptr;  ///< calls methods at edges; null: the caller does
-  /// Whose threads run what components do beside their cycles. Null: that is done before kill alone (and by executors
-  /// of virtual time).
+  JobClock* clock = nullptr;    ///< as methods see it; null: methods are not timed
+  JobThreads* threads = nullptr;  ///< calls methods at cycle boundaries; null: the caller does
+  /// Runs the background of components in its threads. Null: it runs once, before kill (and executors of virtual
+  /// time run it).
   BackgroundThreads* writer = nullptr;
 };
 
-/// Context of everything not marked: edge, or the service thread; as long as the methods of components take.
+/// Context of everything not marked: cycle boundary, or the service thread; as long as the methods of components take.
 class TaskMethods {
  public:
-  /// Words that tell other processes what is under way (TaskWord, making.h): written here, relaxed; pair with nothing,
-  /// whoever reads them has found the process dead or hanging.
+  /// Words that show other processes the present method (TaskWord, making.h). Written here, relaxed; pair with nothing,
+  /// because a process reads them when it has found this one dead or hanging.
   struct Words {
     std::atomic<std::uint32_t>* at_edge = nullptr;
     std::atomic<std::uint32_t>* making = nullptr;
@@ -40,21 +40,21 @@ class TaskMethods {
     words_ = words;
     safe_frames_ = safe_frames;
   }
-  /// By the executor, before anything is signalled. Context: setup.
+  /// Called by the executor, before anything is signalled. Context: setup.
   void run_by(const MethodRunner& runner) noexcept { runner_ = runner; }
   /// Null before run_by().
   JobClock* clock() const noexcept { return runner_.clock; }
 
   /// Makes the state of the component anew. A refusal is recorded as a fault of init.
   Answer construct(Task& task, Nanoseconds now);
-  /// The state is gone.
+  /// Destroys the state.
   void destroy(Task& task) noexcept { memories_[task.id.index].destroy(task); }
-  /// Calls the method at an edge: in sight of other processes, and by JobThreads::call().
+  /// Calls the method at a cycle boundary: in sight of other processes, and by JobThreads::call().
   Answer call_at_edge(Task& task, Method method, Nanoseconds now);
   /// Calls the method in the present thread.
   Answer call(Task& task, Method method, Nanoseconds now);
-  /// Nothing runs beside the task any more. False: it hangs; then the instance must not be touched again, not even by
-  /// kill. May block.
+  /// Ends all activity beside the task. False: it hangs; then the instance must not be touched again, not even by kill.
+  /// May block.
   bool end_background(Task& task, Nanoseconds now);
 
  private:

@@ -46,28 +46,28 @@ class TaskSet {
   SentSignals& sent() noexcept { return sent_; }
   /// The illegal-configuration flag.
   IllegalFlag& flag() noexcept { return flag_; }
-  /// Which task stands in for which, and who is to take over.
+  /// Tasks that stand in for others, and the task that is to take over.
   Standbys& standbys() noexcept { return standbys_; }
   /// How methods are called.
   TaskMethods& methods() noexcept { return methods_; }
-  /// What the service thread runs.
+  /// Methods that the service thread runs.
   SlowMethods& slow() noexcept { return slow_; }
-  /// What other processes are to see, since it was published last. Nothing is listed in a context that is alone.
+  /// Changes since the last publication, to be shown to other processes. A context that is alone lists nothing.
   Changes& changes() noexcept { return changes_; }
   /// Where the values of state variables come from.
   Sources& sources() noexcept { return sources_; }
   /// Where the groups of this context lie.
   ContextTable& table() noexcept { return table_; }
-  /// From those who make them to those who are initialised with them.
+  /// The constants: passed from tasks that make them to tasks that are initialised with them.
   ContextConstants& constants() noexcept { return constants_; }
 
-  /// From now on the flag is judged as if the tasks in `target` were ON and no others, but for those in ERROR or not
-  /// there: while a switch changes the states of tasks over all contexts they are a mixture. Null: by the states again.
+  /// From now on the flag is judged as if exactly the tasks in `target` were ON, except those in ERROR or NOT-CREATED:
+  /// while a switch changes tasks in several contexts, the states are a mixture. Null: by the states again.
   void judge_as(const TaskBits* target) noexcept;
   /// States of tasks changed: the flag is judged anew, and what is new to other processes is listed. Context: cycle
   /// boundary.
   void on_set_changed() noexcept;
-  /// Between two jobs of the task; true when it had something to follow. Context: cycle boundary; wait-free.
+  /// Call between two jobs of the task. True if the task had new sources to follow. Context: cycle boundary; wait-free.
   bool adopt(TaskId task) noexcept {
     if (!sources_.is_behind(task)) return false;
     sources_.adopt(task);
@@ -80,9 +80,9 @@ class TaskSet {
   bool is_mine(TaskId task) const noexcept { return memories_[task.index].is_planned(); }
   /// The number of this context among those of the application: that of its rtpu; 0 when it is alone.
   std::uint32_t context() const noexcept { return place_.rtpu.is_valid() ? place_.rtpu.index : 0; }
-  /// What is known of other contexts; null: there is none.
+  /// View of other contexts; null: there is none.
   PeerView* others() const noexcept { return place_.others; }
-  /// What is written when this process is dead; null: nobody would.
+  /// Frames that the guard writes if this process dies; null: no process writes any.
   SafeFrames* safe_frames() const noexcept { return place_.safe_frames; }
   const ApplicationSpec& spec() const noexcept { return spec_; }
   /// Where the set and its executors take their memory from. Context: setup.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What components do beside their cycles: from the end of init to kill, whoever runs it.
+// The background of components: from the end of init to kill, in any thread.
 #include <gtest/gtest.h>
 
 #include <atomic>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What components learn of their ports, and what they say to whoever runs them.
+// Facts that components learn about their ports, and notes that they leave for their user.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every process shows of the state of one of its tasks, in one word.
+// The state of a task as its process shows it to others, in one word.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A task and what is being done with it in one word, (task + 1) << 8 | what: what a process shows of itself in
-// BlockHead::running, serving, at_edge, background and hung, and in DecisionPage::making. Whoever finds the process
-// dead or hanging reads the word; it may be anything then.
+// A task and its present activity in one word, (task + 1) << 8 | what. A process shows such words in
+// BlockHead::running, serving, at_edge, background and hung, and in DecisionPage::making. Another process reads the
+// word after it found the first one dead or hanging; it may be anything then.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class TaskWord {
   constexpr TaskWord() noexcept = default;
   constexpr TaskWord(TaskId task, std::uint32_t what) noexcept : word_((task.index + 1) << 8 | what) {}
   constexpr TaskWord(TaskId task, Method method) noexcept : TaskWord(task, static_cast<std::uint32_t>(method)) {}
-  /// A word as it was found.
+  /// A word as it was read.
   static constexpr TaskWord found(std::uint32_t word) noexcept {
     TaskWord made;
     made.word_ = word;
@@ -30,10 +30,10 @@ class TaskWord {
 
   constexpr std::uint32_t word() const noexcept { return word_; }
   constexpr bool is_none() const noexcept { return word_ == 0; }
-  /// Not valid when the word names no task. May be the number of a task that does not exist.
+  /// Not valid if the word names no task. May be the number of a task that does not exist.
   constexpr TaskId task() const noexcept { return TaskId((word_ >> 8) - 1); }
   constexpr std::uint32_t what() const noexcept { return word_ & 255u; }
-  /// True when `what` is one of the nine methods.
+  /// True if `what` is one of the nine methods.
   constexpr bool has_method() const noexcept { return task().is_valid() && what() < CHIMERA_METHODS; }
   /// Requires: has_method().
   constexpr Method method() const noexcept { return static_cast<Method>(what()); }

@@ -33,7 +33,8 @@ bool CommandQueue::advance() {
   return changed;
 }
 
-// True: begun. What `off` and `kill` take back they take back at once, also while they wait.
+// Starts a command that may go. True if it began. `off` and `kill` take goals and transactions back at once, even if
+// they must wait.
 bool CommandQueue::try_begin(Command& command, bool& changed) {
   for (Part& part : command.parts)
     part.has_seen_spawning = part.has_seen_spawning || goals_.has(part.task, kGoalSpawn) ||
@@ -45,7 +46,7 @@ bool CommandQueue::try_begin(Command& command, bool& changed) {
   return !waits;
 }
 
-// True: one of its tasks must wait. A command with a wrong task is refused, whatever the others do.
+// True if one of its tasks must wait. A command with a wrong task is refused as a whole.
 bool CommandQueue::refuse_or_wait(Command& command) {
   bool waits = false;
   for (const Part& part : command.parts) {
@@ -60,7 +61,7 @@ bool CommandQueue::refuse_or_wait(Command& command) {
   return waits;
 }
 
-// While its `on` is under way a task takes `off` after it.
+// The state in which the signal finds the task. While an `on` is under way, the task takes `off` after it.
 State CommandQueue::state_for(Signal signal, TaskId task) const noexcept {
   const bool turns_on = takes_down(signal) && state_.pending.is_awaited(task, Signal::kOn);
   return turns_on && state_.observed.status(task).state == State::kOff ? State::kOn : state_.observed.state(task);
@@ -70,7 +71,7 @@ bool CommandQueue::is_revival(const Command& command, TaskId task) const noexcep
   return command.signal == Signal::kSpawn || (command.signal == Signal::kClear && state_.observed.is_lost(task));
 }
 
-// A goal brought the task up while its `spawn` waited: the wish is met.
+// True if a goal brought the task up while its `spawn` waited: the command is then fulfilled.
 bool CommandQueue::is_spawned_meanwhile(const Command& command, const Part& part) const noexcept {
   const State state = state_.observed.state(part.task);
   return command.signal == Signal::kSpawn && part.has_seen_spawning && (state == State::kOff || state == State::kOn);
@@ -82,7 +83,7 @@ std::vector<TaskId> CommandQueue::tasks_of(const Command& command) {
   return tasks;
 }
 
-// Until when a process that does not serve this manager is waited for; kNever: there is nothing to wait for.
+// Time until which a command waits for a process that does not serve this manager; kNever: it does not wait.
 Nanoseconds CommandQueue::due_for_rtpu(const Command& command, const Part& part) const noexcept {
   const RtpuLife life = state_.observed.life_of(part.task);
   if (goals_.is_pursued(part.task)) return kNever;
@@ -92,7 +93,7 @@ Nanoseconds CommandQueue::due_for_rtpu(const Command& command, const Part& part)
   return kNever;
 }
 
-// Until when a `kill` waits for an `init` that is under way; kNever: for none.
+// Time until which a `kill` waits for an `init` under way; kNever: it does not wait.
 Nanoseconds CommandQueue::due_for_spawn(const Command& command, const Part& part) const noexcept {
   const bool waits = command.signal == Signal::kKill && state_.is_spawning(part.task);
   return waits ? command.arrived + kKillLimit : kNever;
@@ -111,7 +112,8 @@ CommandQueue::Verdict CommandQueue::judge(const Command& command, const Part& pa
   return due == kNever || is_revival(command, part.task) ? Verdict::kGo : Verdict::kWait;
 }
 
-// `off` and `kill` stop what would bring the task up: a transaction, a goal, and `kill` also a spawn that is under way.
+// True if `off` or `kill` can stop a cause that would bring the task up: a transaction, a goal, for `kill` also a spawn
+// under way.
 bool CommandQueue::can_be_taken_back(Signal signal, TaskId task) const {
   return transaction_.has(task) || goals_.is_pursued(task) || (signal == Signal::kKill && state_.is_spawning(task));
 }
@@ -120,7 +122,7 @@ CommandQueue::Verdict CommandQueue::judge_taking_down(const Command& command, co
                                                       bool waits_for_rtpu) const {
   const State state = state_for(command.signal, part.task);
   const bool is_kill = command.signal == Signal::kKill;
-  // The wish is met, unless an `on` that nobody waits for any more may still be carried out.
+  // The task is OFF already, unless an `on` that was given up may still be carried out.
   const bool is_off = !is_kill && state == State::kOff && !state_.pending.is_possible(part.task, Signal::kOn);
   const bool can_go = is_off || is_legal(state, command.signal);
   if (!can_go && !part.is_taken_back && !can_be_taken_back(command.signal, part.task)) return Verdict::kIllegal;
@@ -159,18 +161,18 @@ void CommandQueue::begin(const Command& command, Part& part) {
   } else if (is_revival(command, part.task)) {
     revive(command, part);
   } else if (!is_legal(state_for(command.signal, part.task), command.signal)) {
-    part.stage = Stage::kOver;  // nothing left to do: taken back, or OFF already
+    part.stage = Stage::kOver;  // no signal to send: taken back, or OFF already
     part.is_already = !part.is_taken_back;
   }
 }
 
-// With a fresh budget of restarts for an rtpu that was given up.
+// Sets the goal of a task whose rtpu is dead. An rtpu that was given up gets a fresh budget of restarts.
 void CommandQueue::revive(const Command& command, Part& part) {
   part.stage = Stage::kGoal;
   goals_.set(part.task, kGoalSpawn);
   const RtpuId rtpu = state_.observed.rtpu(part.task);
   if (state_.observed.life(rtpu) != RtpuLife::kDown) return;
-  // One that is cleared brings what was lost with it back, so that `on` of all of them finds them OFF.
+  // `clear` of one task also spawns the other lost tasks of the rtpu, so that a later `on` of all finds them OFF.
   for (const TaskId task : state_.spec.on_order)
     if (command.signal == Signal::kClear && state_.observed.rtpu(task) == rtpu && state_.observed.is_wanted_back(task))
       goals_.set(task, kGoalSpawn);
@@ -180,7 +182,7 @@ void CommandQueue::revive(const Command& command, Part& part) {
   state_.emit(StartRtpu{rtpu});
 }
 
-// PeerView of one rtpu go in one list.
+// Sends the signal for the open tasks; neighbours of one rtpu go in one list.
 void CommandQueue::send(Command& command) {
   auto& parts = command.parts;
   const auto is_open = [](const Part& part) { return part.stage == Stage::kOpen; };
@@ -217,7 +219,7 @@ void CommandQueue::on_rtpu_down(RtpuId rtpu, const std::string& cause) {
   for (Command& command : commands_)
     for (Part& part : command.parts) {
       if (part.stage != Stage::kGoal || state_.observed.rtpu(part.task) != rtpu) continue;
-      goals_.clear(part.task, kGoalSpawn | kGoalOn);  // an init that kills its process is not tried again
+      goals_.clear(part.task, kGoalSpawn | kGoalOn);  // a task whose init kills its process is not tried again
       part.stage = Stage::kOver;
       fail(command, part.task, state_.ended(rtpu, cause));
     }
@@ -232,7 +234,7 @@ void CommandQueue::look_at_goals(Command& command) {
   }
 }
 
-// A list that was refused as a whole tells the reason with one of its tasks.
+// Keeps the first reason. A list that was refused as a whole gives its reason with only one of its tasks.
 void CommandQueue::fail(Command& command, TaskId task, SignalRefusal why) {
   if (command.refusal.add(std::move(why))) command.failed_at = task;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands of clients other than `on`: each is judged as one step, sent at once, and answered when all reports are in.
+// Commands of clients other than `on`. Each is judged as one step, sent, and answered when all reports are in.
 //
 //   stage of a task of a command:
 //     kOpen --judged, signal sent-----------------> kSent --reported--> kOver
@@ -27,10 +27,10 @@ class CommandQueue {
       : state_(state), goals_(goals), transaction_(transaction) {}
 
   void add(const Commanded& command);
-  /// Judges what waits, sends what may be sent, answers what is over. False: nothing changed.
+  /// Judges the waiting commands, sends the signals that may go, answers finished commands. False if nothing changed.
   bool advance();
   void on_result(const SignalResult& result);
-  /// An rtpu died; before its goals are found anew.
+  /// The rtpu died. Call this before RestartPolicy sets the goals of its tasks again.
   void on_rtpu_down(RtpuId rtpu, const std::string& cause);
   Nanoseconds next_due() const noexcept;
 
@@ -41,9 +41,9 @@ class CommandQueue {
     State before = State::kNotCreated;
     State after = State::kNotCreated;
     Stage stage = Stage::kOpen;
-    bool is_taken_back = false;      // a goal or a transaction of the task was, by this command
-    bool is_already = false;         // the task is where it is wanted
-    bool has_seen_spawning = false;  // something else brought the task up while this command waited
+    bool is_taken_back = false;      // this command took back a goal or a transaction of the task
+    bool is_already = false;         // the task was in the wanted state before
+    bool has_seen_spawning = false;  // another command or goal spawned the task while this command waited
     std::uint64_t command = 0;
   };
   struct Command {
@@ -53,7 +53,7 @@ class CommandQueue {
     Nanoseconds arrived;
     bool is_begun = false;
     TaskId failed_at;
-    SignalRefusal refusal;  // kNone: nothing went wrong so far
+    SignalRefusal refusal;  // kNone: no refusal so far
   };
   enum class Verdict : std::uint8_t { kGo, kWait, kIllegal, kRival, kNoAnswer };
 

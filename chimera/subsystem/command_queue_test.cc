@@ -11,7 +11,7 @@ namespace {
 class CommandQueueTest : public ::testing::Test, public TestParts {
  protected:
   explicit CommandQueueTest(bool spare_serves = true) : TestParts(spare_serves) {}
-  /// Command 1, 2, ... is added, and what follows at once.
+  /// Adds a command with the next number 1, 2, ... and advances the queue.
   std::string ask(Signal signal, std::vector<TaskId> tasks) {
     queue.add(Commanded{++last, signal, std::move(tasks)});
     return advance();

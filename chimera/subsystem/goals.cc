@@ -59,7 +59,8 @@ bool Goals::advance(TaskId task) {
   return true;
 }
 
-// A task that stands in for it has its resource: it has taken over. Any other one may be about to be killed.
+// Waits for the kill of a rival. A rival that is a standby of the task has taken over and keeps the resource; any other
+// rival may be killed soon.
 bool Goals::wait_for(TaskId task, TaskId rival) {
   Nanoseconds& since = goals_[task.index].waits_since;
   if (state_.spec.stand_in(task, rival)) {
@@ -84,7 +85,7 @@ bool Goals::has_constants(TaskId task) const noexcept {
   return true;
 }
 
-// What becomes of the goals of a task whose process ended is up to RestartPolicy.
+// Notes the result of a spawn. If a process ended, RestartPolicy decides the goals of its tasks.
 void Goals::on_result(const SignalResult& result) {
   const TaskId task = result.task;
   if (result.signal != Signal::kSpawn || goals_[task.index].command != result.command) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tasks are to be brought to. Remembered by the driver, so that a goal outlives the manager.
+// The states to which tasks must be brought. ManagerLoop remembers them, so that a goal outlives the manager.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace chimera::subsystem {
 
-/// Beside kGoalSpawn and kGoalOn: killed by a person after its process died, so it is not missed.
+/// Goal bit beside kGoalSpawn and kGoalOn: a person killed the task after its process died, so it is not missed.
 inline constexpr std::uint32_t kGoalGone = 4;
-/// An rtpu that was asked for and does not serve within this time is not waited for any longer.
+/// Time after which a started rtpu that does not serve is given up.
 inline constexpr Nanoseconds kStartLimit = seconds(10);
-/// A task whose `on` answers not yet is asked again for so long.
+/// Time for which a task that is not ready is asked again for `on`.
 inline constexpr Nanoseconds kReadyLimit = seconds(10);
 
 /// Context: setup.
@@ -21,7 +21,7 @@ class Goals {
   Goals(SubsystemState& state) : state_(state), goals_(state.spec.tasks.size()) {}
 
   void recall(std::span<const std::uint32_t> remembered);
-  /// False: the task had this goal already.
+  /// False if the task had this goal already.
   bool set(TaskId task, std::uint32_t goal);
   bool add(TaskId task, std::uint32_t bits) { return set(task, of(task) | bits); }
   bool clear(TaskId task, std::uint32_t bits) { return set(task, of(task) & ~bits); }
@@ -31,13 +31,13 @@ class Goals {
   bool any(std::uint32_t bits) const noexcept;
   std::vector<TaskId> with(std::uint32_t bits) const;
 
-  /// Logs why and gives the goals of the task up, in this order: a manager that dies between the two lets the next one
-  /// log it again.
+  /// Logs the reason first, then gives up the goals of the task. If the manager dies between the two, the next manager
+  /// logs it again.
   void fail(TaskId task, const SignalRefusal& why);
-  /// Why the last goals of the task were given up; kNone when they were reached.
+  /// Reason why the last goals of the task were given up; kNone if they were reached.
   const SignalRefusal& failure(TaskId task) const noexcept { return goals_[task.index].failure; }
 
-  /// Sends every spawn that can be sent; notices goals that are reached or whose rtpu does not come. False: nothing
+  /// Sends every spawn that may go. Notices goals that are reached and rtpus that do not come. False if nothing
   /// changed.
   bool advance();
   void on_result(const SignalResult& result);

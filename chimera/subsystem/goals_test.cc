@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Goals, and what takes them back, through the whole Subsystem.
+// Tests of goals, and of the commands that take goals back, through the whole Subsystem.
 #include "chimera/subsystem/goals.h"
 
 #include <gtest/gtest.h>

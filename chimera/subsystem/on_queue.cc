@@ -34,8 +34,8 @@ bool OnQueue::advance() {
   return changed;
 }
 
-// One that was killed or failed since it was spawned is left out, and one in whose place a standby is ON; whether the
-// rest is legal is judged next.
+// Leaves out a task that was killed or failed after its spawn, or whose standby is ON. The transaction then judges if
+// the rest is legal.
 bool OnQueue::fail_lost_goals() {
   bool changed = false;
   for (TaskId task : goals_.with(kGoalOn)) {
@@ -58,7 +58,7 @@ bool OnQueue::is_replaced(TaskId task) const noexcept {
   return false;
 }
 
-// True: begun, or no goal is left.
+// True if a transaction began or no goal is left.
 bool OnQueue::try_begin_goals() {
   OnRequest request{0, goals_.with(kGoalOn), TaskId{}, true};
   const auto is_up = [this](TaskId task) { return state_.observed.life_of(task) == RtpuLife::kUp; };
@@ -72,7 +72,7 @@ void OnQueue::begin(OnRequest request) {
   (void)transaction_.advance();
 }
 
-// A task on the way to OFF may still be a producer: `on` of its rival waits and is not refused.
+// `on` waits while a rival goes OFF: until then the rival may still be a producer.
 bool OnQueue::must_wait(const std::vector<TaskId>& tasks) const {
   if (std::any_of(tasks.begin(), tasks.end(), [this](TaskId task) { return state_.is_busy(task); })) return true;
   return std::any_of(state_.spec.on_order.begin(), state_.spec.on_order.end(), [this](TaskId task) {
@@ -81,7 +81,7 @@ bool OnQueue::must_wait(const std::vector<TaskId>& tasks) const {
   });
 }
 
-// True: it is no longer in the queue, begun or refused.
+// True if the request left the queue: it began or was refused.
 bool OnQueue::try_begin(Waiting& waiting) {
   const auto& tasks = waiting.request.tasks;
   if (tasks.empty()) {
@@ -108,7 +108,8 @@ bool OnQueue::try_begin(Waiting& waiting) {
   return true;
 }
 
-// Of a process that lives but does not serve; one that is dead has no task that may go ON.
+// Time until which the request waits for a process that lives but does not serve. A dead process is not waited for:
+// none of its tasks may go ON.
 Nanoseconds OnQueue::due(const Waiting& waiting) const noexcept {
   const auto& tasks = waiting.request.tasks;
   const bool is_mute = std::any_of(tasks.begin(), tasks.end(),

@@ -17,10 +17,10 @@ class OnQueue {
       : state_(state), goals_(goals), transaction_(transaction) {}
 
   void add(const Commanded& command);
-  /// A request that waits already is not added again: a task may send at every cycle. Of a task that does not exist:
-  /// none.
+  /// Adds a request. A request that already waits is not added again, because a task may send one at every cycle. A
+  /// request for an unknown task is dropped.
   void add(const Requested& request);
-  /// Begins the next transaction when none is under way. False: nothing changed.
+  /// Begins the next transaction if none is under way. False if nothing changed.
   bool advance();
   Nanoseconds next_due() const noexcept;
 
@@ -28,7 +28,7 @@ class OnQueue {
   struct Waiting {
     OnRequest request;
     Nanoseconds arrived;
-    bool has_waited = false;  // for goals of its tasks
+    bool has_waited = false;  // it waited for goals of its tasks
   };
   bool fail_lost_goals();
   bool is_replaced(TaskId task) const noexcept;

@@ -15,7 +15,7 @@ class OnQueueTest : public ::testing::Test, public TestParts {
     (void)queue.advance();
     return taken();
   }
-  /// The rtpu reports to the transaction, and the next one begins.
+  /// The rtpu reports to the transaction, and the next transaction begins.
   std::string report(TaskId task, State after) {
     transaction.on_result(reported(task, after));
     (void)transaction.advance();

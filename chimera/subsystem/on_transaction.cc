@@ -17,8 +17,8 @@ OnTransaction::Member* OnTransaction::find(TaskId task) noexcept {
   return is_under_way_ && found != members_.end() ? &*found : nullptr;
 }
 
-// Goals may find some of their tasks ON: an earlier manager did not get to the end. Where a person wants a task ON that
-// is ON, there is nothing to do.
+// First task of the request that may not go ON. Goals may find some tasks ON, if an earlier manager did not finish. A
+// person's `on` of a task that is ON has no work to do.
 TaskId OnTransaction::first_wrong(const OnRequest& request) const {
   for (TaskId task : request.tasks) {
     const State state = state_.observed.state(task);
@@ -68,7 +68,7 @@ bool OnTransaction::advance() {
   return true;
 }
 
-// The open members up to the first of another rtpu: one list is judged and carried out by its rtpu as one step.
+// Sends the open members up to the first one of another rtpu. An rtpu judges and carries out one list as one step.
 void OnTransaction::send_next() {
   const auto is_open = [](const Member& member) { return member.stage == Stage::kOpen; };
   const auto first = std::find_if(members_.begin(), members_.end(), is_open);
@@ -93,7 +93,7 @@ void OnTransaction::on_result(const SignalResult& result) {
     member->stage = Stage::kOpen;
     return;
   }
-  // After a failed `on` it may be ON for all we know: it is turned OFF with the rest.
+  // A task whose `on` failed may still be ON: it is turned OFF with the rest.
   member->stage = is_rolling_back_ || member->is_withdrawn ? Stage::kOver : Stage::kOn;
   if (!is_rolling_back_ && !result.is_done())
     fail(result.task, result.refusal.behind(state_.name(result.task) + ": "),
@@ -101,7 +101,7 @@ void OnTransaction::on_result(const SignalResult& result) {
   on_task_seen(result.task);
 }
 
-// Of a list the tasks behind one that is not ready were not asked.
+// Asks again for `on` of a task that is not ready, and of the tasks behind it in the list: the rtpu did not ask those.
 bool OnTransaction::is_asked_again(const SignalResult& result) {
   Member* const member = find(result.task);
   const bool is_not_ready = result.refusal.kind == RefusalKind::kNotYet;
@@ -142,14 +142,14 @@ void OnTransaction::on_rtpu_down(RtpuId rtpu, const std::string& cause) {
   }
 }
 
-// The first reason counts; a list that failed tells it with one of its tasks and nothing with the others.
+// Keeps the first reason. A list that failed gives its reason with one of its tasks and no reason with the others.
 void OnTransaction::fail(TaskId task, SignalRefusal why, bool is_final) {
   if (!refusal_.add(std::move(why))) return;
   is_final_ = is_final;
   failed_at_ = task;
 }
 
-// One signal each: a list would be refused whole if one of them went OFF by itself.
+// Sends one `off` for each task: the rtpu would refuse a whole list if one of the tasks went OFF by itself.
 void OnTransaction::roll_back() {
   is_rolling_back_ = true;
   for (auto m = members_.rbegin(); m != members_.rend(); ++m) {
@@ -164,8 +164,8 @@ void OnTransaction::roll_back() {
   }
 }
 
-// Goals are taken back before an answer, so that the next manager cannot undo it; but with the word about their
-// failure, not before.
+// Takes goals back before it answers, so that the next manager cannot undo the answer. For a request of goals it logs
+// the failure first: the next manager can log it again.
 void OnTransaction::finish() {
   is_under_way_ = false;
   if (!refusal_.is_refused()) {
@@ -176,7 +176,7 @@ void OnTransaction::finish() {
     for (const Member& member : members_) goals_.clear(member.task, kGoalOn);
     return report_done(std::move(outcomes));
   }
-  if (request_.is_goals && !is_final_) return;  // pursued again
+  if (request_.is_goals && !is_final_) return;  // the goals stay and are tried again
   if (!request_.is_goals)
     for (const Member& member : members_) goals_.clear(member.task, kGoalOn);
   if (refusal_.reason.empty()) refusal_.reason = state_.name(failed_at_) + ": on failed";

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turning tasks ON, all or none, one transaction at a time: that there are never two producers rests on it.
+// Turns tasks ON, all or none, one transaction at a time. This rule guarantees that a variable never has two producers.
 //
-// Judged against the tasks that are, or may be, ON; sent in data-flow order, neighbours of one rtpu together. After a
-// failure the tasks that the transaction turned ON are turned OFF backwards. Its tasks have the goal `on` until it is
-// over, so that the next manager goes on with it.
+// A transaction is judged against the tasks that are, or may be, ON. It is sent in data-flow order, neighbours of one
+// rtpu together. After a failure the tasks that it turned ON are turned OFF in reverse order. Its tasks have the goal
+// `on` until it is over, so that the next manager continues it.
 //
 //   stage of a member:  kOpen --`on` sent--> kSent --reported--> kOn   (it may be ON: rolled back after a failure)
 //                           ^              |
@@ -19,9 +19,9 @@
 
 namespace chimera::subsystem {
 
-/// Which tasks are to be ON, and by whose wish.
+/// The tasks to turn ON, and the origin of the request.
 struct OnRequest {
-  std::uint64_t id = 0;  ///< command of a face; 0: none
+  std::uint64_t id = 0;  ///< command of a client; 0: none
   std::vector<TaskId> tasks;
   TaskId from;           ///< the task that asked
   bool is_goals = false; ///< the goals themselves
@@ -35,19 +35,20 @@ class OnTransaction {
   bool is_under_way() const noexcept { return is_under_way_; }
   bool has(TaskId task) const noexcept;
 
-  /// Judges and begins, or refuses. Requires: none is under way, no task of it is busy.
+  /// Judges the request, then begins or refuses it. Requires: no transaction is under way, no task of the request is
+  /// busy.
   void begin(OnRequest request);
   void on_result(const SignalResult& result);
-  /// A status word was read: has a member left ON by itself?
+  /// A status word was read. The transaction fails if a member left ON by itself.
   void on_task_seen(TaskId task);
-  /// A person wants the task OFF or killed and sees to that: the transaction fails; goals of the others stay. False:
-  /// nothing changed.
+  /// Another command turns the task OFF or kills it: the transaction fails, and the goals of the other tasks stay.
+  /// False if nothing changed.
   bool withdraw(TaskId task, Signal signal);
   void on_rtpu_down(RtpuId rtpu, const std::string& cause);
 
-  /// Sends what is due, ends when all is over. False: nothing changed.
+  /// Sends the next signals; ends the transaction when all reports are in. False if nothing changed.
   bool advance();
-  /// When it has something to do though nobody reports; kNever: not.
+  /// Time of the next step if no report arrives; kNever: none.
   Nanoseconds next_due() const noexcept { return is_under_way_ ? again_at_ : kNever; }
 
   /// Answers a request that did not become a transaction, naming one of its tasks.
@@ -77,15 +78,15 @@ class OnTransaction {
   Goals& goals_;
   OnRequest request_;
   std::vector<Member> members_;
-  std::vector<TaskId> already_;  // ON when a person asked for them: neither sent nor rolled back
+  std::vector<TaskId> already_;  // tasks that were ON at a person's request: neither sent nor rolled back
   bool is_under_way_ = false;
-  bool is_final_ = false;  // the goals are given up with it
+  bool is_final_ = false;  // the goals are given up with the transaction
   bool is_rolling_back_ = false;
-  Nanoseconds until_;               // so long tasks that are not ready yet are asked again
-  Nanoseconds again_at_ = kNever;   // when they are
-  std::uint64_t not_ready_ = 0;     // the command of which a task answered so last
+  Nanoseconds until_;               // end of the time in which tasks that are not ready are asked again
+  Nanoseconds again_at_ = kNever;   // next time to ask them
+  std::uint64_t not_ready_ = 0;     // the last command with the answer "not ready"
   TaskId failed_at_;
-  SignalRefusal refusal_;  // kNone: nothing went wrong so far
+  SignalRefusal refusal_;  // kNone: no refusal so far
 };
 
 }  // namespace chimera::subsystem

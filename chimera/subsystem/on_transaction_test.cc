@@ -12,9 +12,9 @@ const SignalRefusal kNoSensor{RefusalKind::kFault, "no sensor", {}};
 
 class OnTransactionTest : public ::testing::Test, public TestParts {
  protected:
-  /// Asked for by a person.
+  /// A request of a person.
   void begin(std::vector<TaskId> tasks) { transaction.begin({7, std::move(tasks), TaskId{}, false}); }
-  /// The rtpu reports, and what is due next is sent.
+  /// The rtpu reports, and the next signals are sent.
   std::string report(TaskId task, State after, SignalRefusal why = {}) {
     transaction.on_result(reported(task, after, std::move(why)));
     (void)transaction.advance();

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the commands of a remedy: spawn what is not there, clear what is in ERROR, then the signal itself.
+// Makes the commands of a remedy: `spawn` for absent tasks, `clear` for tasks in ERROR, then the signal itself.
 #include "chimera/subsystem/remedy.h"
 
 namespace chimera::subsystem {
 namespace {
 
-/// Adds a command for these tasks, if there are any.
+/// Adds the command `word` for the tasks, if there are any.
 void add(std::vector<std::string>& commands, const SubsystemState& subsystem, const char* word,
          std::span<const TaskId> tasks) {
   if (tasks.empty()) return;
@@ -33,7 +33,7 @@ std::string remedy(const SubsystemState& subsystem, Signal signal, std::span<con
       clear.push_back(task);
     else if (state == State::kNotCreated && (needs_all || signal == Signal::kSpawn || signal == Signal::kClear))
       spawn.push_back(task);
-    // By then all others are OFF. A task that has arrived already needs nothing.
+    // After the commands before, all other tasks are OFF. A task that is ON already needs no command.
     const State by_then = needs_all && state != State::kOn ? State::kOff : state;
     if (signal != Signal::kSpawn && signal != Signal::kClear && is_legal(by_then, signal)) rest.push_back(task);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a person types when a signal was refused or a real-time unit was given up: commands that work as things stand.
+// Commands for a person to type after a refused signal or a given-up rtpu. They are legal in the present state.
 #pragma once
 
 #include <span>
@@ -10,15 +10,15 @@
 
 namespace chimera::subsystem {
 
-/// "`chimera clear pi`, then `chimera on setpoint pi`": after it the signal has been carried out for as many of the
-/// tasks as it can be. Names no task that is where the signal leads; "" when there is nothing to do. Context of all:
+/// "`chimera clear pi`, then `chimera on setpoint pi`". The commands carry out the signal for every task for which it
+/// can be. They name no task that is already in the wanted state; "" if no task needs one. Context of all functions:
 /// setup.
 std::string remedy(const SubsystemState& subsystem, Signal signal, std::span<const TaskId> tasks);
-/// The same for tasks that were lost with their process: those of `were_on` are ON again after it.
+/// Commands for tasks that were lost with their process. After them, the tasks in `were_on` are ON again.
 std::string way_back(const SubsystemState& subsystem, std::span<const TaskId> lost, std::span<const TaskId> were_on);
-/// The same for tasks that are not there: `chimera spawn`.
+/// Commands for tasks that do not exist yet: `chimera spawn`.
 std::string spawning(const SubsystemState& subsystem, std::span<const TaskId> absent);
-/// "type `chimera clear pi`": the commands as the remedy of a refusal; "" when there are none.
+/// The commands as the remedy of a refusal: "type `chimera clear pi`"; "" if there are none.
 inline std::string typed(const std::string& commands) { return commands.empty() ? "" : "type " + commands; }
 
 }  // namespace chimera::subsystem

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Restarts within their budget; the order of what is remembered makes every cut of it safe for the next manager.
+// Restarts dead rtpus within their budget. The order of its notes lets the next manager continue from any point.
 #include "chimera/subsystem/restart_policy.h"
 
 #include <algorithm>
@@ -23,8 +23,8 @@ void RestartPolicy::recall(const Begun& begun) {
   }
 }
 
-// Goals are remembered first, then the start, then that the death was handled. A manager that dies between two of these
-// steps leaves a state from which the next manager comes to an equal result. Only the last step can say "given up".
+// Remembers goals first, then the restart, then that the death was handled. A manager may die between two of these
+// steps: the next manager then reaches an equal result. Only the last step can say "given up".
 bool RestartPolicy::on_rtpu_down(const RtpuDown& down) {
   const RtpuLife life = state_.observed.life(down.rtpu);
   const bool is_old = life == RtpuLife::kDown || life == RtpuLife::kStarting;
@@ -36,7 +36,7 @@ bool RestartPolicy::on_rtpu_down(const RtpuDown& down) {
     if (is_of(TaskId(t), down.rtpu)) was_on_[t] = ((goals[t] = goal_after(TaskId(t))) & kGoalOn) != 0;
   state_.observed.down(down.rtpu, down.incarnation);
   const bool is_known =
-      down.incarnation <= handled_[down.rtpu.index];  // to an earlier manager, and what was asked of it
+      down.incarnation <= handled_[down.rtpu.index];  // an earlier manager handled this death and set the goals
   for (std::size_t t = 0; t < goals.size(); ++t)
     if (is_of(TaskId(t), down.rtpu)) state_.observed.want_back(TaskId(t), goals[t] != 0 && !is_known);
   if (is_known) {
@@ -45,14 +45,14 @@ bool RestartPolicy::on_rtpu_down(const RtpuDown& down) {
     return true;
   }
   state_.log("rtpu-ended", TaskId{}, down.rtpu, state_.name(down.rtpu) + " " + down.cause);
-  if (down.is_end) return true;  // the keeper starts nobody any more, and no manager comes to wonder why
+  if (down.is_end) return true;  // the keeper starts no process any more, and no next manager needs a note
   if (recent(down.rtpu) < kRestartIntensity) restart(down, goals);
   else give_up(down);
   return true;
 }
 
-// As it was at the end, but a person's last word counts more than a state on the way to it. A transaction that fails by
-// this death takes its goals back itself.
+// Goal of the task after its process died: its last state, but a person's last command counts more. A transaction that
+// fails by this death takes its own goals back.
 std::uint32_t RestartPolicy::goal_after(TaskId task) const {
   const State last = state_.observed.status(task).state;
   if (state_.pending.is_possible(task, Signal::kKill)) return 0;
@@ -86,7 +86,8 @@ void RestartPolicy::restart(const RtpuDown& down, const std::vector<std::uint32_
                std::to_string(kRestartWindow / seconds(1)) + " s");
 }
 
-// Its process died after that of the others of its group: it had taken over, and they do not come back ON beside it.
+// Clears the goals of the tasks that `task` replaces: its process died last, so it had taken over. They must not come
+// back ON beside it.
 void RestartPolicy::leave_off_for(TaskId task) {
   for (std::size_t t = 0; t < state_.spec.tasks.size(); ++t)
     if (state_.spec.stand_in(task, TaskId(t)))
@@ -119,7 +120,7 @@ std::string RestartPolicy::way_back(RtpuId rtpu) const {
     (is_lost ? lost : absent).push_back(task);
     if (is_lost && was_on_[task.index]) were_on.push_back(task);
   }
-  // A manager that came after its predecessor gave up does not know what was lost before.
+  // A manager that started after the rtpu was given up does not know the lost tasks.
   return lost.empty() ? spawning(state_, absent) : subsystem::way_back(state_, lost, were_on);
 }
 

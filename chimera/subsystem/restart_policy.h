@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What follows the end of the process of an rtpu: what its tasks are to be brought back to; a restart, at most three in
-// 10 s, or none until a person asks for it.
+// Decides what follows the death of an rtpu: the goals of its tasks, and a restart. It allows three restarts in 10 s,
+// then none until a person asks for one.
 #pragma once
 
 #include <string>
@@ -19,11 +19,11 @@ class RestartPolicy {
   RestartPolicy(SubsystemState& state, Goals& goals, OnTransaction& transaction, CommandQueue& commands);
 
   void recall(const Begun& begun);
-  /// False: known already.
+  /// False if this death was known already.
   bool on_rtpu_down(const RtpuDown& down);
-  /// Asks for a dead rtpu that has goals, with what is left of its budget.
+  /// Requests the start of a dead rtpu whose tasks have goals.
   void start_for_goals(RtpuId rtpu);
-  /// What to type so that what it had comes back; `chimera spawn` of its tasks where nothing is known to be lost.
+  /// Commands that bring the lost tasks of the rtpu back; `chimera spawn` of all its tasks if none is known to be lost.
   std::string way_back(RtpuId rtpu) const;
 
  private:
@@ -39,7 +39,7 @@ class RestartPolicy {
   OnTransaction& transaction_;
   CommandQueue& commands_;
   std::vector<std::uint32_t> handled_;
-  std::vector<bool> was_on_;  // by task, when its process died
+  std::vector<bool> was_on_;  // by task: it was ON when its process died
 };
 
 }  // namespace chimera::subsystem

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tasks with the same resource, and tasks whose device needs some time, through the whole Subsystem.
+// Tests of tasks that share a resource, and of tasks whose device is not ready at once, through the whole Subsystem.
 #include <gtest/gtest.h>
 
 #include "chimera/subsystem/testing/test_world.h"
@@ -9,7 +9,7 @@ namespace {
 
 class SubsystemRivals : public ::testing::Test, public TestWorld {
  protected:
-  /// Everything comes up but for reserve, whose device pid has.
+  /// All tasks are brought up except reserve: pid has its device.
   std::string start_without_reserve() {
     std::string told = step(remembered);
     step(RtpuUp{kServo, 1});
@@ -49,7 +49,7 @@ TEST_F(SubsystemRivals, SpawnAndOnAreRefusedWithTheWayToIt) {
 TEST_F(SubsystemRivals, AGoalWaitsUntilTheOtherOneIsKilledAndIsGivenUpAfterTenSeconds) {
   make_rivals();
   start_without_reserve();
-  die(kServo);  // and reserve is created by a switch meanwhile
+  die(kServo);  // while it is dead, a switch creates reserve
   seen(kReserve, State::kOff);
   step(RtpuUp{kServo, 2});
   EXPECT_EQ(report(kArm, State::kOff), "goal arm 2\n");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names of the kinds of refusal, and which of several refusals of one list of tasks is told.
+// Gives the kinds of refusal their names, and keeps the first reason of several refusals.
 #include "chimera/subsystem/signal_refusal.h"
 
 #include <utility>

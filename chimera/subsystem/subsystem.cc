@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The step: one event is noted, then the parts advance until nothing changes any more.
+// The step function: notes one event, then advances the parts until nothing changes any more.
 #include "chimera/subsystem/subsystem.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace chimera::subsystem {
 namespace {
 
-/// `init` may take longer than an answer: while one is under way, it is waited for at most this long.
+/// `init` may take longer than an answer may. The wait for an `init` under way lasts at most this long.
 constexpr Nanoseconds kServiceLimit = seconds(60);
 
 }  // namespace
@@ -137,7 +137,7 @@ void Subsystem::Parts::expire() {
   }
 }
 
-// Each part may open the way for another.
+// Advances all parts until none changes, because each part may unblock another.
 void Subsystem::Parts::settle() {
   for (bool changed = true; changed;) {
     changed = goals.advance();

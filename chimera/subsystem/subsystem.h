@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decides what happens in a subsystem: a step function (event, time) -> actions without any call to the system, driven
-// on Linux by chimera/manager and in virtual time by simulated processes. docs/formats/processes.md.
+// Decides for a subsystem: a step function (event, time) -> actions without any system call. On Linux, chimera/manager
+// calls it; in virtual time, simulated processes do. docs/formats/processes.md.
 //
-// What it knows of the processes it is told by events; what it must not forget it asks the driver to remember, and a
-// new Subsystem given that memory goes on where the old one died. The driver carries out actions in order.
+// Events report the state of the processes. ManagerLoop carries out the actions in order and stores the contents of all
+// Remember... actions. A new Subsystem that gets them continues the work of its predecessor.
 //
 //                                       step(event, now)
 //                                              |
@@ -11,7 +11,7 @@
 //                                   |          |           |
 //                 RtpuDown --> RestartPolicy   |           +--> one SignalResult for each, to the three that sent it
 //                                   |          v
-//          +--> Goals::advance          spawns what has goals, in the order of constants
+//          +--> Goals::advance          spawns tasks that have goals, in the order of constants
 //  until   |    CommandQueue::advance   judges, sends and answers `spawn off kill clear reinit` of clients
 //  nothing |    OnTransaction::advance  sends the next tasks of an `on`, or rolls it back
 //  changes +--- OnQueue::advance        begins the next transaction: goals first, then clients and tasks in turn
@@ -40,46 +40,46 @@ namespace chimera::subsystem {
 /// Goal bits of a task (BlockView::goal).
 inline constexpr std::uint32_t kGoalSpawn = 1, kGoalOn = 2;
 
-/// Restart at most this often within this time, then give up until a person says `spawn` or `clear`.
+/// An rtpu is restarted at most this often within this time, then given up until a person sends `spawn` or `clear`.
 inline constexpr int kRestartIntensity = 3;
 inline constexpr Nanoseconds kRestartWindow = seconds(10);
-/// A signal that is not reported on within this time fails.
+/// A signal without a report within this time fails.
 inline constexpr Nanoseconds kAnswerLimit = seconds(2);
-/// A `kill` that is under way, or that waits for an `init` under way, is waited for at most so long: by then the watch
-/// over the methods of units has told which one it is.
+/// Longest wait for a `kill` under way, or for an `init` before it. Within this time the watch over hanging methods
+/// names the method.
 inline constexpr Nanoseconds kKillLimit = milliseconds(2500);
 
 // ---- events ----
 
-/// The driver starts: what the previous manager remembered (all zero at the first start). Exactly once, first; then
-/// RtpuUp/RtpuDown/TaskSeen for everything there is, then InventoryComplete.
+/// ManagerLoop starts, with the memory of the previous manager (all zero at the first start). Sent once, before all
+/// other events. RtpuUp, RtpuDown and TaskSeen for every process and task follow, then InventoryComplete.
 struct Begun {
   std::vector<std::uint32_t> goals;     ///< by task
-  std::vector<std::uint32_t> handled;   ///< by rtpu: incarnation whose death was dealt with
+  std::vector<std::uint32_t> handled;   ///< by rtpu: incarnation whose death was handled
   std::vector<std::array<Nanoseconds, 4>> restarts;  ///< by rtpu: instants of its last restarts, 0: none
-  bool started = false;                 ///< the start set was asked for by a previous manager
+  bool started = false;                 ///< a previous manager requested the start set
 };
 struct InventoryComplete {};
-/// The rtpu serves: maps this manager's segment and takes posts from now on, none of an earlier manager. TaskSeen of
-/// its tasks, read after it began to, have come before.
+/// The rtpu serves: it maps this manager's segment and accepts its posts, none of an earlier manager. TaskSeen of its
+/// tasks, read after that instant, came before.
 struct RtpuUp { RtpuId rtpu; std::uint32_t incarnation = 0; };
-/// The process is dead (proof by pidfd). TaskSeen events with the last words of its segment have come before, also for
-/// one that is found dead at the start. `cause` follows the name in a sentence: "ended by signal 11 (SIGSEGV) in
-/// pid.cycle; core dumped". `is_end`: everything ends, and nobody starts it again. `is_orderly`: its tasks were turned
-/// off and killed before.
+/// The process is dead (proof by pidfd). TaskSeen events with the last status words of its segment came before, also
+/// for an rtpu that is found dead at the start. `cause` follows the name in a sentence: "ended by signal 11 (SIGSEGV)
+/// in pid.cycle; core dumped". `is_end`: the whole run ends, and the rtpu is not restarted. `is_orderly`: its tasks
+/// were turned off and killed before.
 struct RtpuDown { RtpuId rtpu; std::uint32_t incarnation = 0; std::string cause; bool is_end = false;
                   bool is_orderly = false; };
-/// A status word as it is now.
+/// The present status word of a task.
 struct TaskSeen { TaskId task; TaskStatus status; };
-/// What became of a signal that was sent with a command number: one for each task of a Send. TaskSeen of the task, read
-/// after the report was taken, has come before.
+/// The report on a signal that was sent with a command number: one for each task of a Send. TaskSeen of the task, read
+/// after the report arrived, came before.
 struct Reported { std::uint64_t command = 0; TaskId task; Signal signal = Signal::kOn; bool accepted = false;
                   Refusal why = Refusal::kNone; State before{}, after{}; std::string text; };
 /// A task asked for `on` (only the manager may).
 struct Requested { TaskId task; Signal signal = Signal::kOn; TaskId from; };
-/// A face asked for it. `id` is the driver's, above 0, never twice.
+/// A client requested a signal. ManagerLoop chooses `id`: above 0, never used twice.
 struct Commanded { std::uint64_t id = 0; Signal signal = Signal::kOn; std::vector<TaskId> tasks; };
-/// Nothing but time: due at next_due().
+/// Only time passed: due at next_due().
 struct Tick {};
 
 using Event = std::variant<Begun, InventoryComplete, RtpuUp, RtpuDown, TaskSeen, Reported, Requested, Commanded, Tick>;
@@ -87,25 +87,25 @@ using Event = std::variant<Begun, InventoryComplete, RtpuUp, RtpuDown, TaskSeen,
 // ---- actions ----
 
 /// Post the signals to the rtpu as one transaction (`more` on all but the last). `command` is the Subsystem's own
-/// number, to come back in Reported. `on` and `spawn` have been judged; the others go as they are.
+/// number; Reported returns it. `on` and `spawn` have been judged before; the rtpu judges the others.
 struct Send { RtpuId rtpu; std::uint64_t command = 0; Signal signal = Signal::kOn; std::vector<TaskId> tasks; };
-/// Does nothing when it lives.
+/// Start the rtpu; no effect if it lives.
 struct StartRtpu { RtpuId rtpu; };
-/// Must be remembered before any later action is carried out.
+/// Remember the goal before any later action is carried out.
 struct RememberGoal { TaskId task; std::uint32_t goal = 0; };
 struct RememberHandled { RtpuId rtpu; std::uint32_t incarnation = 0; };
 struct RememberRestart { RtpuId rtpu; std::array<Nanoseconds, 4> instants{}; };
 struct RememberStarted {};
-/// What a command did to one of its tasks.
+/// Effect of a command on one of its tasks.
 struct TaskOutcome {
   TaskId task;
   State before{}, after{};
-  bool is_already = false;  ///< there was nothing to do: `on` of a task that is ON, `off` of one that is OFF
+  bool is_already = false;  ///< no change was needed: `on` of a task that is ON, `off` of one that is OFF
 };
 /// A command is over.
 struct CommandAnswer {
   std::uint64_t id = 0;
-  SignalRefusal refusal;  ///< kNone: all of it was carried out
+  SignalRefusal refusal;  ///< kNone: the whole command was carried out
   TaskId at;              ///< the task that was refused
   std::vector<TaskOutcome> outcomes;
 
@@ -129,21 +129,21 @@ class Subsystem {
   explicit Subsystem(const ApplicationSpec& spec);
   ~Subsystem();
 
-  /// Takes one event at `now` (never before the previous one) and appends what is to be done to `actions`.
+  /// Handles one event at `now` (never before the previous one) and appends the actions that follow to `actions`.
   void step(const Event& event, Nanoseconds now, std::vector<Action>& actions);
-  /// When a Tick is due; kNever: not before another event.
+  /// Time at which a Tick is due; kNever: only another event continues.
   Nanoseconds next_due() const noexcept;
 
-  /// As people see it: a task of a dead rtpu that was created is ERROR.
+  /// State as users see it: a created task of a dead rtpu is in ERROR.
   State state(TaskId task) const noexcept;
-  /// Is every goal met or given up?
+  /// True if every goal is met or given up.
   bool is_settled() const noexcept;
-  /// Is the rtpu dead, and nobody is to start it?
+  /// True if the rtpu is dead and will not be restarted.
   bool is_given_up(RtpuId rtpu) const noexcept;
-  /// What to type so that what it had comes back: "`chimera clear pi motor`, then `chimera on pi motor`";
-  /// `chimera spawn` of its tasks where nothing is known to be lost.
+  /// Commands that bring the lost tasks of the rtpu back: "`chimera clear pi motor`, then `chimera on pi motor`";
+  /// `chimera spawn` of its tasks if none is known to be lost.
   std::string way_back(RtpuId rtpu) const;
-  /// Why the flag is up: "u (pi is OFF)"; "" when the tasks ON are a legal set.
+  /// Reason why the flag is up: "u (pi is OFF)"; "" if the tasks that are ON are a legal set.
   std::string missing() const;
 
  private:

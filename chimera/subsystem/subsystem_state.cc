@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps the signals whose reports have not come and the times at which they are given up; answers the questions about
-// tasks that several parts ask, and gives the refusals that several parts give.
+// Keeps the signals that wait for a report, with their time limits. Also holds the questions and refusals that several
+// parts share.
 #include "chimera/subsystem/subsystem_state.h"
 
 #include <algorithm>
@@ -73,7 +73,8 @@ std::vector<TaskId> SubsystemState::sorted(std::span<const TaskId> tasks, bool b
   return result;
 }
 
-// A process that does not serve us yet may still carry out what an earlier manager sent, or be mute.
+// True also for a process that does not serve this manager yet: it may be silent and still carry out posts of an
+// earlier manager.
 bool SubsystemState::may_be_on(TaskId task) const {
   const State seen = observed.status(task).state;
   return seen == State::kOn || pending.is_possible(task, Signal::kOn) ||

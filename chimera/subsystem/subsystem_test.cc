@@ -233,7 +233,7 @@ TEST_F(SubsystemTest, ATaskInWhosePlaceItsStandbyIsOnComesBackOff) {
   EXPECT_EQ(report(kArm, State::kOn), "goal arm 0\nstarted: arm is ON\n");
 }
 
-// Both units die one after the other: who took over comes back ON, alone.
+// Both rtpus die one after the other. Only the task that had taken over comes back ON.
 TEST_F(SubsystemTest, OfTwoThatStandInForEachOtherTheOneThatDiedLastComesBackOn) {
   const StandbySpec pair[] = {{kPid, kReserve}};
   spec.standbys = pair;

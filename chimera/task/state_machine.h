@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The life of a task: four states, nine methods, and every transition between them in one table.
-// 1994 paper figure 7, 2000 paper figure 6; docs/decisions/0002-state-machine.md decides what they leave open.
+// 1994 paper figure 7, 2000 paper figure 6. The papers leave open what follows a fault in each method and what an
+// unexpected signal does; the table decides it:
+// - A fault in `init` kills the task. A fault in `kill` leaves NOT-CREATED and is reported as a leak.
+// - After a fault in `off` the outputs of the last cycle stand, and the task never returns to ON.
+// - `kill` is legal while ON (`off` first) and in ERROR, so a task that cannot be repaired can be ended.
+// - After `clear` the task is OFF: a person decides when it goes ON. A signal that is not legal changes nothing.
+// - `off` reads its inputs first: it leaves a machine safe, so it must see where the machine is now.
 //
 // A signal starts a chain of steps. A step is one method with its transfers. The answer of the method leads to the next
 // step or to a state. No other event moves a task.

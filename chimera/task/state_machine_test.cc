@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the table of state_machine.cc with a second one: the transitions of the papers and of
-// docs/decisions/0002-state-machine.md. Each line has a signal in a state, the methods with their transfers and
-// answers, and the final state.
+// Compares the table of state_machine.cc with a second one: the transitions of the papers and of state_machine.h. Each
+// line has a signal in a state, the methods with their transfers and answers, and the final state.
 #include "chimera/task/state_machine.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The test components do what their README says: tests of the floors above rely on it.
+// The test components do what their first lines say: tests of the floors above rely on it.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

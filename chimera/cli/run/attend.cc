@@ -449,7 +449,7 @@ int RemoteTarget::refuse(const Error& error) {
   return output.code;
 }
 
-/// Adds the switches and takeovers, of all origins, that the manager still returns for the run since `origin_ns`.
+/// Adds switches and takeovers of the run that began at `origin_ns`. The manager returns the last 200.
 void RemoteTarget::add_receipts(const Json& origin_ns, RunReport& report) {
   const auto answer = line_.ask("receipts", {{"last", 200}});
   if (!answer) return;

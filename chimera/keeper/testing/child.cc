@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A child of the keeper as its tests need one: writes everything it is told to the file CHIMERA_TEST_LOG, a line
-// each, and carries out the lines of the files PEER.INCARNATION and PEER in the folder CHIMERA_TEST_ORDERS, as they
-// come. With the arguments `face PARENT` it is the face.
+// A child of the keeper for its tests. It writes each of its messages as a line to the file CHIMERA_TEST_LOG. It
+// carries out the lines of the files PEER.INCARNATION and PEER in the folder CHIMERA_TEST_ORDERS as they come. With the
+// arguments `face PARENT` it is the run client.
 #include <fcntl.h>
 #include <poll.h>
 #include <unistd.h>
@@ -40,7 +40,7 @@ void log(const std::string& line) {
   ::close(fd);
 }
 
-// The next whole line of orders for `who`; "" when there is none yet.
+// The next whole line of orders for `who`; "" if there is none yet.
 std::string next_order(const std::string& who, int& done) {
   std::ifstream orders(told("CHIMERA_TEST_ORDERS") + "/" + who);
   std::string line;
@@ -171,7 +171,7 @@ class Child {
 
 int main(int argc, char** argv) {
   std::signal(SIGTERM, [](int) { told_to_end = 1; });
-  sigset_t held;  // of a face, until it listens
+  sigset_t held;  // SIGTERM, blocked in a run client until it listens
   ::sigemptyset(&held);
   ::sigaddset(&held, SIGTERM);
   ::sigprocmask(SIG_UNBLOCK, &held, nullptr);

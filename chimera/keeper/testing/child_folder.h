@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: where the children of child.cc find their orders and write what they are told.
+// For tests: the folder in which the children of child.cc find their orders and write their messages.
 #pragma once
 
 #include <unistd.h>
@@ -12,7 +12,7 @@
 
 namespace chimera::testing {
 
-/// A folder of its own that is gone with the object; every child that this process starts from now on uses it.
+/// A folder that is removed with the object. Every child that this process starts from now on uses it.
 class ChildFolder {
  public:
   ChildFolder() {
@@ -26,7 +26,7 @@ class ChildFolder {
   ChildFolder(const ChildFolder&) = delete;
   ChildFolder& operator=(const ChildFolder&) = delete;
 
-  /// `who`: a peer ("1"), one incarnation of it ("1.2"), or "face".
+  /// `who`: a peer ("1"), one incarnation of it ("1.2"), or the run client ("face").
   void order(const std::string& who, const std::string& what) const {
     std::ofstream(path_ + "/" + who, std::ios::app) << what << "\n";
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: what the manager sees of a real-time unit, played by a thread: a segment, a block, signals served by the
-// table of the state machine, cycles that publish a count.
+// For tests: an rtpu as the manager sees it, played by a thread. It has a segment and a block, serves signals by the
+// table of the state machine, and publishes a count in its cycles.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ class FakeRtpu {
   std::uint32_t incarnation() const noexcept { return incarnation_; }
   const BlockOwner& block() const noexcept { return block_; }
   std::uint32_t manager() const noexcept { return static_cast<std::uint32_t>(spec_.rtpus.size()); }
-  /// Takes over the descriptor of a manager's segment.
+  /// Maps a manager's segment; takes ownership of the descriptor.
   void meet(int descriptor, std::uint32_t incarnation) {
     const OwnedDescriptor passed(descriptor);
     auto segment = PeerSegment::open(descriptor, manager_layout_, tasks(), manager(), incarnation);
@@ -63,7 +63,7 @@ class FakeRtpu {
     outbox_ = Outbox(block_.outbox(manager()), &manager_.block().progress(peer_), incarnation_);
     ring();
   }
-  /// As if the task's method failed: its words, the state, the event.
+  /// Acts as if the task's method failed: its words, the state, the event.
   void fail(TaskId task, const char* text) {
     const std::scoped_lock lock(mutex_);
     FaultRecord record;
@@ -80,7 +80,7 @@ class FakeRtpu {
     tell(post);
     enter(task, State::kError);
   }
-  /// As if a method of the task had left a note.
+  /// Acts as if a method of the task had left a note.
   void leave_note(TaskId task, const char* text) {
     const std::scoped_lock lock(mutex_);
     FaultRecord record;
@@ -93,7 +93,7 @@ class FakeRtpu {
     post.happening = EventKind::kNote;
     tell(post);
   }
-  /// As if `from` had sent `on` to `task`.
+  /// Acts as if `from` had sent `on` to `task`.
   void request(TaskId task, TaskId from) {
     const std::scoped_lock lock(mutex_);
     Post post = about(task, PostKind::kRequest);
@@ -101,14 +101,14 @@ class FakeRtpu {
     post.signal = Signal::kOn;
     tell(post);
   }
-  /// Of the doorbells of its tasks.
+  /// Number of rings of the doorbells of its tasks.
   std::atomic<int> rings{0};
-  /// Of every byte that its tasks publish; below 0: they count.
+  /// Value of every byte that its tasks publish; below 0: they count.
   std::atomic<int> filled_with{-1};
   /// Serves no signal until set again.
   std::atomic<bool> is_deaf{false};
 
-  /// It dies, and has written over its memory: `word` at every 64th byte, or at every 8th. Its header, too.
+  /// Ends the rtpu after it has overwritten its memory: `word` at every 64th byte, or at every 8th. Its header, too.
   void die_overwritten(std::uint64_t word, std::size_t every = 64) {
     die();
     const std::span<std::byte> bytes = region_.writable();
@@ -186,7 +186,7 @@ class FakeRtpu {
     }
     step_.clear();
   }
-  /// The state that the signal leads to; ERROR when it is not legal (no signal leads there when all is ok).
+  /// The state to which the signal leads; ERROR if the signal is not legal. No legal signal leads to ERROR here.
   State after(const Post& post) const {
     Next at = next(block_.view().status(post.task).state, post.signal, false);
     while (at.kind == Next::Kind::kStep) at = rule(at.step).next[0];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: a keeper's end of the channel, played by the test, and real-time units played by threads.
+// For tests: the keeper's end of the channel, played by the test, and rtpus played by threads.
 #pragma once
 
 #include <fcntl.h>
@@ -42,8 +42,8 @@ inline Descriptor test_component(const std::string& name, std::vector<PortDescri
   return d;
 }
 
-/// Slow, so that a busy machine makes nothing stale. Two rtpus: sensor and filter on `servo`, law on `spare`; kp is the
-/// operator's. x of the sensor has two elements.
+/// Slow, so that no value is stale on a busy machine. Two rtpus: sensor and filter on `servo`, law on `spare`; the
+/// operator sets kp. x of the sensor has two elements.
 inline constexpr const char* kFakeText = R"(subsystem: fake
 rtpus: {servo: {cpu: 0, policy: edf}, spare: {cpu: 1, policy: muf}}
 tasks:
@@ -55,7 +55,7 @@ configurations: {run: [sensor, filter, law], rest: [sensor]}
 start: run
 )";
 
-/// The same with a task behind a server in `servo`.
+/// kFakeText with a task behind a server in `servo`.
 inline constexpr const char* kServedText = R"(subsystem: fake
 rtpus: {servo: {cpu: 0, policy: edf, executor: preemptive}, spare: {cpu: 1, policy: muf}}
 tasks:
@@ -65,7 +65,7 @@ configurations: {run: [sensor, lamp]}
 start: run
 )";
 
-/// Hardware of each kind: arm says when it is safe, winch cannot, log never moves.
+/// Hardware of each kind: arm reports that it is safe, winch cannot report it, log never moves.
 inline constexpr const char* kHardwareText = R"(subsystem: fake
 rtpus: {servo: {cpu: 0, policy: edf}, spare: {cpu: 1, policy: muf}}
 tasks:
@@ -103,7 +103,7 @@ inline Bundle fake_bundle(const std::string& text = kFakeText) {
   return {"0.1.0", text.empty() ? "" : "fake.yaml", text, {}, {}, {}, std::move(library)};
 }
 
-/// Everything outside the manager.
+/// All processes and memory outside the manager.
 class FakeSubsystem {
  public:
   explicit FakeSubsystem(const std::string& text = kFakeText) : bundle_(fake_bundle(text)) {
@@ -132,7 +132,7 @@ class FakeSubsystem {
   ~FakeSubsystem() {
     driver_.reset();
     rtpus_.clear();
-    std::error_code error;  // a manager that is left behind may still file
+    std::error_code error;  // a manager that was left behind may still file
     std::filesystem::remove_all(state_, error);
   }
 
@@ -151,7 +151,7 @@ class FakeSubsystem {
     return TaskId(std::size_t{0});
   }
 
-  /// A manager begins in this process; it is step()ped by the test.
+  /// Starts a manager in this process; the test steps it.
   void start_manager() {
     const Channel end = introduce_all();
     const Inherited inherited{again(end.descriptor()),       again(image_.descriptor()), again(decision_.descriptor()),
@@ -161,7 +161,7 @@ class FakeSubsystem {
     driver_ = *std::move(made);
     ASSERT_NE(driver_, nullptr);
   }
-  /// A manager begins as a process of its own; the test has to keep().
+  /// Starts a manager as a process of its own; the test must call keep().
   Process start_program(const char* program, int listening) {
     const Channel end = introduce_all();
     const std::string incarnation = std::to_string(manager_incarnation_), parent = std::to_string(::getpid());
@@ -173,12 +173,12 @@ class FakeSubsystem {
     EXPECT_TRUE(started) << started.error().message.c_str();
     return started ? *std::move(started) : Process();
   }
-  /// As by SIGKILL: it says nothing to anybody.
+  /// Ends the manager as SIGKILL does: it sends no message.
   void kill_manager() {
     driver_.reset();
     channel_ = Channel();
   }
-  /// As by a signal of that number; the segment stays for the last words.
+  /// Ends the rtpu as that signal does; the segment stays for its last words.
   void kill_rtpu(std::uint32_t index, int number) {
     rtpus_[index]->die();
     ended_[index] = KeeperMessage{.kind = KeeperMessage::Kind::kEnded,
@@ -190,7 +190,7 @@ class FakeSubsystem {
     EXPECT_TRUE(!channel_.is_open() || channel_.send(bytes_of(*ended_[index])));
   }
 
-  /// One round of the driver, what comes after it, and the keeper.
+  /// One round of ManagerLoop, of the steps after it, and of the keeper.
   bool step() {
     if (!driver_->step(now() + milliseconds(1))) return false;
     if (after_step) after_step();
@@ -198,7 +198,7 @@ class FakeSubsystem {
     return true;
   }
   std::function<void()> after_step;
-  /// Lets the driver and the keeper work until `holds`; false after kHangLimit.
+  /// Lets ManagerLoop and the keeper work until `holds`; false after kHangLimit.
   bool until(const std::function<bool()>& holds) {
     for (const Nanoseconds limit = now() + kHangLimit; now() < limit;) {
       if (!step()) return false;
@@ -220,7 +220,7 @@ class FakeSubsystem {
     }
     return text;
   }
-  /// What the keeper does when messages come.
+  /// Handles messages as the keeper does.
   void keep() {
     KeeperMessage message;
     int passed = -1;
@@ -242,10 +242,10 @@ class FakeSubsystem {
     }
   }
   std::optional<std::int32_t> end_asked;
-  std::optional<std::uint32_t> killed;  ///< the unit that the manager has asked to be killed; nobody is
+  std::optional<std::uint32_t> killed;  ///< the rtpu that the manager asked to kill; the test kills none
 
  private:
-  /// The channel of a new manager, with the inventory in it.
+  /// The channel of a new manager, with the whole inventory in it.
   Channel introduce_all() {
     auto ends = Channel::pair();
     EXPECT_TRUE(ends);

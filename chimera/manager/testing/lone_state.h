@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: the state of a manager of the application of fake_subsystem.h to which no real-time unit has spoken yet:
-// no process, no thread, no segment but its own.
+// For tests: the state of a manager of the application of fake_subsystem.h without messages of any rtpu. There is no
+// process, no thread, and no segment but its own.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ class LoneState {
     ADD_FAILURE() << "no task " << name;
     return TaskId(std::size_t{0});
   }
-  /// "KIND: TEXT" of each event after number `last`, a line each.
+  /// "KIND: TEXT" of each event after number `last`, one a line.
   std::string told(std::uint64_t last = 0) const {
     std::string text;
     for (std::uint64_t n = std::max(last + 1, world_->log.first()); n <= world_->log.last(); ++n)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: several real-time units and the manager's segment in one process, stepped by hand in virtual time. What
-// the keeper and the manager do, the test does.
+// For tests: several rtpus and the manager's segment in one process, stepped in virtual time. The test plays the keeper
+// and the manager.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@
 
 namespace chimera::testing {
 
-/// init and kill run at once, in ask(); or when the test says so.
+/// Only notes in ask() that init or kill must run. The test runs them later, for example in Unit::serve().
 class HandService final : public Service {
  public:
   void ask(TaskId task) noexcept override { asked.push_back(task); }
@@ -32,7 +32,7 @@ class HandService final : public Service {
   std::deque<TaskId> asked, done;
 };
 
-/// What a method computes passes on the clock of its unit.
+/// spend() of a method advances the clock of its rtpu.
 class SteppedJobClock final : public JobClock {
  public:
   explicit SteppedJobClock(VirtualClock& clock) noexcept : clock_(clock) {}
@@ -43,7 +43,7 @@ class SteppedJobClock final : public JobClock {
   VirtualClock& clock_;
 };
 
-/// What a test puts between a unit and its links in a switch.
+/// A layer of the test between an rtpu and its links in a switch.
 using BetweenLinks = std::function<std::shared_ptr<SwitchPeers>(std::uint32_t me, SwitchPeers& links)>;
 
 /// A segment of a peer, formatted, with its block.
@@ -118,7 +118,7 @@ struct Unit {
   std::unique_ptr<Executive> executive;
 };
 
-/// The application of `app` on as many units as it has rtpus.
+/// The application of `app` on one Unit for each of its rtpus.
 class Units {
  public:
   explicit Units(TestApplication& application, BetweenLinks between_links = {})
@@ -145,7 +145,7 @@ class Units {
     inboxes.assign(n, Inbox());
     for (std::uint32_t u = 0; u < n; ++u) show_manager(u);
   }
-  /// The keeper's proof of death.
+  /// Reports the death of an rtpu, as the keeper does.
   void die(std::uint32_t u) {
     keeper.alive[u] = 0;
     change();
@@ -154,7 +154,7 @@ class Units {
     decision.changes.fetch_add(1);
     for (std::uint32_t u = 0; u < n; ++u) Doorbell(decision.bells[u].word).ring();
   }
-  /// Lets `time` pass in steps of 100 us, unit by unit; services are done at once.
+  /// Lets `time` pass in steps of 100 us, one rtpu after the other; init and kill run at once.
   void run(Nanoseconds time) {
     for (const Nanoseconds end = now + time; now < end;) {
       now += microseconds(100);
@@ -166,7 +166,7 @@ class Units {
       collect();
     }
   }
-  /// As the manager would.
+  /// Sends a signal as the manager does.
   void send(Signal signal, std::vector<TaskId> tasks, std::uint64_t command = 0) {
     const std::uint32_t u = app.spec.tasks[tasks[0].index].rtpu.index;
     Outbox outbox(manager->block.outbox(u), &units[u]->segment.block.progress(n), manager->block.head().incarnation);
@@ -180,7 +180,7 @@ class Units {
     }
     Doorbell(decision.bells[u].word).ring();
   }
-  /// As the manager would: the number of the plan. `slow`: SwitchOrder::slow.
+  /// Orders a switch as the manager does; returns the number of the plan. `slow`: SwitchOrder::slow.
   std::uint16_t switch_to(std::uint32_t set, Nanoseconds lead = microseconds(300), Nanoseconds wait = seconds(1),
                           std::uint8_t slow = 0) {
     SwitchAgreement agreement(decision.switching, keeper.origin);
@@ -202,7 +202,7 @@ class Units {
     change();
     return order.number;
   }
-  /// As the manager knows it: by the last order.
+  /// The constants that the manager knows from the last order.
   std::uint32_t constants_in_force() {
     SwitchAgreement agreement(decision.switching, keeper.origin);
     const PlanWord plan = agreement.plan();

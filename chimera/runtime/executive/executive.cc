@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the cycle loop on a calibrated clock until it is told to stop.
+// Runs the cycle loop on a calibrated clock until a stop is requested.
 #include "chimera/runtime/executive/executive.h"
 
 #include "chimera/runtime/cycle_loop.h"

@@ -9,7 +9,7 @@
 
 namespace chimera {
 
-/// What Cycle::spend() and the clock are in real time: it computes until the time is used up.
+/// The clock of methods in real time, and Cycle::spend(): it computes until the time is used up.
 class ComputingClock final : public JobClock {
  public:
   explicit ComputingClock(Clock& clock) noexcept : clock_(clock) {}
@@ -24,10 +24,10 @@ class ComputingClock final : public JobClock {
   Clock& clock_;
 };
 
-/// Runs the tasks of `set` on `clock`. The set, the clocks and what the options point at outlive it.
+/// Runs the tasks of `set` on `clock`. The set, the clocks and all pointers of the options outlive it.
 class Executive {
  public:
-  /// `job_clock` is what methods see of `clock`: ComputingClock, or a twin that steps it. Context: setup.
+  /// `job_clock` is `clock` as methods see it: ComputingClock, or a twin that steps it. Context: setup.
   Executive(TaskSet& set, Clock& clock, JobClock& job_clock, const RunOptions& options);
 
   /// Spawns all tasks and turns the start set ON; the grid of releases begins when that is done. Refused as
@@ -49,7 +49,7 @@ class Executive {
   Nanoseconds origin() const noexcept { return releases_.origin(); }
   /// Context: setup, between runs.
   std::span<const RefusedSignal> refused() noexcept { return releases_.signals().refused(); }
-  /// Of the switches that were asked for. Context: setup, between runs.
+  /// Receipts of all requested switches. Context: setup, between runs.
   const SwitchReceipts& receipts() noexcept { return releases_.receipts(); }
 
  private:

@@ -74,7 +74,7 @@ struct Counts {
   std::size_t variables = 0, constants = 0;
 };
 
-// What a PortSpec and a GivenSpec have in common.
+// The fields that PortSpec and GivenSpec share.
 template <class Archive, class Item>
 void value_fields(Archive& archive, Item& item, const Counts& counts) {
   archive.number(item.type);
@@ -368,7 +368,7 @@ void judge_recovery(const ApplicationImage::Parts& parts, ImageReader& reader) {
     reader.require(judged.insert(each.task.index).second, "two limits of age for a task");
 }
 
-// Collects who is linked to what, and refuses links that verification never makes.
+// Collects the links of ports, and refuses links that verification never makes.
 void link(ApplicationImage::Parts& parts, ImageReader& reader) {
   for (GivenSpec& given : parts.operators) given.name = parts.variables[given.variable.index].name;
   parts.links.fill(parts.tasks, parts.operators, parts.variables, parts.constants);

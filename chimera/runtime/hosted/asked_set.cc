@@ -63,7 +63,7 @@ class SetMaker {
     asked_.remedy = std::move(remedy);
   }
 
-  /// Whoever produces what an asked task produces, or has its resource, goes OFF, unless it was asked for, too.
+  /// Turns OFF the tasks that produce the same variable as an asked task, or have its resource, unless asked for, too.
   void displace() {
     for (const Variable& variable : spec_.variables) {
       const auto is_asked = [this](const PortOf& p) { return lists_.plus.has(p.task); };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The set of tasks that "these ON, those OFF" leads to: whoever produces what the new ones produce gives way, a
-// producer that is missing comes along where there is only one, and the result is judged as a configuration is.
+// The set of tasks that "these ON, those OFF" leads to. Tasks that produce the same variables as a new one go OFF. A
+// missing producer goes ON too, if there is only one candidate. The result is judged as a configuration is.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace chimera {
 
-/// What came of it.
+/// Result of asked_set().
 struct AskedSet {
   TaskBits tasks;      ///< of a set that may be switched to
   std::string why;     ///< "": it may be; else what is wrong with it

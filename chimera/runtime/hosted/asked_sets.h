@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Works out what lists of tasks lead to, for a script and for tasks that ask, and keeps what was refused.
+// Finds the target sets of lists of tasks, for a script and for tasks that ask, and keeps refused lists.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ struct RefusedLists {
   std::string why;
 };
 
-/// What the manager makes of the same words (hosted/asked_set.h).
+/// Gives the same results as the manager (hosted/asked_set.h).
 class AskedSets final : public AskedTasks {
  public:
   /// The spec outlives this. Context: setup.

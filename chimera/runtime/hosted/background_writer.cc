@@ -61,7 +61,7 @@ struct BackgroundWriter::Worker {
 };
 
 struct BackgroundWriter::Workers {
-  std::mutex mutex;                          // of the list: whoever asks for the longest is another thread
+  std::mutex mutex;                          // of the list: another thread calls longest()
   std::vector<std::shared_ptr<Worker>> all;  // each shared with its thread, which may outlive us
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs what components do beside their cycles, in threads without real-time rights: a disk that is full, slow or
-// stalled costs no cycle. One thread for each instance, so that the stalled disk of one does not hold up another.
+// Runs the background of components in threads without real-time rights: a disk that is full, slow or stalled costs no
+// cycle. One thread for each instance, so that the stalled disk of one does not delay another.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,15 @@ namespace chimera {
 /// Context of everything: setup, or where init and kill run; may block. Called by one thread at a time.
 class BackgroundWriter final : public BackgroundThreads {
  public:
-  /// Each instance is called `every` so often; remove() waits at most `limit`.
+  /// Each instance is called once in each interval `every`; remove() waits at most `limit`.
   explicit BackgroundWriter(Nanoseconds every = milliseconds(10), Nanoseconds limit = seconds(1)) noexcept;
   BackgroundWriter(const BackgroundWriter&) = delete;
   BackgroundWriter& operator=(const BackgroundWriter&) = delete;
-  /// As remove() for each that is left.
+  /// Calls remove() for each that is left.
   ~BackgroundWriter();
 
   [[nodiscard]] bool add(void* instance, chimera_background background, std::uint32_t tag = 0) override;
-  /// Tag of the one whose call has been under way longest, when that is longer than `longer_than`; 0: none is. Any
+  /// Tag of the instance whose call has been under way longest, if that is longer than `longer_than`; 0: none is. Any
   /// thread.
   std::uint32_t longest(Nanoseconds longer_than) const;
 
@@ -33,7 +33,7 @@ class BackgroundWriter final : public BackgroundThreads {
   End end(Worker& worker, chimera_fault& fault) const;
 
   Nanoseconds every_, limit_;
-  struct Workers;  // not here: whoever includes this needs no threads and locks
+  struct Workers;  // not here: files that include this need no threads and locks
   std::unique_ptr<Workers> workers_;
 };
 

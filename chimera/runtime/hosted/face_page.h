@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the face of a run has done so far, in memory that outlives it: the next one goes on from there.
+// Progress of the process that prints a run (the face), in memory that outlives it: the next one goes on from there.
 // docs/formats/processes.md, "The run client".
 #pragma once
 

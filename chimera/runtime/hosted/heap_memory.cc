@@ -7,7 +7,7 @@
 namespace chimera {
 namespace {
 
-// What is never given back, in sight of whoever looks for leaks.
+// Memory that is never freed, kept reachable for leak detectors.
 struct NeverFreed {
   std::mutex mutex;
   std::vector<std::vector<AlignedBytes>> pieces;

@@ -44,7 +44,7 @@ class ImageWriter {
   std::vector<std::byte> out_;
 };
 
-/// Reads each value, and judges it: the bytes may be anybody's. What it makes of texts and bytes points into them.
+/// Reads each value, and judges it: the bytes may come from any source. Texts and bytes that it makes point into them.
 /// After the first fault nothing more is read.
 class ImageReader {
  public:
@@ -86,7 +86,7 @@ class ImageReader {
     for (std::uint32_t i = 0; i < n && is_good(); ++i) each(storage[i]);
     items = storage;
   }
-  /// What must hold of the values read so far.
+  /// Checks a condition on the values read up to now.
   void require(bool kept, const char* broken) {
     if (!kept && why_ == nullptr) why_ = broken;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// At which step of making a task a process died, in words.
+// Describes in words at which step of making a task a process died.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace chimera {
 
-/// Of a word that show_making() wrote: "while it loaded /lib/gain.so, the component of task 'amp'". Context: setup.
+/// Describes a word of show_making(): "while it loaded /lib/gain.so, the component of task 'amp'". Context: setup.
 std::string making_text(std::uint32_t word, std::string_view task, std::string_view object);
 
 }  // namespace chimera

@@ -21,18 +21,18 @@ struct alignas(64) BellWord {
   std::atomic<std::uint32_t> word{0};
 };
 
-/// Writable by all: nothing here decides anything but when somebody looks.
+/// Writable by all processes. Its words only decide when a process checks for news.
 struct DecisionPage {
   BellWord bells[kMaxPeers];  ///< one for each peer
-  /// Counted up after every change of a status word, of who lives, or of a wish of the manager: with release, loaded
-  /// with acquire by whoever then looks at those words.
+  /// Counted up after every change of a status word, of the living peers, or of a request of the manager: with release.
+  /// A process that then checks those words loads it with acquire.
   alignas(64) std::atomic<std::uint32_t> changes{0};
   /// By peer: what it makes before it shows a block of its own, as show_making() writes it. Relaxed, pairs with
   /// nothing: read when the peer is dead or hangs.
   alignas(64) std::atomic<std::uint32_t> making[kMaxPeers];
-  /// By group of standbys (runtime/standbys.h): the rtpu that is about to turn one of its tasks ON, bits 32-63 its
-  /// number and 1, bits 0-31 its incarnation; 0: none. Compare-and-swap, acq_rel: who has the claim sees the status
-  /// words that the one before has stored. What a dead process holds is free.
+  /// By group of standbys (runtime/standbys.h): the rtpu that is about to turn one of its tasks ON. Bits 32-63: its
+  /// number plus 1; bits 0-31: its incarnation; 0: none. Compare-and-swap, acq_rel: the new holder of the claim sees
+  /// the status words that the holder before has stored. A claim of a dead process is free.
   alignas(64) std::atomic<std::uint64_t> claims[kMaxGroups];
   /// How far a switch of configurations has come. Outlives the manager, which plans.
   SwitchPage switching;
@@ -47,7 +47,7 @@ struct KeeperPage {
   std::uint32_t n_rtpus = 0;
   std::atomic<std::uint32_t> ending{0};
   std::atomic<std::uint32_t> alive[kMaxPeers];  ///< incarnation of the peer that lives; 0: none
-  // Of the face of the run, face_page.h: for those who cannot see its page.
+  // Facts about the process that prints the run, face_page.h: for processes that cannot see its page.
   std::atomic<std::uint32_t> face_deaths{0};
   std::atomic<std::int32_t> face_signal{0};
   std::atomic<std::int32_t> lost_output{0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a signal, or the start of an application, was refused, in words.
+// Describes in words why a signal, or the start of an application, was refused.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace chimera {
 /// call of TaskLife::signal(). Context: setup; may block.
 std::string refusal_text(TaskSet& set, const SignalReport& report);
 
-/// What TaskLife::start() of the set reported, as a result. Context: setup; may block.
+/// The report of TaskLife::start() of the set, as a result. Context: setup; may block.
 Result<void> start_result(TaskSet& set, const SignalReport& report);
 
 }  // namespace chimera

@@ -15,7 +15,7 @@ namespace chimera {
 
 namespace {
 
-// What the manager wants of a task.
+// The goal that the manager sets for a task.
 struct Wish {
   // By the manager: the store-release of BlockOwner pairs with the acquire of BlockView.
   std::atomic<std::uint32_t> goal{0};
@@ -30,7 +30,7 @@ static_assert(std::atomic<std::uint64_t>::is_always_lock_free && std::atomic<std
 constexpr std::uint64_t round_up(std::uint64_t value, std::uint64_t to) noexcept { return (value + to - 1) / to * to; }
 constexpr std::uint64_t after(std::uint64_t begin, std::uint64_t bytes) noexcept { return begin + round_up(bytes, 64); }
 
-// Where the parts lie from the start of the block. What does not depend on the number of tasks comes first.
+// Where the parts lie from the start of the block. Parts whose size does not depend on the number of tasks come first.
 constexpr std::uint64_t kMemoryAt = sizeof(BlockHead);
 constexpr std::uint64_t kProgressAt = after(kMemoryAt, sizeof(ManagerMemory));
 constexpr std::uint64_t kOutboxAt = after(kProgressAt, sizeof(PostProgress) * kMaxPeers);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a peer tells the others beside its groups: states, profiles, the flag, posts, the tap. Written by its owner
-// only, read by everybody through read-only mappings. docs/formats/processes.md.
+// The data that a peer shows to the others beside its groups: states, profiles, the flag, posts, the tap. Only its
+// owner writes it; all others read it through read-only mappings. docs/formats/processes.md.
 //
 // The block of a segment lies at block_offset(layout) and is block_bytes(n_tasks) long. A reader takes n_tasks and
 // n_peers from its own image, never from the block.
@@ -42,37 +42,37 @@ struct alignas(64) BlockHead {
   std::atomic<PeerPhase> phase{PeerPhase::kStarting};
   std::atomic<std::uint32_t> flag{0};          ///< bit 0: the ON set is not legal; 1: a task raised it; the bits above
   std::atomic<std::uint32_t> running{0};       ///< TaskWord of the task and method; 0: between jobs
-  std::atomic<std::uint32_t> serving{0};       ///< the same for the service thread: init and kill
+  std::atomic<std::uint32_t> serving{0};       ///< as `running`, for the service thread: init and kill
   std::atomic<std::uint32_t> seen_changes{0};
   std::atomic<std::uint64_t> lost_posts{0};  ///< events that found no room in the manager's ring
-  std::atomic<std::uint64_t> beats{0};       ///< edges passed: one that does not grow is stuck in `running`
-  std::atomic<std::uint32_t> hung{0};        ///< as `running`: the method for whose sake the unit gives itself up
-  std::atomic<std::uint32_t> attended{0};    ///< how often its main thread came round: every 50 ms, or it hangs
+  std::atomic<std::uint64_t> beats{0};       ///< cycle boundaries passed; no growth: the rtpu hangs in `running`
+  std::atomic<std::uint32_t> hung{0};        ///< as `running`: the method because of which the rtpu ends itself
+  std::atomic<std::uint32_t> attended{0};    ///< rounds of its main thread: one every 50 ms, or it hangs
   std::atomic<std::int64_t> hung_limit{0};   ///< nanoseconds for which that method was waited for
   char grant[432] = {};                      ///< one line about real-time rights, zero-terminated
-  std::atomic<std::uint32_t> at_edge{0};     ///< as `running`, for a method that is called at an edge; 0: none
+  std::atomic<std::uint32_t> at_edge{0};     ///< as `running`, for a method called at a cycle boundary; 0: none
   std::atomic<std::uint32_t> background{0};  ///< as `running`: the background that is under way longest; 0: none
   std::atomic<std::uint32_t> jobs{0};        ///< cycles of the task in `running` that ended, as the main thread saw
-  SwitchProgress switching;                  ///< how far this unit has come with a switch
-  SwitchWishWords wish;                      ///< the configuration that a task of this unit asked for last
+  SwitchProgress switching;                  ///< how far this rtpu has come with a switch
+  SwitchWishWords wish;                      ///< the configuration that a task of this rtpu asked for last
 };
 inline constexpr std::uint64_t kBlockMagic = 0x314b4c42'4d494843;  // "CHIMBLK1" in memory
 
-/// What the manager must not forget when it dies. In the manager's block only. Read by its successor, when the process
-/// is known to be dead: pair with nothing.
+/// State that outlives the manager. Used in the manager's block only. Its successor reads it after the process is known
+/// to be dead: pairs with nothing.
 struct ManagerMemory {
   std::atomic<std::uint64_t> events{0};                         ///< number of the last event
   std::atomic<std::uint32_t> handled[kMaxRtpus];                ///< incarnation whose death was dealt with
   std::atomic<std::int64_t> restarts[kMaxRtpus][4];             ///< instants of the last restarts
   std::atomic<std::uint32_t> started{0};                        ///< 1: the start set has been asked for
   std::atomic<std::int64_t> started_at{0};                      ///< instant at which it went ON; 0: not yet
-  /// The wish of each unit that was dealt with, as wish_dealt_with(); units that live read it, too: relaxed, pairs with
+  /// The request of each rtpu that was dealt with, as wish_dealt_with(). Living rtpus read it, too: relaxed, pairs with
   /// nothing.
   std::atomic<std::uint64_t> wishes[kMaxRtpus];
   std::atomic<std::uint64_t> takeovers[kMaxRtpus];  ///< incarnation, and number of the last one that has a receipt
 };
 
-/// The journal of switches, which only the manager's block has in use: chimera/manager/switch_journal.h has its form.
+/// The journal of switches, used in the manager's block only. chimera/manager/switch_journal.h defines its format.
 inline constexpr std::size_t kJournalBytes = (128u << 10) + 1024;
 
 /// Views into a block over mapped bytes. Plain value; every accessor is O(1) and wait-free.
@@ -83,13 +83,13 @@ class BlockView {
   BlockView(const std::byte* bytes, std::uint32_t n_tasks) noexcept;
 
   const BlockHead& head() const noexcept;
-  /// Of the manager: what it saw last, for its successor.
+  /// In the manager's block: the status that the manager saw last, for its successor.
   TaskStatus status(TaskId task) const noexcept;
-  /// Has something else than its owner written over that?
+  /// True if the status is no valid word: something other than the owner has overwritten it.
   bool is_status_lost(TaskId task) const noexcept;
   /// Copied word by word: two numbers may be a cycle apart.
   Profile profile(TaskId task) const noexcept;
-  /// Of the manager: what is to become of the task (goal bits), and whether its group goes to the tap.
+  /// In the manager's block: the goal of the task (goal bits), and whether its group goes to the tap.
   std::uint32_t goal(TaskId task) const noexcept;
   bool is_tapped(TaskId task) const noexcept;
   const PostProgress& progress(std::uint32_t peer) const noexcept;
@@ -99,7 +99,7 @@ class BlockView {
   const SwitchPart& switch_part() const noexcept;
   const TakeoverRing& takeovers() const noexcept;
   std::span<const std::byte> journal() const noexcept;
-  /// Of a task of a unit: what is written when the unit is dead.
+  /// In the block of an rtpu: the frame to write for one of its tasks after the rtpu died.
   const SafeFrame& safe_frame(TaskId task, std::uint32_t index) const noexcept;
   bool is_there() const noexcept { return bytes_ != nullptr; }
 

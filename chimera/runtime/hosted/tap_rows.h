@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows out of the tap's records: what a task published, whole, or not at all and counted.
+// Builds rows from the tap's records: a publication of a task is whole, or it is left out and counted.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +21,8 @@ struct TapRow {
   std::span<const std::byte> payload;  ///< laid out as the group's (table/layout.h); valid until the next take()
 };
 
-/// The reader's side of Tap::append_row(), for one ring. Whatever the records say, nothing but whole rows of the
-/// stated sizes comes out. Context: any one thread; no allocation after construction.
+/// The reader's side of Tap::append_row(), for one ring. It only returns whole rows of the stated sizes, even if the
+/// records are wrong. Context: any one thread; no allocation after construction.
 class TapRows {
  public:
   /// `payload_bytes[i]`: of the output group of task i, a multiple of 8. Context: setup.

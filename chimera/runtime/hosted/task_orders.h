@@ -12,8 +12,8 @@ namespace chimera {
 /// cut at the first task by declaration. Requires: spec.variables and spec.start. Context: setup.
 std::vector<TaskId> make_on_order(const ApplicationSpec& spec);
 
-/// Every task once: spec.on_order backwards, tasks with hardware last, so that whoever commands a device is OFF before
-/// it. Context: setup.
+/// Every task once: spec.on_order backwards, tasks with hardware last, so that all tasks that command a device are OFF
+/// before it. Context: setup.
 std::vector<TaskId> make_end_order(const ApplicationSpec& spec);
 
 }  // namespace chimera

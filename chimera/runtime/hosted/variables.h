@@ -13,7 +13,7 @@
 
 namespace chimera {
 
-/// A view of spec.variables, which outlive it. Context: setup; the checks also at an edge.
+/// A view of spec.variables, which outlive it. Context: setup; the checks also at a cycle boundary.
 class Variables {
  public:
   explicit Variables(const ApplicationSpec& spec) noexcept : variables_(spec.variables) {}

@@ -36,7 +36,7 @@ class SmallestLegalSet : public ::testing::Test {
     app_.link(app_.tasks.size() - 1, 0, in);
     app_.link(app_.tasks.size() - 1, 1, out);
   }
-  /// What is said when exactly these tasks are ON.
+  /// The explanation if exactly these tasks are ON.
   std::string explain(std::vector<std::string_view> names) {
     const ApplicationSpec& spec = app_.make();
     std::vector<bool> on;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tasks as the edge of a preemptive context sees them.
+// Tasks as the cycle boundary of a preemptive context sees them.
 #include "chimera/runtime/preemptive/edge_access.h"
 
 #include <algorithm>

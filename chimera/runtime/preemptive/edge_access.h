@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the edge of a preemptive context touches tasks whose jobs have threads of their own: what it may touch, what it
-// learns of jobs that are under way, and how it runs a method of a task at the label of that task.
+// Access of the cycle boundary to the tasks of a preemptive context, whose jobs have threads of their own: which tasks
+// it may touch, facts about jobs that are under way, and calls of methods at the label of their task.
 #pragma once
 
 #include <vector>
@@ -10,18 +10,18 @@
 
 namespace chimera {
 
-/// In the section, by the thread that takes the edges, unless said otherwise. Context: cycle boundary; wait-free.
+/// In the section, by the thread of the cycle boundaries, unless said otherwise. Context: cycle boundary; wait-free.
 class EdgeAccess final : public JobThreads {
  public:
   /// The references are used from attach() on and outlive it. Context: setup.
   EdgeAccess(Releases& releases, ReadyJobs& ready, Processor& processor, JobClock& clock, std::size_t n_tasks);
 
-  /// The calling thread takes the edges from here on. Context: setup; outside the section.
+  /// The calling thread handles the cycle boundaries from here on. Context: setup; outside the section.
   void attach() noexcept;
 
   bool claim(TaskId task) noexcept override;
   Nanoseconds used_by_job(TaskId task) noexcept override;
-  /// As look_up_blocked() found it.
+  /// Result of look_up_blocked().
   bool is_blocked(TaskId task) noexcept override;
   /// The method runs outside the section, at the label of the task. Before attach(), and for a task with a job under
   /// way, it runs in the section.
@@ -36,27 +36,27 @@ class EdgeAccess final : public JobThreads {
   void let_release(TaskId task) noexcept override;
   Nanoseconds next_look(Nanoseconds now) const noexcept override { return now + kLook; }
 
-  /// Releases are taken, before `until`; all threads look at their tasks.
+  /// Releases before `until` are taken; all threads check their tasks.
   void open(Nanoseconds until) noexcept;
-  /// Threads follow the states of their tasks. Those for which nothing is new sleep on.
+  /// Threads follow the states of their tasks. Threads without news sleep on.
   void follow_all() noexcept;
 
-  /// Which jobs the edge at `now` reports as late that have begun and are not looked up yet. True when there are some:
-  /// look_up_blocked() is due.
+  /// Collects the begun jobs that the cycle boundary at `now` reports as late and that are not looked up yet. True if
+  /// there are some: look_up_blocked() is due.
   bool collect_late(Nanoseconds now) noexcept;
   /// Finds out which of the collected jobs sleep in a system call. Context: cycle boundary; outside the section; may
   /// block for some microseconds a job, in which others act.
   void look_up_blocked() noexcept;
-  /// The edge has reported what was missed.
+  /// The cycle boundary has reported the missed deadlines.
   void forget_blocked() noexcept;
 
  private:
-  /// Of the job of a task that is late.
+  /// State of the look-up for the late job of a task.
   struct LookUp {
     bool is_due = false, is_done = false, is_blocked = false;
   };
 
-  // The end of a job that is waited for asks for an edge; this is for one that never comes.
+  // The end of an awaited job asks for a cycle boundary; this time is for a job that never ends.
   static constexpr Nanoseconds kLook = milliseconds(1);
 
   void follow(JobThread& job, bool is_new) noexcept;
@@ -68,7 +68,7 @@ class EdgeAccess final : public JobThreads {
   Processor& processor_;
   JobClock& clock_;
   std::vector<LookUp> look_ups_;  // by task
-  pid_t thread_ = 0;              // 0: nobody runs yet
+  pid_t thread_ = 0;              // 0: no thread handles cycle boundaries yet
   Nanoseconds end_ = kNever;      // of the run
 };
 

@@ -61,7 +61,7 @@ TEST_F(EdgeAccessTest, RunsAMethodAtTheLabelOfTheTask) {
     EXPECT_EQ(job(0).phase.value(), JobPhase::kMethod);
     EXPECT_TRUE(job(0).is_held);
     EXPECT_EQ(ready().size(), 2u);
-    processor().enter();  // the section is free meanwhile
+    processor().enter();  // the section is free during the method
     processor().leave();
   });
   EXPECT_TRUE(was_called);
@@ -70,7 +70,7 @@ TEST_F(EdgeAccessTest, RunsAMethodAtTheLabelOfTheTask) {
   processor().leave();
 }
 
-// The thread of a job that was taken back is told so while the method runs.
+// The thread of a job that was taken back notices that while the method runs.
 TEST_F(EdgeAccessTest, AMethodIsNotOverWhenTheThreadNoticesThatItsJobWasTakenBack) {
   JobThread& one = release(0, at(10));
   EXPECT_TRUE(access().claim(TaskId(0u)));

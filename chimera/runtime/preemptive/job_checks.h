@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When the supervisor checks each job next, and the one alarm that wakes it for that.
+// Time of the next check of each job by the supervisor, and the one alarm that wakes it for that.
 //
 // A job that is alone in the ready list is checked up to kCoalesceWindow later than its check is due, when nothing has
 // to act at that instant: one setting of the alarm then serves several jobs. A setting costs more than the rest of a
@@ -20,11 +20,11 @@ class JobChecks {
   /// How much later a job that is alone may be checked; the alarm is put off a little before that.
   static constexpr Nanoseconds kCoalesceWindow = microseconds(600), kPutOffMargin = microseconds(150);
 
-  /// Of tasks with indices below `n_tasks`; no job of a periodic task is late sooner than `shortest_deadline` after
+  /// For tasks with indices below `n_tasks`. No job of a periodic task is late sooner than `shortest_deadline` after
   /// its release. Context: setup.
   JobChecks(std::size_t n_tasks, Nanoseconds shortest_deadline);
 
-  /// When the job is checked; kNever: not.
+  /// Time of the check of the job; kNever: none.
   Nanoseconds due(const JobThread& job) const noexcept { return due_[job.id.index]; }
   /// The alarm is moved by rearm(), or comes in time anyhow.
   void set(const JobThread& job, Nanoseconds instant) noexcept { due_[job.id.index] = instant; }
@@ -49,7 +49,7 @@ class JobChecks {
   /// When a job that has the processor will have used up the capacity of its server; kNever: it has none, or runs below
   /// all others.
   static Nanoseconds end_of_capacity(JobThread& job, Nanoseconds now) noexcept;
-  /// The budget is to be looked at when it ends, and not at the end of the job.
+  /// True if the budget must be checked when it ends, and not at the end of the job.
   static bool acts_at_end_of_budget(const TaskSpec& spec) noexcept;
 
   /// Waits for the alarm. Context: the supervisor; outside the section; blocks.

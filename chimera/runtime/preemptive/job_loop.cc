@@ -29,7 +29,7 @@ JobLoop::JobLoop(TaskSet& set, Releases& releases, ReadyJobs& ready, JobChecks& 
 void JobLoop::run(JobThread& me, std::atomic<std::size_t>& n_attached) {
   ready_.attach_thread();
   me.attach();
-  n_attached.fetch_add(1, std::memory_order_release);  // pairs with the load of whoever starts the threads
+  n_attached.fetch_add(1, std::memory_order_release);  // pairs with the load of the thread that starts these
   processor_.enter();
   for (;;) {
     const std::uint32_t heard = me.heard();  // before the look at everything: no ring is lost
@@ -44,7 +44,7 @@ void JobLoop::run(JobThread& me, std::atomic<std::size_t>& n_attached) {
   processor_.leave();
 }
 
-// Leaves the section meanwhile.
+// Waits outside the section.
 void JobLoop::wait(JobThread& me, std::uint32_t heard, Nanoseconds until) noexcept {
   const int descriptor = listens(me) ? me.task.descriptor : -1;
   processor_.leave();
@@ -64,7 +64,7 @@ void JobLoop::accept_event(JobThread& me, Nanoseconds now) noexcept {
   me.next_release = job.grant(now).may_run ? now : job.next_change(now);
 }
 
-// No event has come, and one that does may be taken at once: the descriptor stays readable meanwhile.
+// True if no event has come, and one that comes may be accepted at once. The descriptor stays readable until then.
 bool JobLoop::listens(const JobThread& me) const noexcept {
   if (!me.sporadic || !me.is_on || me.is_held || processor_.is_paused()) return false;
   return me.task.descriptor >= 0 && !me.sporadic->job().has_event() && me.task.events == 0;
@@ -85,11 +85,11 @@ void JobLoop::run_job(JobThread& me, Nanoseconds now) noexcept {
     end(me, now);
     return;
   }
-  processor_.enter();  // at the ceiling: who cancelled the job has raised this thread
+  processor_.enter();  // at the ceiling: the canceller of the job has raised this thread
   me.phase.acknowledge_cancel();
 }
 
-// Takes the newest release that has come; what came before it is dropped. False: nothing may begin.
+// Takes the newest release that has come, and drops those before it. False: no job may begin.
 bool JobLoop::accept_release(JobThread& me, Nanoseconds now) noexcept {
   const TaskSpec& s = me.spec;
   if (me.sporadic) {  // nothing is due at an instant but the server
@@ -177,8 +177,8 @@ void JobLoop::end(JobThread& me, Nanoseconds now) noexcept {
   if (ready_.size() == 0) checks_.put_off(now);
   me.is_shown = false;
   if (me.sporadic || now - me.shown_at >= kShowGap) show(me, now);  // another event may never come
-  if (me.task.state != State::kOn) me.is_on = false;  // the edge will say so too
-  if (me.is_awaited) me.is_held = true;  // until the edge has looked: the next job may be due already
+  if (me.task.state != State::kOn) me.is_on = false;  // the cycle boundary will set it, too
+  if (me.is_awaited) me.is_held = true;  // until the cycle boundary has checked: the next job may be due already
   const bool leaves_something = releases_.settlement().is_unsettled(me.id) || !me.task.pending.empty();
   if (me.is_awaited || leaves_something || processor_.is_paused()) processor_.edge_bell().ring();
   me.is_awaited = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the thread of every task does: it sleeps at the ceiling until a release, runs the job at its label, and raises
-// itself to say that the job is over.
+// The loop of every task's thread: it sleeps at the ceiling until a release, runs the job at its label, and raises
+// itself to report the end of the job.
 //
 //   sleep | [next release, label] | body at the label | raise | [end]          [...]: in the section
 #pragma once
@@ -13,7 +13,7 @@ namespace chimera {
 /// One for all threads of a context. Context: cycle; in the section, by the thread of the task; unless said otherwise.
 class JobLoop {
  public:
-  /// `guest` null: profiles are shown to nobody. The references outlive it. Context: setup.
+  /// A null listener: profiles are not shown. The references outlive it. Context: setup.
   JobLoop(TaskSet& set, Releases& releases, ReadyJobs& ready, JobChecks& checks, Processor& processor,
           Supervisor& supervisor, ThreadClock& clock, BoundaryListener* guest);
 
@@ -22,7 +22,7 @@ class JobLoop {
   void run(JobThread& me, std::atomic<std::size_t>& n_attached);
   /// Threads that wake end. Context: setup; in the section.
   void quit() noexcept { quits_ = true; }
-  /// Hands out the profile of the task, which no job is writing. Context: cycle boundary too.
+  /// Shows the profile of the task, which no job is writing. Context: cycle boundary too.
   void show(JobThread& job, Nanoseconds now) noexcept;
 
  private:

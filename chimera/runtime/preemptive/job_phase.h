@@ -16,11 +16,11 @@
 //
 //    kIdle       no job; the thread sleeps, or is on its way to
 //    kReady      the job is in the ready list and its thread lowered; it has not been dispatched yet
-//    kClaimed    it was ready; who claimed it is in the section, changes it, and gives it back or cancels it
+//    kClaimed    it was ready; the claiming thread is in the section, changes it, and gives it back or cancels it
 //    kCancelled  it was ready and never runs; its thread has not noticed yet
 //    kRunning    the body runs, is preempted, halted or blocked
-//    kEnded      the body (or method) is over; whoever ran it raises its own level, which nobody else changes any more
-//    kMethod     no job: the thread of the edge runs another method of the task
+//    kEnded      the body (or method) is over; its thread raises its own level, which no other thread changes any more
+//    kMethod     no job: the thread of the cycle boundary runs another method of the task
 //
 // try_begin, finish and end_method happen outside the section, every other move in it. A move from a phase from which
 // it is not drawn ends the program; those that are tried, and acknowledge_cancel, do nothing then.
@@ -39,8 +39,8 @@ class JobPhase {
 
   /// A job is released. Requires: kIdle.
   void release() noexcept { move(kIdle, kReady); }
-  /// The thread has been dispatched; false: the job is claimed or cancelled, or the task runs a method by now. In the
-  /// section nobody has a job claimed, and false is final. Context: the thread itself; outside the section too.
+  /// The thread has been dispatched. False: the job is claimed or cancelled, or the task now runs a method. In the
+  /// section no thread has a job claimed, and false is final. Context: the thread itself; outside the section too.
   bool try_begin() noexcept { return try_move(kReady, kRunning); }
   /// Requires: kRunning. Context: the thread itself; outside the section.
   void finish() noexcept { move(kRunning, kEnded); }
@@ -53,14 +53,14 @@ class JobPhase {
   void unclaim() noexcept { move(kClaimed, kReady); }
   /// It never begins. Requires: kClaimed.
   void cancel() noexcept { move(kClaimed, kCancelled); }
-  /// The thread knows by now; no effect in other phases, for a method may run by then. Context: the thread itself.
+  /// The thread has noticed the cancel. No effect in other phases, since a method may run. Context: the thread itself.
   void acknowledge_cancel() noexcept { (void)try_move(kCancelled, kIdle); }
 
-  /// The thread of the edge is about to run a method at the label of the task. Requires: is_free().
+  /// The thread of the cycle boundary is about to run a method at the label of the task. Requires: is_free().
   void begin_method() noexcept;
-  /// Requires: kMethod. Context: the thread of the edge; outside the section.
+  /// Requires: kMethod. Context: the thread of the cycle boundary; outside the section.
   void end_method() noexcept { move(kMethod, kEnded); }
-  /// The thread has ended in the body: nobody else says that the job is over. Requires: kRunning.
+  /// The thread has ended in the body, so another thread must report the end of the job. Requires: kRunning.
   void lose_thread() noexcept { move(kRunning, kIdle); }
 
   /// Context of questions: any.
@@ -69,7 +69,7 @@ class JobPhase {
   bool is_ready() const noexcept { return value() == kReady; }
   bool is_running() const noexcept { return value() == kRunning; }
   bool has_ended() const noexcept { return value() == kEnded; }
-  /// An edge may touch the task: nothing of it is under way.
+  /// A cycle boundary may touch the task: no job or method of it is under way.
   bool is_free() const noexcept { return is_idle() || value() == kCancelled; }
 
  private:
@@ -78,8 +78,9 @@ class JobPhase {
     return value_.compare_exchange_strong(from, to, std::memory_order_acq_rel, std::memory_order_acquire);
   }
 
-  // unclaim() pairs with try_begin(): the thread sees how its job was changed. try_begin() pairs with value(): who sees
-  // kRunning sees JobThread::used_before(). finish() pairs with value(): who sees kEnded leaves the level alone.
+  // unclaim() pairs with try_begin(): the thread sees how its job was changed. try_begin() pairs with value(): a thread
+  // that sees kRunning sees JobThread::used_before(). finish() pairs with value(): a thread that sees kEnded leaves the
+  // level alone.
   std::atomic<Value> value_{kIdle};
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The thread that runs the jobs of one task: how it is woken, and what its present job has used.
+// The thread that runs the jobs of one task: how it is woken, and the execution time of its present job.
 #include "chimera/runtime/preemptive/job_thread.h"
 
 namespace chimera {

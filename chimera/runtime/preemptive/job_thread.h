@@ -17,14 +17,14 @@
 
 namespace chimera {
 
-/// The public members are written in the section; the thread of the task also reads `job` and `is_illegal` while its
-/// job runs, when nobody writes them. Context of functions: cycle; wait-free; in the section, unless said otherwise.
+/// The public members are written in the section. The thread of the task also reads `job` and `is_illegal` while its
+/// job runs; no thread writes them then. Context of functions: cycle; wait-free; in the section, unless said otherwise.
 class JobThread {
  public:
   /// Context: setup.
   explicit JobThread(Task& owner) noexcept;
 
-  /// What the thread runs, from here on. Context: setup; may block.
+  /// Starts the thread, which runs `body`. Context: setup; may block.
   template <class Body>
   void start(Body body) {
     thread_ = std::thread(body);
@@ -34,18 +34,20 @@ class JobThread {
   /// Context: setup; blocks until the thread has ended.
   void join() { thread_.join(); }
   pid_t thread() const noexcept { return thread_id_; }
-  /// Ends what the thread waits for. Context: any.
+  /// Ends the wait of the thread. Context: any.
   void wake() noexcept;
-  /// To be read before looking at what a wait would be for: no wake() is lost. Context: the thread itself.
+  /// Returns a count of rings. If it is read before the check for work, a wait with it loses no wake(). Context: the
+  /// thread itself.
   std::uint32_t heard() const noexcept { return bell_.read(); }
   /// Waits for wake() since `heard`, at most until `instant`. Context: the thread itself; outside the section; blocks.
   void wait(std::uint32_t heard, Nanoseconds instant) noexcept { (void)bell_.wait_until(heard, instant); }
 
-  /// What the thread has used by now is that of earlier jobs. Context: the thread itself; outside the section.
+  /// Notes that all execution time used up to now belongs to earlier jobs. Context: the thread itself; outside the
+  /// section.
   void begin_use() noexcept { used_before_.store(used_by_this_thread().count, std::memory_order_relaxed); }
   /// The execution time of earlier jobs. Context: any.
   Nanoseconds used_before() const noexcept { return Nanoseconds{used_before_.load(std::memory_order_relaxed)}; }
-  /// Execution time of the job that runs, or hangs; zero when its thread is gone.
+  /// Execution time of the job that runs, or hangs; zero if its thread is gone.
   Nanoseconds used() const noexcept;
   /// The next release is not held, and no run ends before it.
   bool takes_release() const noexcept { return next_release < release_end; }
@@ -55,13 +57,13 @@ class JobThread {
     return next_release + spec.period * ((newest - next_release) / spec.period);
   }
 
-  /// What a job of the task runs now: cycle, sync or error. Context: any.
+  /// The method that a job of the task runs now: cycle, sync or error. Context: any.
   Method method() const noexcept { return std::atomic_ref(task.job_method).load(std::memory_order_relaxed); }
 
   /// From here on the job has the processor, as far as can be told. kNever: it has not had the processor yet.
   /// Context: any.
   void begin_slice(Nanoseconds now) noexcept { slice_.store(now.count, std::memory_order_relaxed); }
-  /// No effect when the job was preempted, and went on, since its thread read the clock. Context: the thread itself;
+  /// No effect if the job was preempted, and went on, since its thread read the clock. Context: the thread itself;
   /// outside the section.
   void begin_first_slice(Nanoseconds now) noexcept {
     std::int64_t none = kNever.count;
@@ -73,13 +75,13 @@ class JobThread {
   const TaskSpec& spec;
   const TaskId id;
   std::optional<SporadicThread> sporadic;  ///< of a task behind a server
-  pid_t carrier = 0;  ///< who runs at the label of the task: its thread, or that of the edges
+  pid_t carrier = 0;  ///< the thread that runs at the label of the task: its own, or that of the cycle boundaries
 
   Nanoseconds next_release = kNever;  ///< kNever: the task is not ON, or no event has come
   Nanoseconds release_end = kNever;   ///< releases at this instant and later are not taken
-  bool is_on = false;                 ///< as far as the thread was told
-  bool is_held = false;               ///< no job begins until an edge has looked at the task
-  bool is_awaited = false;            ///< an edge found a job under way and comes again at its end
+  bool is_on = false;                 ///< as far as the thread knows
+  bool is_held = false;               ///< no job begins until a cycle boundary has checked the task
+  bool is_awaited = false;            ///< a cycle boundary found a job under way and comes again at its end
 
   JobPhase phase;           ///< of the present job; also moved outside the section, where JobPhase says so
   Job job;                  ///< the present one
@@ -87,8 +89,8 @@ class JobThread {
   bool is_illegal = false;  ///< the illegal-configuration flag, as it was then
   bool is_demoted = false;  ///< runs below all others
 
-  Nanoseconds shown_at;  ///< when the profile of the task was last handed out
-  bool is_shown = true;  ///< that was the profile as it is
+  Nanoseconds shown_at;  ///< when the profile of the task was last shown
+  bool is_shown = true;  ///< the profile has not changed since
 
  private:
   std::thread thread_;

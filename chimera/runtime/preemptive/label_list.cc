@@ -9,7 +9,7 @@
 namespace chimera {
 namespace {
 
-constexpr std::int32_t kStep = 4;  // at most so many levels are left free beside a new first or last one
+constexpr std::int32_t kStep = 4;  // most levels that are left free beside a new first or last job
 
 }  // namespace
 
@@ -28,8 +28,8 @@ bool LabelList::goes_before(const LabelledJob& a, const LabelledJob& b) const no
   return a.task.index < b.task.index;
 }
 
-// Above all that it goes before. Whoever ran once stands above its equals, so they need not be in order of tasks: then
-// it is a place between one that it goes before and one that it does not.
+// The place above all jobs that it goes before. A job that ran once stands above its equals, so equals need not be in
+// the order of tasks. The place is then between a job that it goes before and one that it does not.
 std::size_t LabelList::place_of(const LabelledJob& job) const noexcept {
   const auto goes_before_it = [&](const LabelledJob& other) { return goes_before(job, other); };
   return static_cast<std::size_t>(std::partition_point(jobs_.begin(), jobs_.end(), goes_before_it) - jobs_.begin());

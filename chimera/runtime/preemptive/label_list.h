@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which priority level ("label") every ready job of one processor runs at, so that the kernel dispatches in order of
-// urgency: the order of levels is the order of urgency. Pure bookkeeping; whoever owns it tells the kernel.
+// Chooses the priority level ("label") of every ready job of one processor, so that the kernel dispatches in order of
+// urgency: the order of levels is the order of urgency. Pure bookkeeping; the owner passes changes to the kernel.
 //
 //   entry 0 ... np-1 | np ... n-1        ascending urgency
 //   parked: the base   levels strictly between base and ceiling, strictly ascending
@@ -26,7 +26,7 @@ struct LabelledJob {
   std::int32_t level = 0;
 };
 
-/// To be told to the kernel, in this order.
+/// A change for the kernel, to be made in this order.
 struct LevelChange {
   TaskId task;
   std::int32_t level = 0;
@@ -41,13 +41,13 @@ class LabelList {
   /// Jobs of at most `capacity` tasks, at levels base (parked) and base+1 .. ceiling-1. Requires: ceiling - base >= 2.
   LabelList(Policy policy, std::size_t capacity, std::int32_t base, std::int32_t ceiling);
 
-  /// Adds a job; what changes, the new job's own level last. Requires: no job of this task is in the list.
+  /// Adds a job. Returns the changes, the new job's own level last. Requires: no job of this task is in the list.
   std::span<const LevelChange> insert(const LabelledJob& job) noexcept;
-  /// Takes the task's job out; what others gain by it. Empty also when it had none.
+  /// Removes the task's job. Returns the changes of others; empty also if it had none.
   std::span<const LevelChange> remove(TaskId task) noexcept;
-  /// The urgency of a job changed: it goes where it belongs now. No effect for a task without a job.
+  /// The urgency of a job changed: moves it to its new place. No effect for a task without a job.
   std::span<const LevelChange> rekey(TaskId task, const Urgency& urgency) noexcept;
-  /// This task's job has the processor (invalid: nobody's): at equal urgency it goes on.
+  /// This task's job has the processor (invalid: no job has): at equal urgency it goes on.
   void dispatch(TaskId task) noexcept { running_ = task; }
 
   std::size_t size() const noexcept { return jobs_.size(); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The run of a preemptive context, edge by edge: signals, posts of others, what jobs left behind. Everything in the
-// section but the methods, which run at the label of their task.
+// Runs a preemptive context, one cycle boundary after the other: signals, posts of others, results of jobs. All of it
+// runs in the section except the methods, which run at the label of their task.
 #include "chimera/runtime/preemptive/preemptive_executor.h"
 
 #include <algorithm>
@@ -105,7 +105,7 @@ RunEnd PreemptiveExecutor::run(Nanoseconds duration) noexcept {
   }
 }
 
-// Returns the instant of the edge, in the section. Every job that is late then and has begun has been looked up, once.
+// Returns the instant of the cycle boundary, in the section. Every begun job that is late then has been looked up once.
 // To look one up takes some microseconds outside the section, in which more jobs may be late.
 Nanoseconds PreemptiveExecutor::enter_with_look_ups() noexcept {
   processor_.enter();

@@ -2,10 +2,10 @@
 // Preemptive scheduling of one processor in real time: a thread per task under SCHED_FIFO, no dispatcher.
 //
 //   thread of a task:  sleep at the ceiling | [release, label] | body at the label | raise | [end]     job_loop.h
-//   edges:             the caller of run(), at the ceiling; other methods run at the label of their task  edge_access.h
+//   cycle boundaries:  the caller of run(), at the ceiling; other methods run at the label of their task  edge_access.h
 //   supervisor:        at the ceiling, woken by one alarm: budgets, deadlines, hanging jobs, capacities   supervisor.h
 //
-// [...] is the section (processor.h): what all share is touched there and nowhere else.
+// [...] is the section (processor.h): shared data is touched there and nowhere else.
 // docs/design/preemptive.md; the figures behind it: labels cost 0.4 of a dispatcher thread.
 #pragma once
 
@@ -32,9 +32,9 @@ class PreemptiveExecutor final {
   void start(Nanoseconds origin);
   Releases& releases() noexcept { return releases_; }
   /// Runs until `duration` from the origin of the grid (kNever: without limit): no job is released from there on, those
-  /// under way are waited for. May be called again to go on. Context: the thread that takes the edges.
+  /// under way are waited for. May be called again to go on. Context: the thread that handles cycle boundaries.
   RunEnd run(Nanoseconds duration) noexcept;
-  /// Carries out `act` as an edge. Context: setup, between runs.
+  /// Carries out `act` as a cycle boundary. Context: setup, between runs.
   template <class Act>
   void at_edge(Act&& act) {
     processor_.enter();

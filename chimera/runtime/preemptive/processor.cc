@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who has the processor after each change of the ready list, what that means for checks, records and profiles.
+// Follows which job has the processor after each change of the ready list: for checks, records and profiles.
 #include "chimera/runtime/preemptive/processor.h"
 
 #include "chimera/runtime/task_word.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all threads of a preemptive context share: the section, and the job that has the processor.
+// Data that all threads of a preemptive context share: the section, and the job that has the processor.
 //
 // Every thread that enters the section runs at the ceiling, on one CPU, and neither blocks nor faults in it, so the
 // kernel's own order excludes; the lock behind it is for threads without real-time rights. A job lowers itself to its
@@ -46,7 +46,7 @@ class Processor {
   void cancel(JobThread& job, Nanoseconds now) noexcept;
   /// The job had the processor up to `now`, as far as can be told.
   void record_slice(const JobThread& job, Nanoseconds now) noexcept;
-  /// Which job runs, for those who ask what the process does, or did when it died.
+  /// Shows which job runs, for processes that ask about this one, also after its death.
   void show_running() noexcept;
 
   /// When a job that has the processor will have used up its budget: JobChecks::end_of_budget().
@@ -60,9 +60,9 @@ class Processor {
   bool is_paused() const noexcept { return is_paused_; }
   void pause() noexcept { is_paused_ = true; }
   void go_on() noexcept { is_paused_ = false; }
-  /// Where run() sleeps, and an edge is asked for. Context: any; wait-free.
+  /// The bell on which run() sleeps: a ring asks for a cycle boundary. Context: any; wait-free.
   Doorbell edge_bell() const noexcept { return Doorbell(*bell_); }
-  /// Written by those who count. Section and levels are in seen() alone.
+  /// Written by the parts that count. Section and levels are in seen() alone.
   ProcessorCounts& counts() noexcept { return counts_; }
   /// Context: between runs.
   ProcessorCounts seen() const noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a preemptive context runs, and what was seen of it there.
+// The processor of a preemptive context, and counts of events on it.
 #pragma once
 
 #include <atomic>
@@ -9,21 +9,21 @@
 
 namespace chimera {
 
-/// Where a preemptive context runs.
+/// The processor of a preemptive context.
 struct ProcessorPlace {
   int cpu = -1;       ///< -1: any (without real-time levels)
   int ceiling = 0;    ///< SCHED_FIFO level of the section; 0: no real-time levels at all
   int base = 0;       ///< of jobs that found no level of their own; labels lie between; ceiling - base >= 2
   Nanoseconds quantum = microseconds(500);  ///< of the laxity policy
-  /// Of each `window` jobs may use `share`; beyond that some are demoted below all others, before the kernel takes the
+  /// Jobs may use `share` of each `window`. Beyond that some are demoted below all others, before the kernel takes the
   /// processor from all of them (sched_rt_runtime_us). kNever: no limit.
   Nanoseconds share = kNever, window = seconds(1);
   bool checks = false;  ///< looks up every level in the kernel at every entry to the section: for tests, costs
-  /// Rung when an edge is due; run() sleeps on it. Null: one of its own.
+  /// Rung when a cycle boundary is due; run() sleeps on it. Null: one of its own.
   std::atomic<std::uint32_t>* bell = nullptr;
 };
 
-/// What was seen of the section and the levels, for tests and figures.
+/// Counts of events of the section and the levels, for tests and figures.
 struct ProcessorCounts {
   std::uint64_t jobs = 0;
   std::uint64_t level_changes = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order of importance among the tasks of a processor, and what each part of them may use.
+// The order of importance among the tasks of a processor, and the time that each part of them may use.
 #include "chimera/runtime/preemptive/processor_share.h"
 
 #include <algorithm>

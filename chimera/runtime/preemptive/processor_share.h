@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much of the processor the jobs of a context have used lately, and which tasks are demoted first when that comes
-// near the share that the kernel grants all real-time threads together: beyond it the kernel takes the processor from
-// every one of them. Bookkeeping only. docs/design/preemptive.md
+// Recent use of the processor by the jobs of a context, and the tasks to demote first when it comes near the share that
+// the kernel grants all real-time threads together: beyond it the kernel takes the processor from every one of them.
+// Bookkeeping only. docs/design/preemptive.md
 #pragma once
 
 #include <span>
@@ -23,23 +23,23 @@ class ProcessorShare {
   };
 
   /// Less important are the tasks of a lower criticality than the highest (maximum urgency first), or those of the
-  /// longest period (rate monotonic); deadlines say nothing of it. Of the tasks for which `is_mine`. Context: setup.
+  /// longest period (rate monotonic); deadlines do not decide it. For tasks with `is_mine`. Context: setup.
   ProcessorShare(std::span<const Task> tasks, const std::vector<bool>& is_mine, Policy policy, const Limit& limit);
 
   bool is_limited() const noexcept { return limit_.share != kNever; }
   /// From `now` on a job of `task` has the processor; invalid: no job has. Nothing is counted without a limit.
   void set_running(TaskId task, Nanoseconds now) noexcept;
-  /// By all jobs within the window.
+  /// Time used by all jobs within the window.
   Nanoseconds used(Nanoseconds now) noexcept { return use_.used(now); }
 
-  /// What less important tasks may still use: the share less what the others need (by their budgets, or what they used
-  /// where that is more). Not above zero: one of them is to be demoted. Requires: is_limited().
+  /// Time left for less important tasks: the share less the need of the others (their budgets, or their use if it is
+  /// more). Not above zero: one less important task must be demoted. Requires: is_limited().
   Nanoseconds left(Nanoseconds now) noexcept;
-  /// May a job of the task be demoted at `now`, when nothing is left? A less important one always. Any other one only
-  /// when all together have used up the share: one that is over its budget, and all but the most urgent job.
+  /// True if a job of the task may be demoted at `now`, when nothing is left. A less important one always. Any other
+  /// one only if all together have used up the share: one that is over its budget, and all but the most urgent job.
   bool may_demote(TaskId task, bool is_over_budget, bool is_most_urgent, Nanoseconds now) noexcept;
 
-  /// A job of the task has been demoted; true when that is to be reported, once a second at most.
+  /// A job of the task has been demoted; true if that is to be reported, once a second at most.
   bool note_demoted(TaskId task, Nanoseconds now) noexcept;
   /// The task to be reported, once; invalid: none.
   TaskId pop_demoted() noexcept;

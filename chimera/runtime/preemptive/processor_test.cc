@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Without real-time levels, and without other threads: who has the processor after each change.
+// Without real-time levels, and without other threads: the job that has the processor after each change.
 #include "chimera/runtime/preemptive/processor.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ struct ProcessorTest : testing::PreemptiveParts, ::testing::Test {
     add("slow", milliseconds(20));
     make(Policy::kEdf, where);
   }
-  /// Whose body runs, as another process reads it.
+  /// The task whose body runs, as another process reads it.
   TaskId shown() { return TaskWord::found(job(0).task.running->load()).task(); }
 };
 

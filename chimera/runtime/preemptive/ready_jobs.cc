@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Levels of threads: what the ready list says is told to the kernel, and for tests compared with what it does.
+// Passes the levels of the ready list to the kernel, and for tests compares them with those in the kernel.
 #include "chimera/runtime/preemptive/ready_jobs.h"
 
 #include "chimera/platform/realtime.h"
@@ -7,7 +7,7 @@
 namespace chimera {
 namespace {
 
-constexpr int kUnusedCeiling = 20;  // of labels that the kernel is never told
+constexpr int kUnusedCeiling = 20;  // of labels that are never passed to the kernel
 
 Nanoseconds rounded(Nanoseconds t, Nanoseconds quantum) noexcept {
   return quantum * ((t.count + quantum.count / 2) / quantum.count);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The jobs of one processor that are ready, in order of urgency, each at its level: what LabelList says of them is told
-// to the kernel here.
+// The jobs of one processor that are ready, in order of urgency, each at its level. ReadyJobs passes the level changes
+// of LabelList on to the kernel.
 #pragma once
 
 #include <deque>
@@ -16,26 +16,26 @@ namespace chimera {
 /// In the section, unless said otherwise. Context: cycle; wait-free but for the system calls that change levels.
 class ReadyJobs {
  public:
-  /// Of the tasks of `set` that are its own. Context: setup.
+  /// Handles the tasks of `set` that belong to the rtpu of `set`. Context: setup.
   ReadyJobs(TaskSet& set, const ProcessorPlace& place, Policy policy);
 
-  /// Of the tasks of this context, ready or not.
+  /// Threads of the tasks of this context, ready or not.
   std::deque<JobThread>& threads() noexcept { return threads_; }
   const std::deque<JobThread>& threads() const noexcept { return threads_; }
   /// Null: a task of another context.
   JobThread* of(TaskId task) noexcept { return of_task_[task.index]; }
   const JobThread* of(TaskId task) const noexcept { return of_task_[task.index]; }
 
-  /// The job of the task, or another method of it, is ready and due at `deadline`. Answers with the level to which the
-  /// thread of `own` (null: nobody) lowers itself; the levels of all others are changed here.
+  /// The job of the task, or another method of it, is ready and due at `deadline`. Returns the level to which the
+  /// thread of `own` (null: none) lowers itself. The levels of all other threads are changed here.
   int insert(JobThread& job, Nanoseconds deadline, Nanoseconds remaining, const JobThread* own) noexcept;
-  /// No effect on one that is not ready.
+  /// No effect on a job that is not ready.
   void remove(JobThread& job) noexcept { (void)apply(labels_.remove(job.id), nullptr); }
-  /// The urgency of the job changed; no effect on one that is not ready.
+  /// The urgency of the job changed. No effect on a job that is not ready.
   void rekey(JobThread& job, Nanoseconds remaining) noexcept;
-  /// At equal urgency this job, which has the processor, goes on; null: nobody's.
+  /// At equal urgency this job, which has the processor, goes on. Null: no job has the processor.
   void prefer(const JobThread* job) noexcept { labels_.dispatch(job == nullptr ? TaskId() : job->id); }
-  /// When the job is due: by its own deadline, or that of its server.
+  /// Returns the deadline of the job, or that of its server.
   static Nanoseconds deadline_of(const JobThread& job) noexcept {
     return job.sporadic ? job.sporadic->job().deadline() : job.job.deadline;
   }
@@ -46,18 +46,18 @@ class ReadyJobs {
   JobThread& operator[](std::size_t i) noexcept { return *of_task_[labels_.jobs()[i].task.index]; }
   /// Null: none is ready.
   JobThread* most_urgent() noexcept { return size() == 0 ? nullptr : &(*this)[size() - 1]; }
-  /// The most urgent job that has begun: it has the processor, unless it sleeps in a system call. Null: none has.
+  /// The most urgent job that has begun. It has the processor, unless it sleeps in a system call. Null: none has begun.
   JobThread* most_urgent_running() noexcept;
 
-  /// The calling thread goes to the processor, at the ceiling. Context: setup; outside the section.
+  /// Moves the calling thread to the processor, at the ceiling. Context: setup; outside the section.
   void attach_thread() noexcept;
-  /// The calling thread, to the ceiling. Context: cycle; outside the section.
+  /// Raises the calling thread to the ceiling. Context: cycle; outside the section.
   void raise() noexcept;
-  /// The calling thread, to the level that insert() answered with. Context: cycle; outside the section.
+  /// Lowers the calling thread to the level that insert() returned. Context: cycle; outside the section.
   void lower(int level) noexcept;
-  /// Who runs for the task, to the ceiling.
+  /// Raises the thread that runs for the task to the ceiling.
   void raise(const JobThread& job) noexcept;
-  /// Who runs for the task, below all real-time threads.
+  /// Lowers the thread that runs for the task below all real-time threads.
   void lower_below_all(const JobThread& job) noexcept;
 
   std::uint64_t level_changes() const noexcept { return level_changes_; }

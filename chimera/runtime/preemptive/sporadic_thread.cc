@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who pays for the thread of a task behind a server, and how it is halted. docs/design/preemptive.md
+// Charges the server of a task for the thread of that task, and halts the thread. docs/design/preemptive.md
 #include "chimera/runtime/preemptive/sporadic_thread.h"
 
 namespace chimera {

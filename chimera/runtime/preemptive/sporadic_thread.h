@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the thread of a task behind a server has beside that of a periodic task: the server pays for the execution time
-// of the thread, and a job that runs out of capacity is halted in the middle until some is back.
+// Additions to the thread of a task behind a server: the server pays for the execution time of the thread, and a job
+// that runs out of capacity is halted in the middle until some is back.
 #pragma once
 
 #include "chimera/platform/thread.h"
@@ -20,7 +20,7 @@ class SporadicThread {
   /// Where the thread waits while it listens to a descriptor, in place of JobThread's own bell. Context: any.
   DescriptorBell& bell() noexcept { return bell_; }
 
-  /// The server is full at `origin` and pays for what `thread` uses from here on.
+  /// The server is full at `origin` and pays for the time that `thread` uses from here on.
   void start(pid_t thread, Nanoseconds origin) noexcept;
   /// Charges the server for what `thread` has used since the last time, its way to its label included: a storm of
   /// events costs the others no more than the capacity. `is_free`: it ran below all others, where no server counts.

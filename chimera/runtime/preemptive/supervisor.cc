@@ -37,7 +37,7 @@ void Supervisor::quit() noexcept {
 
 void Supervisor::run(std::atomic<std::size_t>& n_attached) noexcept {
   ready_.attach_thread();
-  n_attached.fetch_add(1, std::memory_order_release);  // pairs with the load of whoever starts the threads
+  n_attached.fetch_add(1, std::memory_order_release);  // pairs with the load of the thread that starts these
   for (bool is_over = false; !is_over;) {
     checks_.wait();
     processor_.enter();
@@ -116,7 +116,7 @@ void Supervisor::follow_release(JobThread& job, Nanoseconds now) noexcept {
 void Supervisor::check_begun(JobThread& job, Nanoseconds now) noexcept {
   const TaskSpec& s = job.spec;
   charge(job, now);
-  if (!job.phase.is_running()) return;  // its thread is gone, or it has ended meanwhile
+  if (!job.phase.is_running()) return;  // its thread is gone, or it has just ended
   const bool is_late = now >= job.job.deadline;
   if (is_late) report_late(job, true);
   if (is_late && s.on_miss == OnMiss::kDemote) processor_.demote(job, now);
@@ -127,7 +127,7 @@ void Supervisor::check_begun(JobThread& job, Nanoseconds now) noexcept {
   checks_.set(job, next);
 }
 
-// Where the most urgent job has not begun yet, no other job of the list has run since the last look.
+// If the most urgent job has not begun yet, no other job of the list has run since the last check.
 void Supervisor::check_running(Nanoseconds now) noexcept {
   JobThread* const top = ready_.most_urgent();
   if (top != nullptr && top->phase.is_running()) charge(*top, now);
@@ -148,7 +148,7 @@ void Supervisor::charge(JobThread& job, Nanoseconds now) noexcept {
   processor_.dispatch(now);
 }
 
-// Seen while the job still runs: what can be done at once is done at once; the rest at its end.
+// The overrun was seen while the job still runs. Some reactions act at once, the others at its end.
 void Supervisor::overrun(JobThread& job, Nanoseconds now) noexcept {
   if (!releases_.misses().report_overrun(job.id, job.cycle, job.used(), now)) return;
   const OnMiss reaction = job.spec.on_overrun;
@@ -175,7 +175,7 @@ bool Supervisor::sleeps_for_good(const JobThread& job, Nanoseconds used, Nanosec
   return last.slept > std::max(kSleepOfAHangingJob, period * kPeriodsOfAHangingJob);
 }
 
-// The other jobs keep their deadlines; the owner of the context ends it, for nothing else ends the job.
+// The other jobs keep their deadlines. The owner of the context ends the context, because nothing else ends the job.
 void Supervisor::give_up(JobThread& job, Nanoseconds used, Nanoseconds now) noexcept {
   Seen& of_job = seen(job);
   if (of_job.is_given_up) return;
@@ -185,7 +185,7 @@ void Supervisor::give_up(JobThread& job, Nanoseconds used, Nanoseconds now) noex
   processor_.edge_bell().ring();
 }
 
-// The thread ended in the body: nobody else says that the job is over, and its task has no thread any more.
+// The thread ended in the body, so the supervisor reports the end of the job. Its task has no thread any more.
 void Supervisor::reap(JobThread& job, Nanoseconds now) noexcept {
   job.phase.lose_thread();
   checks_.clear(job);
@@ -212,7 +212,7 @@ void Supervisor::watch_released(JobThread& job, Nanoseconds now) noexcept {
   checks_.watch(job, check, ready_.size());
 }
 
-// A job that is ready, runs or is halted: what its server has says where the job belongs, and until when.
+// For a job that is ready, runs or is halted. The capacity of its server decides its place, and until when.
 void Supervisor::follow_server(JobThread& job, Nanoseconds now) noexcept {
   SporadicThread& server = *job.sporadic;
   server.charge(job.thread(), job.is_demoted);
@@ -234,8 +234,8 @@ void Supervisor::follow_server(JobThread& job, Nanoseconds now) noexcept {
   checks_.set(job, processor_.next_server_check(job, now));
 }
 
-// Less important tasks may use what the others do not need. Only where the others alone use too much one of them is
-// demoted, the least urgent first.
+// Less important tasks may use the time that the others do not need. One of the others is demoted only if they alone
+// use too much, the least urgent first.
 void Supervisor::keep_share(Nanoseconds now, const JobThread* own) noexcept {
   if (!share_.is_limited() || ready_.size() == 0) return;
   const Nanoseconds left = share_.left(now);

@@ -27,27 +27,27 @@ class Supervisor {
   /// Context: setup; outside the section; blocks until the thread has ended.
   void join() { thread_.join(); }
 
-  /// What the thread does when the alarm rings: checks every job that is due, and sets the alarm for the next one.
+  /// Called by the thread when the alarm rings: checks every job that is due, and sets the alarm for the next one.
   void check_jobs(Nanoseconds now) noexcept;
-  /// Before others are released: charges the job that has the processor with what it used, and acts on that.
+  /// Call before others are released: charges the job that has the processor with the time it used, and acts on that.
   void check_running(Nanoseconds now) noexcept;
   /// A job that has just been inserted is checked from here on.
   void watch_released(JobThread& job, Nanoseconds now) noexcept;
-  /// The job is over: forgets what was seen of it.
+  /// The job is over: forgets all observations of it.
   void forget(const JobThread& job) noexcept;
-  /// Where little is left of the processor's share one job is demoted; never the job of `own`, who is in the section
+  /// If little is left of the processor's share, demotes one job; never the job of `own`, the caller in the section
   /// (null: the supervisor).
   void keep_share(Nanoseconds now, const JobThread* own) noexcept;
-  /// The job does not end by itself, or its thread is gone, and that is to be reported, once.
+  /// True, once, if the job does not end by itself, or its thread is gone: the caller reports that.
   bool pop_hanging(const JobThread& job) noexcept;
 
  private:
-  /// What was seen of the present job of a task.
+  /// Observations of the present job of a task.
   struct Seen {
     Nanoseconds used, at;         // at the last look, and when that was
     Nanoseconds slept;            // for how long it has used nothing though it could
     bool is_given_up = false;     // it does not end by itself
-    bool is_unreported = false;   // and nobody was told yet
+    bool is_unreported = false;   // and that is not reported yet
   };
 
   void run(std::atomic<std::size_t>& n_attached) noexcept;

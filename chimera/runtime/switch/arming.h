@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds a switch up before a task may go ON (`safe_when`, an input without a value, other constants, a hot
-// standby), and what disturbs a switch before it is committed.
+// Conditions that delay a switch before a task may go ON (`safe_when`, an input without a value, other constants, a hot
+// standby), and events that disturb a switch before it is committed.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ inline constexpr Nanoseconds kAbortGrace = milliseconds(100);
 /// A value that is waited for is read again after this time if no job ends before: no context rings for a value.
 inline constexpr Nanoseconds kLookForValue = milliseconds(1);
 
-/// True also if nothing is asked. Context: cycle boundary; no allocation.
+/// True also if there is no condition. Context: cycle boundary; no allocation.
 bool holds(TaskSet& set, const SafeCondition& asked) noexcept;
 
 /// The first variable that the task, which is OFF, reads and that never had a value; invalid if there is none.
@@ -41,7 +41,7 @@ bool follow_constants(TaskSet& set, Task& task, const SwitchOrder& order, Nanose
 /// under way. Context: cycle boundary; as long as `off` takes.
 bool cool_down(TaskSet& set, JobThreads& threads, Members& members, const SwitchPlan& plan, Nanoseconds now) noexcept;
 
-/// What a switch found when its plan was taken up. Plain value.
+/// State in which a switch took up its plan. Plain value.
 struct UndisturbedState {
   std::uint16_t members = 0;  ///< contexts that take part
   bool flag_was_up = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The change of one context at the instant T of a switch: states of tasks, what they read, and who is released, as one
-// step for whoever looks from outside. A job that was released before T ends with what it read and wrote before.
+// The change of one context at the instant T of a switch: states of tasks, their inputs, and releases. Other contexts
+// see one step. A job that was released before T ends with its old inputs and outputs.
 #pragma once
 
 #include "chimera/runtime/context_tap.h"
@@ -28,10 +28,10 @@ class Changeover {
   /// Applies the instant `at` of the change to releases. A job that was released before `at` keeps the old bindings. If
   /// its task has been released again by `now`, the old job is dropped: it would run after `at` with the old bindings.
   void change_releases(Nanoseconds at, Nanoseconds now) noexcept;
-  /// From now on what other contexts change of the tasks of the plan changes nothing here: `before` are ON. No task of
+  /// From now on changes of other contexts to the tasks of the plan have no effect here: `before` are ON. No task of
   /// this context takes a release at `at` or later before its change.
   void hold(const SwitchPlan& plan, const TaskBits& before, Nanoseconds at) noexcept;
-  /// The change, at `at`. Requires: hold(); what is released before `at` has been released, nothing later has.
+  /// The change, at `at`. Requires: hold(); all releases before `at` have been taken, and no later one.
   void make(const SwitchPlan& plan, const TaskBits& after, Nanoseconds at) noexcept;
   /// Lets tasks change whose jobs released before `at` have ended since. True: all have changed.
   bool follow(const SwitchPlan& plan, Nanoseconds at) noexcept;

@@ -53,8 +53,8 @@ void ConstantUsers::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   is_user_ = memory.take<bool>(spec.tasks.size());
 }
 
-// It is another one, or may be: of producers that are re-initialised nobody knows what they will make, and of who
-// arrives, what it was initialised with last.
+// The constant changes, or may change. The new values of a producer that is re-initialised are not known. Nor is it
+// known with which constants an arriving task was initialised last.
 bool ConstantUsers::is_another(ConstantId constant, TaskId user, const SwitchPlan& plan, std::uint32_t before,
                                const MadeConstants* made) const noexcept {
   const std::span<const PortOf> producers = spec_->constants[constant.index].producers;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which producer of a constant counts for a task, where several tasks produce it in different configurations: the one
-// of the configuration whose constants are in force; for a task outside it that of the first configuration that names
-// the task. And who has to be re-initialised when the constants of another configuration come into force.
+// Chooses the producer of a constant for a task, where several tasks produce it in different configurations: the one of
+// the configuration whose constants are in force; for a task outside it that of the first configuration that names the
+// task. Also lists the tasks to re-initialise when the constants of another configuration come into force.
 // docs/decisions/0061-a-slow-switch.md.
 #pragma once
 
@@ -22,10 +22,10 @@ std::uint32_t set_of_start(const ApplicationSpec& spec) noexcept;
 std::uint32_t producer_for(const ApplicationSpec& spec, ConstantId constant, TaskId user,
                            std::uint32_t in_force) noexcept;
 
-/// The values that producers have made; for who decides whether a switch must be slow.
+/// The values that producers have made. They decide whether a switch must be slow.
 class MadeConstants {
  public:
-  /// What producers `a` and `b` of the constant made differs, or is not known. Context: cycle boundary.
+  /// True if producers `a` and `b` of the constant made different values, or one is not known. Context: cycle boundary.
   virtual bool differ(ConstantId constant, std::uint32_t a, std::uint32_t b) const noexcept = 0;
 
  protected:
@@ -41,16 +41,16 @@ class ConstantUsers {
   /// Some constant has several producers: without, no switch changes a constant.
   bool is_any() const noexcept { return !users_.empty(); }
 
-  /// Tasks of the plan's set after whose constants may be others when the constants of that set take the place of those
-  /// of sets[before]: in the order of initialisation. `made` null: whatever the values are, who arrives included.
+  /// Tasks of the plan's new set whose constants may change when the constants of that set replace those of
+  /// sets[before]: in the order of initialisation. `made` null: whatever the values are, arriving tasks included.
   std::span<const TaskId> find(const SwitchPlan& plan, std::uint32_t before, const MadeConstants* made) noexcept;
-  /// One of them stays ON; invalid: none. With the constant that is another one for it.
+  /// A task of find() that stays ON, with a constant that changes for it; invalid: none.
   struct Found {
     TaskId task;
     ConstantId constant;
   };
   Found find_staying(const SwitchPlan& plan, std::uint32_t before, const MadeConstants& made) noexcept;
-  /// The constant may be another one for `user`, which find() of the same arguments has just been asked for.
+  /// The constant may change for `user`. Requires: find() was just called with the same arguments.
   bool is_another(ConstantId constant, TaskId user, const SwitchPlan& plan, std::uint32_t before,
                   const MadeConstants* made) const noexcept;
 

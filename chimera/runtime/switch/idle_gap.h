@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a method other than a cycle may run beside the cycles of one processor without delaying any: while nothing is
-// released, in a gap that is as long as the method is known to take. Where jobs preempt each other no gap is needed.
+// Finds gaps in which a method other than a cycle can run without delaying the cycles of the processor. A gap is long
+// enough if no release falls into the known duration of the method. Where jobs preempt each other no gap is needed.
 #pragma once
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 
 namespace chimera {
 
-/// What is looked for before `on` of a task may run. Context: any; wait-free.
+/// Gap that must be free before `on` of a task may run. Context: any; wait-free.
 class NeededGaps {
  public:
-  /// So long; 0: it runs beside the jobs of others.
+  /// Idle time that `on` of the task needs; 0: none, because it runs beside the jobs of others.
   virtual Nanoseconds for_on(TaskId task) const noexcept = 0;
 
  protected:
@@ -25,26 +25,27 @@ class NeededGaps {
 /// Context: cycle boundary; wait-free.
 class IdleGap {
  public:
-  /// A method that was never called is taken to need the budget of its task; without one, so long.
+  /// Assumed duration of a method that was never called, if its task has no budget.
   static constexpr Nanoseconds kUnknownMethod = microseconds(100);
-  /// A gap is not waited for longer: of a method that was never called, or while the flag is up.
+  /// Longest wait for a gap: for a method that was never called, or while the flag is up.
   static constexpr Nanoseconds kLongestWait = milliseconds(100);
 
-  /// All given outlive this.
+  /// All arguments outlive this.
   IdleGap(std::span<const Task> tasks, const ReadyQueue& queue, const JobThreads& threads) noexcept
       : tasks_(tasks), queue_(queue), threads_(threads) {}
 
-  /// No job is under way, and none that was released waits. O(tasks).
+  /// No job is under way, and no released job waits. O(tasks).
   bool is_there() const noexcept {
     if (threads_.run_beside_methods()) return true;
     return queue_.is_empty() && std::none_of(tasks_.begin(), tasks_.end(), [](const Task& t) { return t.is_busy; });
   }
-  /// It is, and the next release is so far away as the method takes at most of late, and a fifth of that. O(tasks).
+  /// A gap is there and lasts until the next release for the longest recent time of the method plus one fifth.
+  /// O(tasks).
   bool is_for(const Task& task, Method method, Nanoseconds now) const noexcept {
     if (threads_.run_beside_methods()) return true;
     return is_there() && queue_.next_release() - now >= needed(*task.spec, task.profile, method);
   }
-  /// A gap that comes at all comes within this time: one period of the slowest task that is ON, at most kLongestWait.
+  /// If a gap comes at all, it comes within this time: one period of the slowest task that is ON, at most kLongestWait.
   /// O(tasks).
   Nanoseconds soon() const noexcept {
     Nanoseconds longest = milliseconds(1);

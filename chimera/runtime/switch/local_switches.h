@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The switches of the contexts that run in one process: orders them without delay, keeps their receipts, and tells each
-// context about the others. One context that is alone has one (runtime/releases.h); the rtpus of virtual time share one
+// Orders the switches of all contexts in one process without delay, keeps their receipts, and shows each context the
+// others. A context that is alone has one instance (runtime/releases.h); the rtpus of virtual time share one
 // (runtime/virtual/virtual_rtpus.cc). For processes the manager orders switches: manager/switch_coordinator.h.
 #pragma once
 
@@ -28,7 +28,7 @@ class LocalSwitches : private SwitchMembers {
                SetupMemory& memory);
   /// `needs_gaps`: as SwitchMembers::needs_gaps() of its tasks. The tasks outlive this. Context: setup.
   void join(std::uint32_t context, TaskSet& tasks, bool needs_gaps);
-  /// What the context knows of the others in a switch. Context: setup.
+  /// The view that the context has of the others in a switch. Context: setup.
   SwitchPeers& of(std::uint32_t context) noexcept { return members_[context]; }
   void begin(Nanoseconds origin) noexcept { orders_.begin(origin); }
   /// The context takes part in nothing any more.
@@ -48,7 +48,7 @@ class LocalSwitches : private SwitchMembers {
  protected:
   /// A word of the page changed.
   void ring() noexcept override {}
-  /// What the context changed is shown to the others.
+  /// Shows the changes of the context to the others.
   virtual void show(std::uint32_t /*context*/) noexcept {}
 
  private:
@@ -71,7 +71,7 @@ class LocalSwitches : private SwitchMembers {
     TaskSet* tasks = nullptr;  // null: no task is in this context
     bool needs_gaps = true, is_dead = false;
     SwitchProgress shown;
-    const SwitchReceipt* part = nullptr;  // of the last plan, as long as the context has taken up no other one
+    const SwitchReceipt* part = nullptr;  // of the last plan, until the context takes up another one
   };
 
   SwitchPage& page() noexcept override { return page_; }

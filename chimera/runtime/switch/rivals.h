@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which tasks open the same resource, so that only one of them can be created at a time. Two tasks are rivals when each
-// has a resource port with the same text, neither port is declared `shared`, and no configuration names both: who lets
-// them run together says that the device takes it. docs/design/switch.md.
+// Finds the tasks that open the same resource, so that only one of them can be created at a time. Two tasks are rivals
+// if each has a resource port with the same text, neither port is declared `shared`, and no configuration names both: a
+// configuration with both says that the device allows it. docs/design/switch.md.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ class Rivals {
   /// O(pairs).
   bool are(TaskId a, TaskId b) const noexcept;
   /// The task has a rival, or uses a constant of a task that has one, or of such a one: while the rival is created, it
-  /// may be NOT-CREATED without anybody having killed it.
+  /// may be NOT-CREATED although no signal has killed it.
   bool may_be_absent(TaskId task) const noexcept { return is_any() && may_be_absent_[task.index]; }
   /// The task is created at the start of a run: the start set, and who neither is a rival of one that is created before
   /// it nor needs a constant of a task that is not. O(tasks * (tasks + constants)).

@@ -12,13 +12,13 @@ namespace chimera {
 
 enum class Relation : std::uint8_t { kLess, kAtMost, kMore, kAtLeast, kEqual, kUnequal };
 
-/// As it is written: "<". Context: any.
+/// The sign as text: "<". Context: any.
 constexpr const char* sign_of(Relation comparison) noexcept {
   constexpr const char* kSigns[] = {"<", "<=", ">", ">=", "==", "!="};
   return kSigns[static_cast<int>(comparison)];
 }
 
-/// `variable[element] comparison limit`. Without a variable: nothing is asked. Plain data.
+/// `variable[element] comparison limit`. Without a variable there is no condition. Plain data.
 struct SafeCondition {
   VariableId variable;
   std::uint32_t element = 0;
@@ -29,7 +29,7 @@ struct SafeCondition {
   constexpr bool operator==(const SafeCondition&) const noexcept = default;
 };
 
-/// What is not a number is never safe. Context: any.
+/// NaN is never safe. Context: any.
 inline bool is_safe(const SafeCondition& condition, double value) noexcept {
   if (std::isnan(value)) return false;
   switch (condition.comparison) {
@@ -45,7 +45,7 @@ inline bool is_safe(const SafeCondition& condition, double value) noexcept {
 
 class TaskSet;
 
-/// The present value of what the condition compares; NaN: nobody who is ON produces the variable, it never had a value,
+/// The present value that the condition compares. NaN: no task that is ON produces the variable, it never had a value,
 /// or has no such element. Requires: condition.is_there(). Context: cycle boundary; no allocation.
 double present_value(TaskSet& set, const SafeCondition& condition) noexcept;
 

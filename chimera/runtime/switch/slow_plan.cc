@@ -10,14 +10,14 @@ void SlowPlanner::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   spec_ = &spec;
   rivals_.prepare(spec, memory);
   users_.prepare(spec, memory);
-  steps_ = memory.take<SlowStep>(5 * spec.tasks.size());  // who arrives has four at most, a rival that leaves two
+  steps_ = memory.take<SlowStep>(5 * spec.tasks.size());  // an arriving task has at most four, a leaving rival two
 }
 
 void SlowPlanner::add(SlowAct act, std::span<const TaskId> tasks) noexcept {
   for (const TaskId task : tasks) steps_[n_++] = {act, task};
 }
 
-// What a task that is not there yet will make nobody knows: its users then fail in their step.
+// The constants that a task will make are not known before it is created: its users may then fail in their step.
 std::span<const SlowStep> SlowPlanner::plan(const SwitchPlan& plan, std::uint32_t constants,
                                             std::uint8_t slow) noexcept {
   n_ = 0;

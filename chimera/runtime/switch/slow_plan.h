@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of a slow switch, in their order over all contexts: every context makes the same list from the order. Who
-// carries them out is runtime/switch/slow_switch.h.
+// The steps of a slow switch, in their order over all contexts: every context makes the same list from the order.
+// runtime/switch/slow_switch.h carries them out.
 //
 //   check    could each user be initialised with the constants after the switch?       nothing has happened yet
 //            the illegal-configuration flag goes up
 //   off      of each leaving task, against the data flow
 //   kill     of each rival of an arriving task (runtime/switch/rivals.h), in the opposite order of initialisation
 //   spawn    of each arriving task that may be absent, in the order of initialisation
-//   reinit   of each user whose constants are others by now, in the order of initialisation
+//   reinit   of each user whose constants have changed, in the order of initialisation
 //   on       of each arriving task, producers first
 //            the flag goes down
 //

@@ -46,7 +46,7 @@ StepEnd SlowSteps::carry_out(const SlowStep& step, Nanoseconds now) noexcept {
   Task& each = task(step.task);
   wake_ = kNever;
   if (step.act == SlowAct::kCheck) return check(each);
-  if (is_under_way(step.task) && each.in_service) return StepEnd::kWaits;  // its end asks for an edge
+  if (is_under_way(step.task) && each.in_service) return StepEnd::kWaits;  // its end asks for a cycle boundary
   if (!parts_.threads.claim(step.task)) return StepEnd::kWaits;           // so does the end of its job
   switch (step.act) {
     case SlowAct::kOff: return turn_off(each, now);
@@ -88,7 +88,8 @@ bool SlowSteps::waits_for_gap(const Task& task, Method method, Nanoseconds now) 
   return false;
 }
 
-// No job of who leaves is left that could delay one, directly or by others: the processor of this context is idle once.
+// Waits until the processor of this context was idle once: then no job of a leaving task can delay another job,
+// directly or through others.
 bool SlowSteps::waits_for_idle(Nanoseconds now) noexcept {
   if ((order_->slow & kSlowForDeadlines) == 0 || was_idle_) return false;
   for (const Task& each : parts_.set.tasks()) {
@@ -128,7 +129,7 @@ StepEnd SlowSteps::turn_off(Task& task, Nanoseconds now) noexcept {
   return task.state == State::kOff ? StepEnd::kDone : fail(NoSwitch::kStepFailed, task);
 }
 
-// Spawns it, or kills it. What a task makes at init counts by the configuration after.
+// Spawns or kills the task. The new configuration decides which constants, made at init, are in force.
 StepEnd SlowSteps::create(Task& task, Signal signal, Nanoseconds now) noexcept {
   const Method method = signal == Signal::kSpawn ? Method::kInit : Method::kKill;
   const bool is_here = !is_under_way(task.id) && !parts_.set.slow().takes(method);
@@ -139,7 +140,7 @@ StepEnd SlowSteps::create(Task& task, Signal signal, Nanoseconds now) noexcept {
   return end == StepEnd::kFailed ? fail(NoSwitch::kStepFailed, task) : end;
 }
 
-// Who is initialised with what is in force by now is left as it is.
+// A task that is already initialised with the constants in force is left as it is.
 StepEnd SlowSteps::reinit(Task& task, Nanoseconds now) noexcept {
   ContextConstants& constants = parts_.set.constants();
   constants.read_foreign();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of a slow switch (slow_plan.h) as one context carries them out on its tasks: each forwards, and back. Whose
-// turn it is, and what becomes of a step that fails: runtime/switch/slow_switch.h.
+// Carries out the steps of a slow switch (slow_plan.h) on the tasks of one context: each forwards, and back.
+// runtime/switch/slow_switch.h decides whose turn it is, and reacts to a step that fails.
 #pragma once
 
 #include <cstdint>
@@ -25,12 +25,12 @@ class CreationSteps {
  public:
   /// Context: setup.
   void prepare(std::size_t n_tasks, SetupMemory& memory);
-  /// Of another switch: nothing is done.
+  /// Begins another switch: forgets all steps that were done.
   void begin() noexcept;
   /// The task is handed over to the service thread by one of these steps.
   bool is_under_way(TaskId task) const noexcept { return asked_ == task; }
 
-  /// `signal` is kSpawn or kKill. Done at once where there is nothing to do. kFailed: nothing is to be undone.
+  /// `signal` is kSpawn or kKill. kDone at once if there is nothing to do. kFailed: nothing is to be undone.
   template <class Move>
   StepEnd carry_out(Task& task, Signal signal, Move move) {
     if (asked_ != task.id && task.state == after(signal)) return StepEnd::kDone;
@@ -39,7 +39,7 @@ class CreationSteps {
     mark(task.id, signal, true);
     return StepEnd::kDone;
   }
-  /// Takes the step back that was carried out here; kDone also where the other method failed.
+  /// Takes a step back that was carried out here. kDone also if the other method failed.
   template <class Move>
   StepEnd undo(Task& task, Signal signal, Move move) {
     if (!is_done(task.id, signal)) return StepEnd::kDone;
@@ -72,7 +72,7 @@ class CreationSteps {
   TaskId asked_;
 };
 
-/// Why a step failed, or what it did is too much. Plain value.
+/// Reason why a step failed, or why its result is not acceptable. Plain value.
 struct StepFailure {
   NoSwitch why = NoSwitch::kNone;
   TaskId task;
@@ -84,7 +84,7 @@ struct StepFailure {
 /// theirs.
 class SlowSteps {
  public:
-  /// All of it outlives this.
+  /// The parts outlive SlowSteps.
   struct Parts {
     TaskSet& set;
     JobThreads& threads;
@@ -97,22 +97,22 @@ class SlowSteps {
   explicit SlowSteps(const Parts& parts) noexcept : parts_(parts) {}
   /// Context: setup.
   void prepare() { created_.prepare(parts_.set.tasks().size(), parts_.set.setup_memory()); }
-  /// Of another order, which outlives the switch.
+  /// Begins another order, which outlives the switch.
   void begin(const SwitchOrder& order) noexcept;
 
-  /// Carries out a step of a task of this context, once or until it is no longer kWaits. failure() may say that the
-  /// switch is to be aborted also where the step is kDone.
+  /// Carries out a step of a task of this context, once or until it is no longer kWaits. failure() may demand an abort
+  /// of the switch even if the step is kDone.
   StepEnd carry_out(const SlowStep& step, Nanoseconds now) noexcept;
   const StepFailure& failure() const noexcept { return failure_; }
-  /// The switch was aborted when the step was next. kDone: it was carried out, and is to be undone. kFailed: it was
-  /// not.
+  /// The switch was aborted when the step was next. kDone: the step was carried out, and is to be undone. kFailed: it
+  /// was not.
   StepEnd leave(const SlowStep& step, Nanoseconds now) noexcept;
-  /// Takes back what carry_out() did. What cannot be undone, because a signal or an error came between, is left as it
-  /// is.
+  /// Takes back what carry_out() did. A step that cannot be undone, because a signal or an error came between, is left
+  /// as it is.
   StepEnd undo(const SlowStep& step, Nanoseconds now) noexcept;
   /// The service thread has the task, for one of these steps.
   bool is_under_way(TaskId task) const noexcept { return created_.is_under_way(task); }
-  /// When a step that waits is worth another try although nobody rings and no job ends.
+  /// When to try a waiting step again although no bell rings and no job ends.
   Nanoseconds wake() const noexcept { return wake_; }
 
  private:
@@ -136,9 +136,9 @@ class SlowSteps {
   const SwitchOrder* order_ = nullptr;
   Nanoseconds wake_ = kNever;
   Nanoseconds waits_since_ = kNever;  // for a gap
-  Nanoseconds again_at_ = kNever;     // a device that is not ready is asked then
-  Nanoseconds back_until_ = kNever;   // and so long on the way back
-  bool was_idle_ = false;             // the processor, since who leaves is OFF
+  Nanoseconds again_at_ = kNever;     // instant of the next call of a device that is not ready
+  Nanoseconds back_until_ = kNever;   // end of the waits for a device on the way back
+  bool was_idle_ = false;             // the processor, since the leaving tasks are OFF
 };
 
 }  // namespace chimera

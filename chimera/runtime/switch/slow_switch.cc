@@ -28,19 +28,19 @@ void SlowSwitch::begin(SwitchAgreement agreement, const SwitchPlan& plan, const 
   held_since_ = wake_ = kNever;
   was_raised_ = parts_.set.flag().is_raised();
   is_safe_ = false;
-  (void)agreement.agree(order.number, me);  // nobody commits before all have
+  (void)agreement.agree(order.number, me);  // no context commits before all have agreed
   peers.ring();
 }
 
-// The step that is undone next when so many are left. Users are re-initialised behind who makes their constants, on the
-// way back too.
+// The step that is undone next when `left` steps are left. A user of a constant is re-initialised after the producer of
+// the constant, on the way back too.
 std::size_t SlowSwitch::undone_with(std::size_t left) const noexcept {
   const std::size_t step = left - 1;
   const bool is_reinit = step >= first_reinit_ && step < end_of_reinits_;
   return is_reinit ? first_reinit_ + end_of_reinits_ - 1 - step : step;
 }
 
-// One that has come back since knows nothing of the switch.
+// A context that has come back since its death knows nothing of the switch.
 bool SlowSwitch::is_of_dead(std::size_t step) const noexcept {
   if (is_mine(step)) return false;
   const std::uint32_t context = parts_.set.spec().tasks[steps_[step].task.index].rtpu.index;
@@ -105,7 +105,7 @@ bool SlowSwitch::step(SwitchAgreement agreement, Nanoseconds now) noexcept {
   }
 }
 
-// Whoever takes part is as the steps so far have left it, and there is still time; else the switch is aborted.
+// True if all taking part are as the steps so far have left them, and there is still time. Otherwise aborts the switch.
 bool SlowSwitch::may_go_on(SwitchAgreement agreement, std::size_t done, Nanoseconds now) noexcept {
   const auto fails = [&](NoSwitch why, TaskId of, VariableId variable = {}) {
     abort(agreement, why, of, variable);
@@ -127,7 +127,7 @@ bool SlowSwitch::may_go_on(SwitchAgreement agreement, std::size_t done, Nanoseco
   return fails(missing.is_valid() ? NoSwitch::kNoValue : NoSwitch::kNotReady, steps_[done].task, missing);
 }
 
-// A task that is to be spawned may be there already, by somebody else.
+// A signal or another switch may have created a task already that is still to be spawned.
 bool SlowSwitch::is_as_left(const Task& task, std::size_t done) const noexcept {
   State state = order_.on.has(task.id) ? State::kOn : State::kOff;
   bool is_to_come = false;
@@ -174,7 +174,7 @@ void SlowSwitch::hold_flag(Nanoseconds now) noexcept {
   peers_->show();
 }
 
-// The last values of who leaves were kept before they went.
+// The last values of leaving tasks were kept before they went.
 void SlowSwitch::conclude(SwitchEnd end, Nanoseconds now) noexcept {
   end_ = end;
   parts_.set.constants().put_in_force(end == SwitchEnd::kDone ? order_.constants_after() : order_.constants);

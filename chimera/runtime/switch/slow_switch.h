@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A slow switch as one context carries out its part: its steps (slow_plan.h) when it is their turn, under the
-// illegal-configuration flag, and backwards when one of them failed, whoever's. Whose turn it is says the turn word on
-// the page, so that no manager is needed until all is over; the steps of a context that died are left out.
+// Carries out the part of one context in a slow switch. The context takes its steps (slow_plan.h) at its turn, under
+// the illegal-configuration flag. If a step of any context failed, it takes them back. The turn word on the page says
+// whose turn it is, so no manager is needed until all is over. Steps of a context that died are left out.
 // docs/decisions/0061-a-slow-switch.md.
 #pragma once
 
@@ -20,7 +20,7 @@ namespace chimera {
 class SlowSwitch {
  public:
   using Parts = SlowSteps::Parts;
-  /// All of it outlives this.
+  /// All parts outlive this.
   explicit SlowSwitch(const Parts& parts) noexcept : parts_(parts), here_(parts) {}
   /// Context: setup.
   void prepare();
@@ -28,12 +28,12 @@ class SlowSwitch {
   /// The plan, whose lists stay as they are, by the order; says on the page that this context, number `me`, takes part.
   void begin(SwitchAgreement agreement, const SwitchPlan& plan, const SwitchOrder& order, SwitchPeers& peers,
              std::uint32_t me) noexcept;
-  /// Goes on. True: nothing is left to do here; end() says what became of it.
+  /// Goes on. True: nothing is left to do here, and end() says how the switch ended.
   bool step(SwitchAgreement agreement, Nanoseconds now) noexcept;
   SwitchEnd end() const noexcept { return end_; }
-  /// When a step is worth while although nobody rings and no job ends.
+  /// When to call step() although no bell rings and no job ends.
   Nanoseconds wake() const noexcept { return wake_; }
-  /// Aborts it on the page, unless it is committed; what is done here is undone by steps.
+  /// Aborts the switch on the page, unless it is committed. Later steps undo what is done here.
   void abort(SwitchAgreement agreement, NoSwitch why, TaskId of, VariableId variable) noexcept;
   /// The run is over: nothing more is done, and the flag is no longer held.
   void cut(SwitchAgreement agreement) noexcept;
@@ -63,8 +63,8 @@ class SlowSwitch {
   Nanoseconds wake_ = kNever;
   Nanoseconds held_since_ = kNever;  // the flag, by this context
   SwitchEnd end_ = SwitchEnd::kAborted;
-  bool was_raised_ = false;  // the flag, by somebody of this context, when it began
-  bool is_safe_ = false;     // what `safe_when` asks held
+  bool was_raised_ = false;  // the flag, in this context, when the switch began
+  bool is_safe_ = false;     // `safe_when` held
 };
 
 }  // namespace chimera

@@ -7,10 +7,10 @@
 // Each move is one compare-and-swap that names the number of its plan, so that a late move of an older plan changes
 // nothing.
 //
-//   announce   (any that is over)  -> PREPARED     by the one who plans
+//   announce   (any that is over)  -> PREPARED     by the context, or the manager, that plans
 //   hand_on    run k -> run k + 1                  by the context of run k, when its tasks are armed
 //   propose    PREPARED -> PROPOSED with T         by the context of the last run
-//   agree      one bit of `missing` less; the last: PROPOSED -> COMMITTED
+//   agree      clears one bit of `missing`; the last: PROPOSED -> COMMITTED
 //   move_turn  step k -> step k + 1, of a slow switch, or backwards
 //   commit     PREPARED -> COMMITTED               of a slow switch, by the context of the last step
 //   abort      PREPARED or PROPOSED -> ABORTED     by any; never after COMMITTED
@@ -76,7 +76,7 @@ struct PlanWord {
 };
 
 /// SwitchPage::turn: bits 0-15 number of the plan, 16-31 the run that is arming, 32-47 contexts that have not agreed.
-/// Of a slow switch the run is the number of steps that are done, or with kBack that are left to be undone.
+/// In a slow switch the run is the number of steps that are done; with kBack, of steps that are left to be undone.
 struct TurnWord {
   static constexpr std::uint16_t kBack = 0x8000;
   std::uint16_t number = 0;
@@ -102,12 +102,12 @@ enum SlowReason : std::uint8_t {
 };
 inline constexpr std::uint8_t kSlowReasons = 31;
 
-/// What is to be switched. From it, and from the application, every context makes one and the same SwitchPlan.
+/// Describes a switch. From it, and from the application, every context makes one and the same SwitchPlan.
 struct SwitchOrder {
   std::uint16_t number = 0;   ///< never 0; another one than that of the order before
   std::uint16_t members = 0;  ///< bit c: context c lives and takes part
   std::uint32_t after = 0;    ///< the set that is to be ON, in ApplicationSpec::sets; UINT32_MAX: it is none of them
-  Nanoseconds until;          ///< what is not committed by then is aborted
+  Nanoseconds until;          ///< a plan that is not committed at this instant is aborted
   Nanoseconds lead;           ///< from the proposal to the instant of the change, at least
   TaskBits on;                ///< the tasks that are ON
   TaskBits target;            ///< the tasks that are to be ON
@@ -118,9 +118,9 @@ struct SwitchOrder {
   constexpr bool operator==(const SwitchOrder&) const noexcept = default;
 };
 
-/// Every word is changed as a whole. `order` is written before `plan` names its number, and not again before all that
-/// live are over with it; relaxed, published by `plan`. `plan` and `turn` are changed by compare-and-swap alone
-/// (switch_agreement.h): release, acquired by whoever loads them.
+/// Every word is changed as a whole. `order` is written before `plan` names its number, and not again before all living
+/// contexts are done with it; relaxed, published by `plan`. Only compare-and-swap changes `plan` and `turn`
+/// (switch_agreement.h): release, which pairs with the acquire of each load.
 struct SwitchPage {
   static constexpr std::size_t kOrderWords = 4 + 2 * (kMaxSwitchedTasks / 64);
   alignas(64) std::atomic<std::uint64_t> plan{0};
@@ -128,7 +128,7 @@ struct SwitchPage {
   alignas(64) std::atomic<std::uint64_t> order[kOrderWords + 1];  // the last: a sum over the others
 };
 
-/// How far one context has come. Written by it alone: release, after everything that the word tells of.
+/// Progress of one context. Only its owner writes it: release, after everything that the word reports.
 struct SwitchProgress {
   std::atomic<std::uint32_t> adopted{0};  ///< number of the last plan whose bindings its jobs use, or that was aborted
   std::atomic<std::uint32_t> over{0};     ///< number of the last plan of which nothing is left to do there
@@ -138,7 +138,7 @@ struct SwitchProgress {
 /// context moved the word, which each does a bounded number of times for a plan.
 class SwitchAgreement {
  public:
-  /// `origin`: what instants count from. The page outlives this.
+  /// Instants count from `origin`. The page outlives this.
   SwitchAgreement(SwitchPage& page, Nanoseconds origin) noexcept : page_(&page), origin_(origin) {}
 
   PlanWord plan() const noexcept { return PlanWord::of(page_->plan.load(std::memory_order_acquire)); }
@@ -156,9 +156,9 @@ class SwitchAgreement {
   void announce(const SwitchOrder& order) noexcept;
   /// False: the plan is no longer in that run.
   bool hand_on(std::uint16_t number, std::uint16_t run) noexcept;
-  /// Of a slow switch: so many steps are done, or left to be undone (TurnWord). False: it was not at `from`.
+  /// Slow switch: sets the number of steps done, or left to be undone (TurnWord). False: the turn was not at `from`.
   bool move_turn(std::uint16_t number, std::uint16_t from, std::uint16_t to) noexcept;
-  /// Every context has agreed, to the instant or that it takes part in a slow switch.
+  /// True if every context has agreed: to the instant, or to take part in a slow switch.
   bool have_all_agreed(std::uint16_t number) const noexcept;
   /// All steps of a slow switch are done: PREPARED -> COMMITTED, at once. Requires: `at` comes from round_up().
   bool commit(std::uint16_t number, Nanoseconds at) noexcept;
@@ -166,9 +166,9 @@ class SwitchAgreement {
   Nanoseconds round_up(Nanoseconds instant) const noexcept;
   /// Requires: `at` comes from round_up(). False: the plan is no longer PREPARED.
   bool propose(std::uint16_t number, Nanoseconds at) noexcept;
-  /// The context uses no release from T on before it has seen what became of the plan. True: this commits it.
+  /// The context uses no release from T on before it has seen the end of the plan. True: this commits the plan.
   bool agree(std::uint16_t number, std::uint32_t context) noexcept;
-  /// False: it is committed, or of another number.
+  /// False: the plan is committed, or has another number.
   bool abort(std::uint16_t number) noexcept;
 
  private:

@@ -123,7 +123,7 @@ TEST_F(SwitchAgreementTest, AnAbortEndsItBeforeTheCommit) {
   }
 }
 
-// Somebody was held up since the plan before.
+// A context was delayed since the plan before.
 TEST_F(SwitchAgreementTest, WhoComesLateWithAnOlderPlanChangesNothing) {
   agreement.announce(some_order(3));
   EXPECT_TRUE(agreement.abort(3));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any words on the decision page: the order is refused, or it fits the application and a plan is made from it that,
-// carried out, makes the ON set that it names. Nobody's move on the page leads from one plan into another.
+// carried out, makes the ON set that it names. No move on the page leads from one plan into another.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -90,7 +90,7 @@ void carry_out(Application& app, const SwitchOrder& order, Bytes& bytes) {
     require((standing[t].state == State::kOn) == order.target.has(TaskId(t)), "carried out, it makes what was asked");
 }
 
-/// One of the moves of somebody who believes in plan `number`.
+/// One of the moves of a context that believes in plan `number`.
 void move(SwitchAgreement& agreement, Bytes& bytes) {
   const PlanWord before = agreement.plan();
   const auto number = static_cast<std::uint16_t>(bytes.take(2));

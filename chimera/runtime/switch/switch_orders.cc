@@ -130,7 +130,7 @@ bool SwitchOrders::is_of(TaskId task, std::uint32_t context) const noexcept {
   return task.index < spec_->tasks.size() && (is_alone_ || spec_->tasks[task.index].rtpu.index == context);
 }
 
-// A context that has died may have left any value: what does not fit the application is left out.
+// A context that has died may have left any value: values that do not fit the application are left out.
 void SwitchOrders::add_part(const SwitchReceipt& part, std::uint32_t context, Nanoseconds now,
                             SwitchReceipt& to) const noexcept {
   const auto is_possible = [&](Nanoseconds at) { return at >= to.asked && at <= now; };

@@ -27,7 +27,7 @@ inline constexpr Nanoseconds kSwitchPatience = seconds(10);
 /// Plans that are announced for one request, at most.
 inline constexpr std::uint32_t kMostTries = 4;
 
-/// What SwitchOrders knows of the contexts that carry switches out, and how it reaches them. Contexts are numbered as
+/// View of the contexts that carry switches out, for SwitchOrders, and the way to reach them. Contexts are numbered as
 /// rtpus; a context that is alone has number 0. Context of everything: cycle boundary, or setup in the manager.
 class SwitchMembers {
  public:
@@ -35,16 +35,17 @@ class SwitchMembers {
   /// Bit c: context c lives, and takes part in the next switch.
   virtual std::uint16_t living() const noexcept = 0;
   virtual TaskStanding standing(TaskId task) const noexcept = 0;
-  /// What the context of the task has measured of it; empty if that is not known.
+  /// Measurements of the task by its context; empty if they are not known.
   virtual Profile profile(TaskId task) const noexcept = 0;
   /// Methods of the task wait for an idle processor: jobs of its context do not preempt each other.
   virtual bool needs_gaps(TaskId task) const noexcept = 0;
   virtual const MadeConstants& constants() noexcept = 0;
   /// The context lives and is not over with that plan.
   virtual bool is_busy_with(std::uint32_t context, std::uint16_t plan) const noexcept = 0;
-  /// What the context says of that plan, in lists that `part` points at; false: nothing. Any value may be wrong.
+  /// The context's part of the receipt for that plan, in lists that `part` points at. False: none. Any value may be
+  /// wrong.
   virtual bool read_part(std::uint32_t context, std::uint16_t plan, SwitchReceipt& part) const noexcept = 0;
-  /// A word of the page changed: every context looks at it.
+  /// A word of the page changed: every context must check it.
   virtual void ring() noexcept = 0;
 
  protected:
@@ -83,7 +84,7 @@ class SwitchOrders : private NeededGaps {
   /// Looks, and makes the plan and finds the way that leads to these tasks.
   PlanAnswer judge(const TaskBits& target) noexcept;
 
-  // What was found last.
+  // Results of the last look() or judge().
   bool is_on(TaskId task) const noexcept { return standing_[task.index].state == State::kOn; }
   TaskBits on() const noexcept { return tasks_on(standing_); }
   std::uint32_t set_in_force() const noexcept { return planner_.set_in_force(standing_); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A switch of configurations as data: which tasks arrive, leave and stay, and which variables get another producer.
-// docs/formats/switch_plan.md says what each field means. Made by a pure function; who carries a plan out is
-// runtime/switch/switching.h.
+// docs/formats/switch_plan.md says what each field means. A pure function makes the plan;
+// runtime/switch/switching.h carries it out.
 #pragma once
 
 #include <algorithm>
@@ -19,18 +19,18 @@ namespace chimera {
 /// Stands for "none of ApplicationSpec::sets".
 inline constexpr std::uint32_t kNoSet = UINT32_MAX;
 
-/// From the instant of the change on, every task of the set after reads `variable` from `to` instead of `from`.
+/// From the instant of the change on, every task of the new set reads `variable` from `to` instead of `from`.
 struct Handover {
   VariableId variable;
-  PortOf from;  ///< out-var of a leaving task; an invalid task: nobody who is ON produced it before
+  PortOf from;  ///< out-var of a leaving task; an invalid task: no task that is ON produced it before
   PortOf to;    ///< out-var of an arriving task
 };
 
 /// Lists point into the SwitchPlanner that made the plan.
 struct SwitchPlan {
   std::uint32_t number = 0;
-  std::uint32_t before = kNoSet;       ///< in ApplicationSpec::sets; kNoSet: what is ON is none of them
-  std::uint32_t after = kNoSet;        ///< in ApplicationSpec::sets; kNoSet: what is to be ON is none of them
+  std::uint32_t before = kNoSet;       ///< in ApplicationSpec::sets; kNoSet: the ON tasks are none of them
+  std::uint32_t after = kNoSet;        ///< in ApplicationSpec::sets; kNoSet: the target is none of them
   std::span<const TaskId> arriving;    ///< in data-flow order, producers first
   std::span<const TaskId> leaving;     ///< against the data flow
   std::span<const TaskId> staying;     ///< in data-flow order
@@ -50,38 +50,38 @@ SwitchRun find_run(const SwitchPlan& plan, std::span<const TaskSpec> tasks, std:
 /// fastest task that arrives or leaves. Context: any; O(tasks).
 Nanoseconds lead_of(const SwitchPlan& plan, std::span<const TaskSpec> tasks, Nanoseconds longest_job) noexcept;
 
-/// Why a switch is not made. The first group is found before anything is done, the others abort what was begun.
+/// Why a switch is not made. Reasons of the first group are found before anything is done; others abort the switch.
 enum class NoSwitch : std::uint8_t {
   kNone,
   kUnknownSet,   ///< the target is none of the sets
   kNothingToDo,  ///< exactly the tasks of the target are ON
   kInError,      ///< `task`, of the target, is in ERROR: to be cleared first
   kNotCreated,   ///< `task`, of the target, is NOT-CREATED and not only for a rival, or its `init` or `kill` runs
-  kUnderWay,     ///< another switch is
+  kUnderWay,     ///< another switch is under way
   kNotSchedulable,  ///< `task` might miss a deadline if leaving and arriving tasks met: it is slow for that
 
-  kOnFailed,      ///< `on` of `task` did
+  kOnFailed,      ///< `on` of `task` failed
   kStepTooLarge,  ///< of `variable`, which `task` would produce
   kNoGap,         ///< the processor was never idle for as long as `on` of `task` takes
   kNoValue,       ///< `variable`, which `task` reads, never had one
   kNotSafe,       ///< `variable` did not hold what NamedSet::safe_when asks
   kDisturbed,     ///< a signal, an error or its own end moved `task`, which takes part, to another state
-  kFlagRaised,    ///< somebody raised the illegal-configuration flag
-  kRunEnded,      ///< before the instant of the change
-  kLate,          ///< a real-time unit came to the instant of the change before all had agreed to it
-  kMemberDied,    ///< a real-time unit that takes part
+  kFlagRaised,    ///< a task or an operator raised the illegal-configuration flag
+  kRunEnded,      ///< the run ended before the instant of the change
+  kLate,          ///< an rtpu came to the instant of the change before all had agreed to it
+  kMemberDied,    ///< an rtpu that takes part died
   kDamaged,       ///< the order on the shared page is not what was written, or does not fit the application
-  kCancelled,     ///< who asked for it took it back
+  kCancelled,     ///< the requester took the request back
   kBadConstant,   ///< `task` cannot be initialised with the constants after it
-  kStepFailed,    ///< a method of `task` did, in a slow switch
+  kStepFailed,    ///< a method of `task` failed, in a slow switch
   kNotReady,      ///< `task` was not ready within the deadline, in a slow switch; in a fast one not at once
-  kNoAnswer,      ///< a real-time unit whose turn it was did not go on by the deadline, nor said why
+  kNoAnswer,      ///< an rtpu did not finish its turn by the deadline, and gave no reason
 };
 
-/// One context says so of what held up another one, which may know more. Context: any.
+/// True if the reason is the delay of another context, which may know the cause. Context: any.
 constexpr bool is_of_another(NoSwitch why) noexcept { return why == NoSwitch::kLate || why == NoSwitch::kNoAnswer; }
 
-/// What became of a request for a plan.
+/// Answer to a request for a plan: the plan was made, or the reason why not.
 struct PlanAnswer {
   NoSwitch why = NoSwitch::kNone;
   TaskId task;  ///< of kInError and kNotCreated: the first in data-flow order; of kNotSchedulable: one that might miss
@@ -90,22 +90,23 @@ struct PlanAnswer {
   explicit operator bool() const noexcept { return why == NoSwitch::kNone; }
 };
 
-/// What a plan is made from.
+/// State of one task, as input of a plan.
 struct TaskStanding {
   State state = State::kNotCreated;
   bool in_service = false;  ///< `init` or `kill` of it is under way
 };
 
-/// Which tasks are ON. Context: cycle boundary.
+/// Returns the tasks that are ON. Context: cycle boundary.
 TaskBits tasks_on(std::span<const TaskStanding> standing) noexcept;
 /// The tasks of the set of that number. Requires: it is one of them. Context: cycle boundary.
 TaskBits tasks_of(const ApplicationSpec& spec, std::uint32_t set) noexcept;
-/// The tasks that are ON after it. Context: cycle boundary.
+/// The tasks that are ON after the plan. Context: cycle boundary.
 TaskBits target_of(const SwitchPlan& plan) noexcept;
-/// Which of the sets is exactly these tasks; kNoSet: none. Context: cycle boundary; O(sets * tasks).
+/// Number of the set that has exactly these tasks; kNoSet: none. Context: cycle boundary; O(sets * tasks).
 std::uint32_t set_of(const ApplicationSpec& spec, const TaskBits& tasks) noexcept;
-/// Which of the sets the tasks that are ON are, as `is_on(TaskId)` says: exactly its tasks; else one task for each of
-/// them, which is the task itself or stands in for it. kNoSet: none. Context: cycle boundary; O(sets * tasks^2).
+/// Number of the set that is ON, where `is_on(TaskId)` says which tasks are. First choice: a set with exactly these
+/// tasks. Second choice: a set of as many tasks, each ON or replaced by an ON task that stands in for it. kNoSet:
+/// none. Context: cycle boundary; O(sets * tasks^2).
 template <class IsOn>
 std::uint32_t set_in_force(const ApplicationSpec& spec, IsOn is_on) noexcept {
   std::size_t n_on = 0;
@@ -126,7 +127,7 @@ std::uint32_t set_in_force(const ApplicationSpec& spec, IsOn is_on) noexcept {
   }
   return found;
 }
-/// What must hold before that set may be switched to; of kNoSet nothing. Context: cycle boundary.
+/// Condition that must hold before a switch to the set; empty for kNoSet. Context: cycle boundary.
 const SafeCondition& asked_of(const ApplicationSpec& spec, std::uint32_t set) noexcept;
 
 /// Holds the lists of one plan at a time.
@@ -135,14 +136,14 @@ class SwitchPlanner {
   /// Takes memory for any plan of this spec, which outlives the planner. Context: setup.
   void prepare(const ApplicationSpec& spec, SetupMemory& memory);
 
-  /// The plan that turns the ON set into sets[target]: one and the same for equal arguments. `standing[t]` is that of
-  /// task t. Writes `plan` only when there is one; its number is left as it was. Replaces the lists of the plan before.
+  /// The plan that turns the ON set into sets[target]. Equal arguments give equal plans. `standing[t]` belongs to task
+  /// t. Writes `plan` only if there is one, and leaves its number as it was. Replaces the lists of the plan before.
   /// Context: cycle boundary; O(tasks + links); no allocation.
   PlanAnswer plan(std::uint32_t target, std::span<const TaskStanding> standing, SwitchPlan& plan) noexcept;
-  /// The same for any set of tasks: for one of the sets the plan above.
+  /// Plans a switch to any set of tasks. If they are one of the sets, the result is the plan above.
   PlanAnswer plan(const TaskBits& target, std::span<const TaskStanding> standing, SwitchPlan& plan) noexcept;
 
-  /// As the function of that name. Context: cycle boundary.
+  /// Calls the free function of this name. Context: cycle boundary.
   std::uint32_t set_in_force(std::span<const TaskStanding> standing) const noexcept {
     return chimera::set_in_force(*spec_, [&](TaskId task) { return standing[task.index].state == State::kOn; });
   }

@@ -130,7 +130,7 @@ TEST(SwitchPlan, WhatCannotBePlannedIsRefusedWithTheTask) {
   p.standing[kObserver.index] = {State::kOff, true};
   EXPECT_EQ(p.make(1).why, NoSwitch::kNotCreated);
   p.standing[kOne.index].state = State::kOn;
-  EXPECT_EQ(p.make(2).why, NoSwitch::kNone);  // ERROR outside the target is nobody's business
+  EXPECT_EQ(p.make(2).why, NoSwitch::kNone);  // ERROR outside the target does not matter
   EXPECT_EQ(p.plan.number, 0u);
 }
 

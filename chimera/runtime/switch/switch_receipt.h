@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What became of one switch of configurations, or of one takeover by a standby (runtime/takeover.h): who, when, how
-// long, what was lost, how far each variable moved. docs/formats/receipt.md says what is printed of it.
+// Receipt of one switch of configurations, or of one takeover by a standby (runtime/takeover.h): its tasks, instants,
+// durations, lost cycles, and the step of each variable. docs/formats/receipt.md says what is printed of it.
 #pragma once
 
 #include <algorithm>
@@ -20,13 +20,13 @@
 
 namespace chimera {
 
-/// Adds one behind the list. Requires: room behind it, as SwitchReceipts gives it.
+/// Appends one task to the list. Requires: room behind it, as SwitchReceipts provides.
 inline void append(std::span<TaskId>& list, TaskId task) noexcept {
   list = {list.data(), list.size() + 1};
   list.back() = task;
 }
 
-/// What a switch does to a task.
+/// The role of a task in a switch.
 enum class TaskMove : std::uint8_t { kArrives, kLeaves, kStays };
 
 /// One task of a switch. A method that was not called took -1 ns.
@@ -44,7 +44,7 @@ struct TaskPart {
 struct ValueStep {
   double size = 0;   ///< |after - before| of that element; NaN: one of the two is not a number
   double limit = 0;  ///< PortSpec::max_step there; 0: none
-  bool is_known = false;   ///< false: texts, or nobody had written a value
+  bool is_known = false;   ///< false: texts, or no task had written a value
   bool is_beyond = false;  ///< some element moved farther than its limit
 
   constexpr bool operator==(const ValueStep&) const noexcept = default;
@@ -53,17 +53,17 @@ struct ValueStep {
 /// One variable that got another producer.
 struct VariablePart {
   Handover handover;
-  ValueStep step_of_on;    ///< from the last value of the producer before to what `on` of the one after wrote
-  ValueStep step_of_cycle; ///< to what the first cycle of the one after wrote
-  ValueStep usual;         ///< the largest between two publications in a row of the producer before, until the change
+  ValueStep step_of_on;    ///< from the last value of the old producer to the value that `on` of the new one wrote
+  ValueStep step_of_cycle; ///< as step_of_on, to the value of the first cycle of the new producer
+  ValueStep usual;         ///< the largest between two publications in a row of the old producer, until the change
 };
 
 /// The end of a switch.
 enum class SwitchEnd : std::uint8_t {
   kDone,
-  kAborted,      ///< begun, and undone: whoever was ON was not touched
+  kAborted,      ///< begun and undone: tasks that were ON were not touched
   kRefused,      ///< nothing was begun
-  kNothingToDo,  ///< what was asked for was in force
+  kNothingToDo,  ///< the requested set was in force
 };
 
 /// Instants are on the clock of the executor; kNever: not reached.
@@ -83,9 +83,9 @@ struct SwitchReceipt {
   Nanoseconds asked = kNever;
   Nanoseconds armed = kNever;   ///< `on` of the last arriving task had returned
   Nanoseconds at = kNever;      ///< the instant of the change
-  SwitchWay way;                ///< that it went last
+  SwitchWay way;                ///< that the last try used
   std::uint32_t tries = 1;      ///< plans that were announced for it
-  Nanoseconds flag;             ///< so long the switch held the illegal-configuration flag up
+  Nanoseconds flag;             ///< how long the switch held the illegal-configuration flag up
   TaskId not_back;              ///< of kAborted: a task that was ON and did not come back
   Nanoseconds ended = kNever;   ///< `off` of the last leaving task had returned and the first cycles were seen
   std::span<TaskPart> tasks;
@@ -93,7 +93,7 @@ struct SwitchReceipt {
   std::span<TaskId> reinitialised;  ///< in this order
 };
 
-/// Of a switch that is asked for; `before` is in force.
+/// Fills in the request for a switch; set `before` is in force.
 inline void note_request(SwitchReceipt& receipt, const SwitchRequest& request, std::uint32_t before,
                          const SwitchWay& way, Nanoseconds asked) noexcept {
   receipt.asked = asked;
@@ -104,7 +104,7 @@ inline void note_request(SwitchReceipt& receipt, const SwitchRequest& request, s
   receipt.way = way;
 }
 
-/// Nothing was begun: what was asked for is in force, or the answer says why not.
+/// Refuses a switch: nothing was begun. The answer gives the reason, or says that the set is already in force.
 inline void refuse(SwitchReceipt& receipt, const PlanAnswer& answer) noexcept {
   receipt.end = answer.why == NoSwitch::kNothingToDo ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
   receipt.why = answer.why;
@@ -114,9 +114,9 @@ inline void refuse(SwitchReceipt& receipt, const PlanAnswer& answer) noexcept {
   receipt.variables = {};
 }
 
-/// What one context says of a switch that it took part in, as plain data in memory that outlives the context.
-/// Written by its owner before SwitchProgress::over says its number; read when that number was seen, or when the owner
-/// is known to be dead. May be anything then: a reader checks every number in it.
+/// Result of a switch in one context, as plain data in memory that outlives the context.
+/// Its owner writes it before SwitchProgress::over shows its number. Others read it after they saw that number, or
+/// after the owner died. After a death it may hold anything, so a reader checks every number in it.
 struct SwitchPart {
   static constexpr std::uint32_t kVariablesKept = 64, kSaid = 160;
 
@@ -166,7 +166,7 @@ void write_part(const SwitchReceipt& receipt, IsMine is_mine, SwitchPart& part) 
   part.number = receipt.number;
 }
 
-/// The part as a receipt whose lists point into it. The lists are not to be written, and any value may be wrong.
+/// Reads the part as a receipt whose lists point into it. The lists must not be written, and any value may be wrong.
 /// Context: setup.
 inline void read_part(const SwitchPart& part, SwitchReceipt& receipt) noexcept {
   SwitchPart& lists = const_cast<SwitchPart&>(part);
@@ -190,7 +190,7 @@ inline void read_part(const SwitchPart& part, SwitchReceipt& receipt) noexcept {
       std::span(lists.reinitialised).first(std::min<std::size_t>(part.n_reinitialised, part.reinitialised.size()));
 }
 
-/// The receipts of a run. Where more are made than were planned for, the first and the last are kept.
+/// The receipts of a run. If more are made than were planned for, the first ones and the last one are kept.
 class SwitchReceipts {
  public:
   /// Takes memory for `n` receipts of this spec, above 0. Context: setup.
@@ -202,8 +202,8 @@ class SwitchReceipts {
     reinitialised_ = memory.take<TaskId>(n * n_tasks_);
     variables_ = memory.take<VariablePart>(n * n_variables_);
   }
-  /// The next receipt, empty but for its lists, which are as long as they may become; without room in the place of the
-  /// last one. Context: cycle boundary; wait-free.
+  /// The next receipt, empty but for its lists, which have their full length. Without room it replaces the last one.
+  /// Context: cycle boundary; wait-free.
   SwitchReceipt& add() noexcept {
     CHIMERA_ASSERT(!all_.empty());
     if (has_room()) ++n_;
@@ -216,15 +216,15 @@ class SwitchReceipts {
     return all_[at];
   }
   bool has_room() const noexcept { return n_ < all_.size(); }
-  /// Of the next switch or takeover of the run, kept or not: from 1.
+  /// Number of the next switch or takeover of the run, from 1, kept or not.
   std::uint32_t next_number() noexcept { return ++number_; }
   /// Forgets all that are kept. Context: cycle boundary.
   void clear() noexcept { n_ = 0; }
-  /// One more that is not kept.
+  /// Counts one more receipt that is not kept.
   void leave_out() noexcept { ++n_left_out_; }
-  /// How many were made and are not kept. Context: setup, between runs.
+  /// Number of receipts that were made and are not kept. Context: setup, between runs.
   std::uint64_t left_out() const noexcept { return n_left_out_; }
-  /// In the order in which they were asked for; the last may not have ended. Context: setup, between runs.
+  /// Receipts in the order of their requests; the last switch may not have ended. Context: setup, between runs.
   std::span<const SwitchReceipt> all() const noexcept { return all_.first(n_); }
 
  private:

@@ -52,7 +52,7 @@ void compare(ValueStep& found, std::uint32_t type, const Place3& at) noexcept {
   const bool is_beyond = limit > 0 && !(size <= limit);
   const double share = limit > 0 ? size / limit : size;
   const double before = found.limit > 0 ? found.size / found.limit : found.size;
-  // Whatever is beyond its limit goes before what is not; NaN is beyond every limit.
+  // An element beyond its limit goes before one within its limit. NaN is beyond every limit.
   const bool is_farther = is_beyond != found.is_beyond ? is_beyond : !(share <= before);
   if (!found.is_known || is_farther) {
     found.size = size;
@@ -265,7 +265,7 @@ const VariablePart* SwitchRecord::arrives(TaskId id, Nanoseconds now) noexcept {
   return found;
 }
 
-// Who is re-initialised again on the way back is not listed again.
+// A task that is re-initialised again on the way back is not listed again.
 void SwitchRecord::reinitialised(TaskId task) noexcept {
   const std::span<TaskId> list = receipt_->reinitialised;
   if (std::find(list.begin(), list.end(), task) == list.end()) append(receipt_->reinitialised, task);
@@ -341,7 +341,7 @@ TaskPart& SwitchRecord::part_of(TaskId id) noexcept {
   return *std::find_if(receipt_->tasks.begin(), receipt_->tasks.end(), is_its);
 }
 
-// Jobs count them also while an edge looks.
+// Jobs count them also during a cycle boundary.
 std::uint64_t SwitchRecord::losses(TaskId id) const noexcept {
   Profile& profile = set_.tasks()[id.index].profile;
   return count_of(profile.dropped) + count_of(profile.aborted);

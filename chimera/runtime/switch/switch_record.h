@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps the record of the switch that is under way in one context: what its methods took, what was lost, how far each
-// variable moved. What comes out is a receipt.
+// Keeps the record of the switch that is under way in one context: durations of methods, lost cycles, and the step of
+// each variable. The result is a receipt.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,8 @@
 
 namespace chimera {
 
-/// A first cycle that comes later than this after its task went ON is not waited for: who asked wants an answer.
+/// A first cycle that comes later than this after its task went ON is not waited for, so that the requester gets an
+/// answer.
 inline constexpr Nanoseconds kFirstCycleWithin = seconds(1);
 
 /// Compares the first `count` elements of an out-var. A boolean counts as 0 or 1; of a struct every field counts.
@@ -22,8 +23,8 @@ inline constexpr Nanoseconds kFirstCycleWithin = seconds(1);
 ValueStep step_between(const PortSpec& port, const chimera_port_decl& declared, std::uint32_t count,
                        const std::byte* before, const std::byte* after) noexcept;
 
-/// How far each variable moves that is handed over in a switch: from the last value of the producer before to the value
-/// that the producer after wrote. Of the tasks of one context. Context of everything not marked: cycle boundary;
+/// Measures the step of each variable that is handed over in a switch: from the last value of the old producer to the
+/// value that the new producer wrote. For the tasks of one context. Context of everything not marked: cycle boundary;
 /// O(bytes of the variables); no allocation.
 class HandoverSteps {
  public:
@@ -31,20 +32,19 @@ class HandoverSteps {
   /// Takes memory for every variable. Context: setup.
   void prepare();
 
-  /// Keeps what the present producers of the variables have published last. Requires: they are the ones before.
+  /// Keeps the last publications of the present producers of the variables. Requires: they are the old producers.
   void keep_last(std::span<const VariablePart> variables) noexcept;
-  /// The same of the one variable, of a producer of this context that has gone.
+  /// Keeps the last value of one variable, whose producer in this context has gone.
   void keep_last_of(const Handover& handover) noexcept;
-  /// Compares what the present producers before published last with what they had at the last call: a step between two
-  /// publications in a row that is larger than `usual` takes its place. Of variables that go to a task of this
-  /// context.
+  /// Compares the last publications of the old producers with those at the last call. A step between two publications
+  /// in a row that is larger than `usual` replaces it. For variables that go to a task of this context.
   void watch(std::span<VariablePart> variables) noexcept;
-  /// Of a producer of another context that has gone: what watch() saw of it last while it was ON.
+  /// Keeps the last value that watch() saw of a producer in another context, which has gone.
   void keep_watched(const Handover& handover) noexcept;
-  /// Forgets what watch() has seen.
+  /// Forgets all values that watch() has seen.
   void begin_watch() noexcept;
-  /// From the value that was kept to the latest one of the producer after, a task of this context. Not known when one
-  /// of the two is not there.
+  /// From the kept value to the latest one of the new producer, a task of this context. Not known if one of the two is
+  /// missing.
   ValueStep step_to(const Handover& handover) noexcept;
 
  private:
@@ -58,9 +58,9 @@ class HandoverSteps {
   std::span<std::uint64_t> watched_sequence_;  // by variable: of the publication that is in watched_; 0: none
 };
 
-/// How long after their releases the cycles of tasks start within a window. Cycle boundaries read count, sum and
-/// maximum of the profile, so that a job pays nothing. If there were several cycles between two looks their mean
-/// counts, unless one was the longest of the run.
+/// Start delays of cycles within a window: from release to start. Cycle boundaries read count, sum and maximum of the
+/// profile, so that a job pays nothing. If there were several cycles between two calls of look(), their mean counts,
+/// unless one was the longest of the run.
 /// Context of everything not marked: cycle boundary; wait-free. Requires: no job of the task is under way.
 class StartDelays {
  public:
@@ -68,9 +68,9 @@ class StartDelays {
   void prepare(std::size_t n_tasks, SetupMemory& memory) { seen_ = memory.take<Spread>(n_tasks); }
   /// A window of the task begins with the next look(): a job of it may be under way until then.
   void begin_later(TaskId task) noexcept { seen_[task.index].count = kNotBegun; }
-  /// A window of the task begins. The longest of the run so far; -1: it had no cycle.
+  /// A window of the task begins. Returns the longest start delay of the run up to now; -1: it had no cycle.
   Nanoseconds begin(const Task& task) noexcept;
-  /// The longest since the last look; -1: there was no cycle.
+  /// The longest start delay since the last look(); -1: there was no cycle.
   Nanoseconds look(const Task& task) noexcept;
 
  private:
@@ -78,42 +78,43 @@ class StartDelays {
   std::span<Spread> seen_;  // by task: its start_delay at the last look
 };
 
-/// Of tasks of its own context. Context of everything not marked: cycle boundary; no allocation.
+/// Records the part of the tasks of its own context. Context of everything not marked: cycle boundary; no allocation.
 class SwitchRecord {
  public:
   explicit SwitchRecord(TaskSet& set) noexcept : set_(set), steps_(set) {}
   /// Context: setup.
   void prepare();
 
-  /// The receipt of another switch takes the place of the last one.
+  /// Starts the receipt of another switch, which replaces the last one.
   SwitchReceipt& restart() noexcept;
   SwitchReceipt& receipt() noexcept { return *receipt_; }
   const SwitchReceipt& receipt() const noexcept { return *receipt_; }
 
-  /// Lists the tasks and variables of the plan: losses count from here.
+  /// Lists the tasks and variables of the plan. Losses count from here.
   void take_up(const SwitchPlan& plan) noexcept;
-  /// Follows the start delays of the tasks and, until the change, the steps of the variables: at each edge meanwhile.
+  /// Follows start delays of the tasks and, until the change, steps of the variables. Call it at each cycle boundary of
+  /// the switch.
   void watch() noexcept;
   void took(TaskId task, Method method, Nanoseconds time) noexcept;
-  /// Holds what `on` of the arriving tasks wrote against the last values. Null: all within their limits.
+  /// Compares the values that `on` of the arriving tasks wrote with the last values. Null: all within their limits.
   const VariablePart* find_too_large_step() noexcept;
   // Of a slow switch, in which one task goes after the other.
 
-  /// Values of producers that leave are kept as they are.
+  /// Keeps the present values of leaving producers.
   void keep_last() noexcept { steps_.keep_last(receipt_->variables); }
   /// The task, of this context, is about to go OFF.
   void leaves(TaskId task) noexcept;
-  /// The task, of this context, went ON. The variable of it that moved too far; null: none did.
+  /// The task, of this context, went ON. Returns its variable that moved too far; null: none did.
   const VariablePart* arrives(TaskId task, Nanoseconds now) noexcept;
   void reinitialised(TaskId task) noexcept;
 
-  /// The change, at `at`: first cycles are looked for from here on.
+  /// The change took place at `at`: first cycles count from here on.
   void changed(const SwitchPlan& plan, Nanoseconds at) noexcept;
   /// Leaving tasks of this context may have published once more, in jobs released before the change.
   void keep_last_of_leaving() noexcept;
-  /// Notes the steps of first cycles. True: there is none left to wait for.
+  /// Notes the steps of first cycles. True: no first cycle is waited for any more.
   bool has_seen_first_cycles(Nanoseconds now) noexcept;
-  /// An edge follows each first cycle that has_seen_first_cycles() waits for.
+  /// Asks for a cycle boundary after each first cycle that has_seen_first_cycles() waits for.
   void await_first_cycles(JobThreads& threads) noexcept;
   /// No first cycle is waited for beyond this instant.
   Nanoseconds first_cycles_by() const noexcept { return first_cycles_by_; }

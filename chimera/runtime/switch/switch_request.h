@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A request for a switch: to which configuration, or of which tasks, and who asks.
+// A request for a switch: its target configuration or task lists, and its cause.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +11,17 @@
 
 namespace chimera {
 
-/// Why a switch is asked for.
+/// Cause of a request for a switch.
 enum class SwitchCause : std::uint8_t {
   kScript,   ///< an act of the script
   kRequest,  ///< a method of the task `by` asked: Cycle::request()
   kMiss,     ///< the reaction `on_miss` of the task `by`
   kOverrun,  ///< its reaction `on_overrun`
   kFault,    ///< its reaction `on_fault`
-  kStandby,  ///< nobody: `by` is a standby that takes over, which is no switch and has a receipt all the same
+  kStandby,  ///< no request: the standby `by` takes over, which is no switch and has a receipt all the same
 };
 
-/// Of a configuration, or with `lists` of none.
+/// Names a configuration, or with `lists` tasks.
 struct SwitchRequest {
   std::uint32_t set = UINT32_MAX;  ///< in ApplicationSpec::sets
   SwitchCause cause = SwitchCause::kScript;
@@ -29,16 +29,16 @@ struct SwitchRequest {
   TaskLists lists{};
 
   explicit operator bool() const noexcept { return set != UINT32_MAX || lists.are_there(); }
-  /// The same is asked for, whoever does.
+  /// True if both requests have the same target, whatever their causes.
   bool is_for(const SwitchRequest& other) const noexcept { return set == other.set && lists == other.lists; }
 };
 
-/// Works out what the lists of a request lead to, which depends on the tasks that are ON then.
+/// Finds the target set of a request with lists, which depends on the tasks that are ON then.
 class AskedTasks {
  public:
   virtual ~AskedTasks() = default;
-  /// Writes the tasks that are to be ON after `on` is and the lists of the request are carried out; false: they would
-  /// be no legal set, and nothing is switched. `now` is on the executor's clock. Context: edge; may allocate.
+  /// Writes the tasks that are to be ON after the lists are applied to `on`. False: they are no legal set, and nothing
+  /// is switched. `now` is on the executor's clock. Context: cycle boundary; may allocate.
   virtual bool find(const SwitchRequest& request, const TaskBits& on, Nanoseconds now, TaskBits& target) = 0;
 };
 

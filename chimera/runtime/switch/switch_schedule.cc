@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes the tasks of a switch to the analysis of transitions and reads from it who would lose a promise.
+// Passes the tasks of a switch to the analysis of transitions, and reads which task would lose a guarantee.
 #include "chimera/runtime/switch/switch_schedule.h"
 
 #include <algorithm>
@@ -55,7 +55,7 @@ void SwitchSchedule::consider(std::span<const TaskStanding> standing, const Task
     if (each.hot) consider_hot(each.standby);
 }
 
-// It cycles before when it, or one for which it stands in, is ON; and after alike.
+// The hot standby cycles before the switch if it, or a task for which it stands in, is ON then; likewise after it.
 void SwitchSchedule::consider_hot(TaskId hot) noexcept {
   bool is_before = false, is_after = false;
   for (std::size_t t = 0; t < parts_.size(); ++t) {
@@ -74,7 +74,7 @@ bool SwitchSchedule::is_first_of_cpu(RtpuId rtpu) const noexcept {
   return true;
 }
 
-// What is found of those that must keep their deadlines.
+// Judges the tasks that must keep their deadlines.
 void SwitchSchedule::analyse(std::span<const TransitionPart> parts, CpuTransition& found) noexcept {
   const TransitionVerdict all = analyse_transition(works_, parts, uses_, found.cpu, verdicts_, room_);
   found.settled = all.unstated == 0 ? all.settled : kNever;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the deadlines of an application hold over a switch of configurations: the analysis of transitions
+// Checks whether the deadlines of an application hold over a switch of configurations: the analysis of transitions
 // (schedule/transition.h) over the tasks of a specification, with their budgets as times.
 #pragma once
 
@@ -27,17 +27,18 @@ struct CpuTransition {
   bool is_lost() const noexcept { return guarantee == Guarantee::kNo || guarantee == Guarantee::kTooLong; }
 };
 
-/// Context of everything not marked: setup, or an edge of virtual time; milliseconds; no allocation.
+/// Context of everything not marked: setup, or a cycle boundary of virtual time; milliseconds; no allocation.
 class SwitchSchedule {
  public:
   /// Takes memory for `spec`, which outlives this. Context: setup.
   void prepare(const ApplicationSpec& spec, SetupMemory& memory);
 
-  /// From the tasks that are ON by `standing` to those of `after`: takes the place of what was considered before.
+  /// Considers the switch from the tasks that are ON by `standing` to those of `after`; replaces the one considered
+  /// before.
   void consider(std::span<const TaskStanding> standing, const TaskBits& after) noexcept;
-  /// What was considered, on the CPU of that rtpu.
+  /// The transition that was considered, on the CPU of that rtpu.
   CpuTransition on_cpu_of(RtpuId rtpu) noexcept;
-  /// The first rtpu of its CPU: one of each CPU is.
+  /// True if the rtpu is the first of its CPU: each CPU has one.
   bool is_first_of_cpu(RtpuId rtpu) const noexcept;
 
   /// kNotSchedulable, with the task and what its cycle may take, where a promise that holds before the switch would not

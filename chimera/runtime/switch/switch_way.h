@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which way a switch goes, and why: fast, while the tasks cycle (switching.h), or slow, leaving tasks first
-// (slow_switch.h). Asked once by whoever orders it.
+// Chooses the way of a switch, with the reason: fast, while the tasks cycle (switching.h), or slow, leaving tasks first
+// (slow_switch.h). The process that orders the switch asks once.
 #pragma once
 
 #include <algorithm>
@@ -19,21 +19,21 @@ namespace chimera {
 /// Plain value.
 struct SwitchWay {
   std::uint8_t slow = 0;          ///< SlowReason; 0: fast
-  ConstantUsers::Found constant;  ///< of kSlowForConstants: who stays ON, and what becomes another one for it
+  ConstantUsers::Found constant;  ///< of kSlowForConstants: a task that stays ON, and the constant that changes for it
   PlanAnswer deadline;            ///< of kSlowForDeadlines: as SwitchSchedule::judge()
   TaskId gapless;                 ///< of kSlowForGap: its `on` fits no gap; invalid: none was found by the deadline
   Nanoseconds needed;             ///< the gap that `gapless` needs
   TaskId absent;                  ///< of kSlowForResource: the first task of the plan that is NOT-CREATED
-  TaskId rival;                   ///< and who has its resource; invalid: it waits for a constant of such a task
+  TaskId rival;                   ///< the task that has its resource; invalid: `absent` lacks a constant of such a task
 };
 
-/// Why a fast switch that ended so is made the slow way next; 0: it is not. Context: any.
+/// Reason to retry a failed fast switch the slow way; 0: it is not retried so. Context: any.
 constexpr std::uint8_t reason_to_go_slowly(NoSwitch why) noexcept {
   return why == NoSwitch::kNoGap ? kSlowForGap : why == NoSwitch::kNotReady ? kSlowForDevice : 0;
 }
 
-/// SwitchOrder::lead of that try, by the lead of the first. Its longest job is in it already: only what else held a
-/// context up is given more time, eight times as much with each try. Context: any.
+/// SwitchOrder::lead of that try, from the lead of the first. The lead contains the longest job already. Only other
+/// delays of a context get more time, eight times as much with each try. Context: any.
 constexpr Nanoseconds lead_of_try(Nanoseconds first, std::uint32_t tries) noexcept {
   constexpr std::int64_t kMoreTime = 8;
   if (tries <= 1) return first;
@@ -42,7 +42,7 @@ constexpr Nanoseconds lead_of_try(Nanoseconds first, std::uint32_t tries) noexce
   return first + more;
 }
 
-/// Context of everything not marked: setup, or an edge of virtual time; no allocation.
+/// Context of everything not marked: setup, or a cycle boundary of virtual time; no allocation.
 class SwitchWays {
  public:
   /// The spec outlives this. Context: setup.

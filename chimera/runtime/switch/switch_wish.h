@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The configuration that a task or a reaction of one context asked for last, as words that outlive whoever carries it
-// out: a state, not a message. docs/formats/processes.md, docs/design/switch.md.
+// The configuration that a task or a reaction of one context asked for last. The words are a state, not a message, and
+// outlive the process that carries the request out. docs/formats/processes.md, docs/design/switch.md.
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@ namespace chimera {
 /// SwitchWishWords::word: bits 0-15 number, 16-31 set, 32-47 the task that asked, 48-55 cause. Plain value.
 struct SwitchWish {
   static constexpr std::uint16_t kLists = UINT16_MAX;
-  std::uint16_t number = 0;  ///< 0: nothing was asked for yet; another one than that of the wish before
+  std::uint16_t number = 0;  ///< 0: no request yet; differs from the number of the request before
   std::uint16_t set = 0;     ///< in ApplicationSpec::sets, or kLists
   std::uint16_t by = 0;
   SwitchCause cause = SwitchCause::kRequest;
@@ -24,12 +24,12 @@ struct SwitchWish {
     return std::uint64_t{static_cast<std::uint8_t>(cause)} << 48 | std::uint64_t{by} << 32 | std::uint64_t{set} << 16 |
            number;
   }
-  /// May be anything: `set`, `by` and `cause` are to be held against what there is.
+  /// The word may hold anything: check `set`, `by` and `cause` before use.
   static constexpr SwitchWish of(std::uint64_t word) noexcept {
     return {static_cast<std::uint16_t>(word), static_cast<std::uint16_t>(word >> 16),
             static_cast<std::uint16_t>(word >> 32), static_cast<SwitchCause>(word >> 48 & 0xffu)};
   }
-  /// The next wish: of a request by a task of this context.
+  /// The next value of the word, for a request by a task of this context.
   constexpr SwitchWish next(const SwitchRequest& request) const noexcept {
     const auto follows = static_cast<std::uint16_t>(number == UINT16_MAX ? 1 : number + 1);
     return {follows, static_cast<std::uint16_t>(request.set), static_cast<std::uint16_t>(request.by.index),
@@ -38,7 +38,7 @@ struct SwitchWish {
   constexpr bool operator==(const SwitchWish&) const noexcept = default;
 };
 
-/// A wish as it is read: whole.
+/// A request as it is read: whole.
 struct OpenWish {
   SwitchWish wish;
   Nanoseconds at;    ///< when it was asked for, on the clock of all
@@ -51,13 +51,13 @@ struct OpenWish {
   }
 };
 
-/// Written by its context alone. `word` is 0 while the others are written, and comes last, with release. Whoever reads
-/// a new one of the others, with acquire, sees by `word` that it was 0 since, or is another one.
+/// Only its context writes it. `word` is 0 while the others are written, and is written last, with release. A reader
+/// that loads a new value of the others, with acquire, sees by `word` that a write has begun: `word` is 0 or differs.
 class SwitchWishWords {
  public:
   /// Context: any process; wait-free. Of a context that has died anywhere, too: then maybe none is there.
   SwitchWish wish() const noexcept { return SwitchWish::of(word_.load(std::memory_order_acquire)); }
-  /// All of it; none is there while it is written. Context: any process; wait-free.
+  /// Reads all words; returns no request while they are written. Context: any process; wait-free.
   OpenWish read() const noexcept {
     OpenWish read{wish(), Nanoseconds{at_.load(std::memory_order_acquire)}, {}};
     for (std::size_t i = 0; i < kWords; ++i) {
@@ -85,13 +85,13 @@ class SwitchWishWords {
   std::atomic<std::uint64_t> lists_[2 * kWords] = {};
 };
 
-/// What whoever carries wishes out remembers of one context: the wish that it has dealt with, and of which incarnation.
+/// Memory of the process that carries requests out, for one context: the last request dealt with, and its incarnation.
 constexpr std::uint64_t wish_dealt_with(std::uint32_t incarnation, std::uint16_t number) noexcept {
   return std::uint64_t{incarnation} << 32 | number;
 }
 
-/// Does a context ask anew? The last request stands: one that changes nothing is dropped, unless it takes another one
-/// back that nobody has dealt with.
+/// True if a request is new. The last request stands: one that changes nothing is dropped, unless it replaces a
+/// different one that has not been dealt with yet.
 constexpr bool is_new_wish(bool is_for_the_same, bool changes_nothing, bool is_last_open) noexcept {
   return is_last_open ? !is_for_the_same : !changes_nothing;
 }

@@ -109,7 +109,7 @@ void Switching::step(Nanoseconds edge) noexcept {
   if (phase_ == Phase::kNone && plan.number != seen_) take_up(plan, now);
   if (phase_ == Phase::kNone) return;
   record_.watch();
-  now = std::max(now, parts_.clock.now());  // methods of this edge took their time
+  now = std::max(now, parts_.clock.now());  // methods of this cycle boundary took their time
   const bool is_open = phase_ == Phase::kArming || phase_ == Phase::kAgreed;
   if (is_open && (plan.number != order_.number || plan.phase == SwitchPhase::kAborted))
     abort(NoSwitch::kNone, {}, {});  // another context did

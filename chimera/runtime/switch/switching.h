@@ -41,7 +41,7 @@ namespace chimera {
 /// theirs.
 class Switching {
  public:
-  /// What a switch works on; all of it outlives this.
+  /// The parts that a switch works on; all of them outlive this.
   struct Parts {
     TaskSet& set;
     ReadyQueue& queue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tasks that are to be ON and tasks that are not, in place of the name of a configuration: "--on A B --off C", as
-// `chimera switch`, `--at` and Cycle::request() take it. What set they lead to: runtime/hosted/asked_set.h.
+// `chimera switch`, `--at` and Cycle::request() take it. runtime/hosted/asked_set.h finds the set that they lead to.
 #pragma once
 
 #include <string_view>
@@ -27,7 +27,7 @@ struct TaskLists {
 /// The text names tasks, and no configuration, whose name never begins so.
 constexpr bool has_lists(std::string_view text) noexcept { return text.starts_with('-'); }
 
-/// What is wrong with a text of lists.
+/// Fault in a text of lists.
 struct ListsFault {
   enum class Kind : std::uint8_t { kNone, kEmpty, kOutOfPlace, kUnknownTask };
   Kind kind = Kind::kNone;

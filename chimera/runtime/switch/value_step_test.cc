@@ -57,7 +57,7 @@ TEST(ValueStep, WhatIsNotANumberIsBeyondEveryLimit) {
   const ValueStep found = step<double>(CHIMERA_FLOAT64, {0, 0, 0}, {9, nan, 1}, {10, 10, 10});
   EXPECT_TRUE(found.is_beyond);
   EXPECT_TRUE(std::isnan(found.size));
-  EXPECT_FALSE(step<double>(CHIMERA_FLOAT64, {0}, {nan}).is_beyond);  // nobody asked
+  EXPECT_FALSE(step<double>(CHIMERA_FLOAT64, {0}, {nan}).is_beyond);  // the port has no limit
 }
 
 TEST(ValueStep, EveryFieldOfAStructIsMeasured) {

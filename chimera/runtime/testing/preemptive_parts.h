@@ -105,7 +105,7 @@ class PreemptiveParts {
     supervisor().watch_released(one, now);
     return one;
   }
-  /// The same, and it has begun.
+  /// Releases a job that has begun.
   JobThread& begin(std::uint32_t task, Nanoseconds now) {
     JobThread& one = release(task, now);
     one.begin_use();

@@ -17,7 +17,7 @@ namespace chimera::testing::switch_scene {
 
 using Log = std::vector<std::tuple<std::int64_t, double>>;
 
-/// What the components of a run do, and what they saw. One run at a time.
+/// Orders to the components of a run, and their observations. One run at a time.
 struct Scene {
   Log plant, beacon, u, reader;
   std::vector<std::string> story;
@@ -40,7 +40,7 @@ struct Plant {
   }
 };
 
-struct Beacon {  // knows nobody
+struct Beacon {  // has no links to others
   Out<double> b{"b", "1", initial = 0.0};
   void cycle(Cycle c) {
     *b = *b * 0.9 + static_cast<double>(c.now().count % 997);
@@ -66,7 +66,7 @@ struct One {  // 7 while it cycles
   void cycle(Cycle) { *u = 7; }
   void off(Cycle) {
     scene.story.emplace_back("off one");
-    *u = 1e6;  // nobody may see this
+    *u = 1e6;  // no task may see this
   }
 };
 

@@ -13,8 +13,8 @@
 
 namespace chimera::testing::tool_scene {
 
-/// What the components of a run do, and what they saw. One run at a time. What steps of a slow switch call is called by
-/// one context after the other; the rest is of one task alone.
+/// Orders to the components of a run, and their observations. One run at a time. What steps of a slow switch call is
+/// called by one context after the other; the rest is of one task alone.
 struct Shop {
   std::vector<std::string> story;            // steps
   std::string fails;                         // the step that answers with a fault: "on heavy"

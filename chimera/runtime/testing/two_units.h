@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: an application of two real-time units whose tasks exchange a variable, and an operator variable.
+// For tests: an application of two rtpus whose tasks exchange a variable, and an operator variable.
 #pragma once
 
 #include "chimera/runtime/hosted/heap_memory.h"

@@ -19,7 +19,7 @@
 
 namespace chimera::testing {
 
-/// Of kSwitch to that set; of kDie that rtpu.
+/// An act of kSwitch to that set, or of kDie of that rtpu.
 inline ScriptAct act_at(Nanoseconds at, ScriptAct::Kind kind, std::uint32_t set_or_rtpu) {
   ScriptAct act;
   act.at = at;
@@ -50,7 +50,7 @@ class VirtualUnits {
     rtpus_ = std::make_unique<VirtualRtpus>(*peers_, options, how);
   }
 
-  /// From the start on, so long.
+  /// Runs for `duration` from the start on.
   void run(Nanoseconds duration) {
     EXPECT_TRUE(rtpus_->start());
     EXPECT_EQ(rtpus_->run(duration), RunEnd::kTime);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clock of virtual time, and how long a job is taken to need.
+// The clock of virtual time, and the modelled execution time of a job.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ constexpr Nanoseconds between(Nanoseconds low, Nanoseconds high, std::uint64_t r
   return low + Nanoseconds{static_cast<std::int64_t>((static_cast<Wide>(random) * width) >> 64)};
 }
 
-/// What methods see of virtual time: it stands still but for what they spend.
+/// Virtual time as methods see it: it advances only by the time they spend.
 class ModelledClock final : public JobClock {
  public:
   Nanoseconds now() noexcept override { return now_ + spent_; }
@@ -47,8 +47,9 @@ class ModelledClock final : public JobClock {
   Nanoseconds now_, spent_;
 };
 
-/// Execution time of a job whose body has run: what it spent; else, with a seed (null: none), uniform in
-/// [min, budget]; else its budget; else 0. A poll that found no event costs only what it spent.
+/// Execution time of a job whose body has run. It is the time that the body spent, if any. Otherwise with a seed (null:
+/// none) it is uniform in [min, budget], without one the budget, or 0. A poll that found no event costs only what it
+/// spent.
 /// Context: any; wait-free.
 inline Nanoseconds modelled_time(const TaskSpec& spec, TaskId task, Nanoseconds release, Nanoseconds spent,
                                  bool had_event, const std::uint64_t* seed) noexcept {

@@ -97,7 +97,7 @@ Nanoseconds Preemptive::next_event(Nanoseconds now) noexcept {
   return std::min(next, releases_.origin() + options_.quantum * (since / options_.quantum + 1));
 }
 
-// What only tasks with the reactions abort and demote and those behind servers have.
+// The next instant that only tasks with the reactions abort and demote, and tasks behind servers, have.
 Nanoseconds Preemptive::next_exception(Nanoseconds now) noexcept {
   return std::min({next_deadline(), next_demotion(now), sporadic_.next_change(now)});
 }
@@ -182,7 +182,7 @@ void Preemptive::expire(TaskId task, Nanoseconds deadline) noexcept {
   end(a, deadline);
 }
 
-// What is over at this instant has ended by now: these need more.
+// Jobs that are over at this instant have ended already: these need more time.
 void Preemptive::demote_due(Nanoseconds now) noexcept {
   if (const TaskId task = processor_.running(); task.is_valid() && budget_left(task) == Nanoseconds{}) {
     (void)releases_.misses().report_overrun(task, releases_.task(task).call.cycle, processor_.job().used, now);
@@ -210,7 +210,7 @@ void Preemptive::run_edge(Nanoseconds& now) noexcept {
   clock_.set(now);
   releases_.take_edge(now);
   if (clock_.spent() == Nanoseconds{}) return;
-  processor_.record_slice();  // methods at an edge hold the processor
+  processor_.record_slice();  // methods at a cycle boundary hold the processor
   now += clock_.spent();
   processor_.resume(now);
 }

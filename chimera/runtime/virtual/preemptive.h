@@ -37,27 +37,27 @@ class Preemptive {
   /// to go on. `now` receives the time reached.
   RunEnd run(Nanoseconds& now, Nanoseconds until) noexcept;
 
-  // The parts of run(), for whoever advances several processors together: stepped_preemptive.h.
+  // The parts of run(), for a caller that advances several processors together: stepped_preemptive.h.
 
-  /// What is over at `now`: the job that has the processor, those at their deadlines and at their budgets. The grid of
+  /// Ends what is over at `now`: the job that has the processor, and jobs at their deadlines or budgets. The grid of
   /// releases has begun.
   void end_due(Nanoseconds now) noexcept;
-  /// Takes the edge of `now`, which receives the time reached.
+  /// Runs the cycle boundary of `now`, which receives the time reached.
   void run_edge(Nanoseconds& now) noexcept;
-  /// Gives the processor to the most urgent job. True when the instant is not over: a job needs no time, and is over
-  /// with the next end_due().
+  /// Gives the processor to the most urgent job. True if the instant is not over: a job needs no time, and ends in the
+  /// next end_due().
   bool dispatch_by_step(Nanoseconds now) noexcept;
   Nanoseconds next_event(Nanoseconds now) noexcept;
   bool is_idle() const noexcept { return processor_.is_idle() && releases_.queue().is_empty(); }
-  /// The slice of the job that has the processor is recorded up to `now`.
+  /// Records the slice of the job that has the processor, up to `now`.
   void record_slice(Nanoseconds now) noexcept;
-  /// Events and servers are looked at.
+  /// Checks events and servers.
   void follow_servers(Nanoseconds now) noexcept {
     if (!sporadic_.are_none()) sporadic_.follow(now);
   }
 
  private:
-  /// Who says at which instant a job is over.
+  /// Place that decides at which instant a job is over.
   enum class Ends : std::uint8_t { kHere, kElsewhere };
   /// A task whose jobs are ended at their deadline.
   struct Abandoner {
@@ -93,7 +93,7 @@ class Preemptive {
   SporadicTasks sporadic_;
   std::vector<Abandoner> abandoners_;   // tasks with the reaction abort
   std::vector<TaskId> demoters_;        // tasks with the reaction demote to a missed deadline
-  std::vector<TaskId> demoted_;         // their jobs run when nobody else does, the first until it ends
+  std::vector<TaskId> demoted_;         // their jobs run when no other job does, the first until it ends
   std::ptrdiff_t n_demoted_ = 0;
   bool by_laxity_;
   bool has_demotion_ = false;  // some task has it as a reaction

@@ -54,7 +54,7 @@ bool SporadicTasks::accept_event(SporadicTask& s, Nanoseconds now) noexcept {
   return false;
 }
 
-// Puts the job where it belongs by what the server has: on the processor, into the queue, or nowhere.
+// Moves the job by the capacity of its server: onto the processor, into the queue, or out of both.
 void SporadicTasks::apply_grant(SporadicTask& s, Nanoseconds now) noexcept {
   const SporadicJob::Grant grant = s.job.grant(now);
   BegunJob& a = processor_.of(s.task);

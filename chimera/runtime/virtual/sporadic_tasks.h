@@ -15,7 +15,7 @@ namespace chimera {
 /// Context: cycle; no allocation; one thread at a time.
 class SporadicTasks {
  public:
-  /// Those of `tasks` that have a server; what is given outlives this. Context: setup.
+  /// Handles the tasks of `tasks` that have a server. All arguments outlive this. Context: setup.
   SporadicTasks(Releases& releases, std::span<const TaskSpec> tasks, VirtualProcessor& processor);
 
   bool are_none() const noexcept { return sporadic_.empty(); }

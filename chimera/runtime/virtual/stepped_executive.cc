@@ -16,7 +16,7 @@ void SteppedExecutive::end_due(Nanoseconds now) noexcept {
   hold_until(clock_.now());
 }
 
-// What an error method spent for a job that was not started at this instant counts with what comes next.
+// The time of an error method, for a job that was not started at this instant, counts for the next action.
 void SteppedExecutive::stand_at(Nanoseconds now) noexcept {
   if (clock_.now() - clock_.spent() != now) clock_.set(now);
 }

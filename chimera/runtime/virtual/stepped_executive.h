@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The non-preemptive loop of one processor of several in virtual time: what run_cycles (cycle_loop.h) does with a job
-// in one go is done in two, its beginning and its end, so that other processors act in between.
+// The non-preemptive loop of one processor of several in virtual time. A job that run_cycles (cycle_loop.h) runs in one
+// go has two parts here, its beginning and its end, so that other processors act in between.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@ namespace chimera {
 /// Context of everything not marked: cycle; no allocation.
 class SteppedExecutive final : public SteppedProcessor {
  public:
-  /// What is given outlives this. Context: setup.
+  /// All arguments outlive this. Context: setup.
   SteppedExecutive(Releases& releases, ModelledClock& clock, std::optional<std::uint64_t> seed) noexcept
       : SteppedProcessor(releases, clock), seed_(seed) {}
 

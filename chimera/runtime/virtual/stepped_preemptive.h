@@ -10,7 +10,7 @@ namespace chimera {
 /// Context of everything not marked: cycle; no allocation.
 class SteppedPreemptive final : public SteppedProcessor {
  public:
-  /// What is given outlives this. Context: setup.
+  /// All arguments outlive this. Context: setup.
   SteppedPreemptive(Releases& releases, std::span<const TaskSpec> tasks, ModelledClock& clock,
                     const PreemptiveOptions& options)
       : SteppedProcessor(releases, clock), processor_(releases, tasks, clock, options) {}

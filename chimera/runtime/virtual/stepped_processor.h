@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One processor of several in virtual time. Whoever advances all of them together (virtual_rtpus.h) calls, at each
-// instant at which something may happen: end_jobs, take_edge where one is due, release_jobs, dispatch.
+// One processor of several in virtual time. The caller advances all of them together (virtual_rtpus.h). At each instant
+// at which something may happen it calls: end_jobs, take_edge if one is due, release_jobs, dispatch.
 #pragma once
 
 #include "chimera/runtime/releases.h"
@@ -12,15 +12,15 @@ namespace chimera {
 class SteppedProcessor {
  public:
   virtual ~SteppedProcessor() = default;
-  /// Jobs that are over at `now` publish, and what they left is settled. Not while methods hold the processor.
+  /// Jobs that are over at `now` publish, and the work they left is settled. Not while methods hold the processor.
   void end_jobs(Nanoseconds now) noexcept {
     if (!is_held(now) && !resumes_) end_due(now);
   }
-  /// An edge is due, and may be taken: no job that cannot be preempted and no method has the processor.
+  /// A cycle boundary is due and allowed: no job that cannot be preempted and no method has the processor.
   bool edge_is_due(Nanoseconds now) const noexcept {
     return !is_busy() && !is_held(now) && !resumes_ && releases_.edge_is_due(now);
   }
-  /// Requires: edge_is_due(). What the methods spend holds the processor.
+  /// Requires: edge_is_due(). The time that the methods spend holds the processor.
   void take_edge(Nanoseconds now) noexcept {
     held_until_ = edge(now);
     has_looked_ = true;
@@ -33,7 +33,7 @@ class SteppedProcessor {
     releases_.release_due(now);
     releases_.rest(kNever);
   }
-  /// Begins the most urgent job. True when the instant is not over: a job needs no time, or was not to be started.
+  /// Begins the most urgent job. True if the instant is not over: a job needs no time, or was not to be started.
   bool dispatch(Nanoseconds now) noexcept { return !is_busy() && !is_held(now) && begin_job(now); }
   /// The next instant at which one of these has something to do, if nothing comes from elsewhere.
   Nanoseconds next_event(Nanoseconds now) noexcept { return is_held(now) ? held_until_ : next_own(now); }
@@ -42,9 +42,9 @@ class SteppedProcessor {
   bool is_occupied(Nanoseconds now) const noexcept { return is_busy() || is_held(now); }
   /// No job is under way or waits.
   virtual bool is_idle() const noexcept = 0;
-  /// The run ends at `now`: a job that cannot be preempted is finished. The instant at which all is over.
+  /// The run ends at `now`: a job that cannot be preempted is finished. Returns the instant at which all is over.
   virtual Nanoseconds finish(Nanoseconds now) noexcept = 0;
-  /// The processor is dead: what has run of the present job is recorded.
+  /// The processor is dead: records how long the present job has run.
   virtual void cut(Nanoseconds now) noexcept = 0;
 
  protected:
@@ -52,7 +52,7 @@ class SteppedProcessor {
   /// A job that cannot be preempted is under way.
   virtual bool is_busy() const noexcept = 0;
   virtual void end_due(Nanoseconds now) noexcept = 0;
-  /// Takes the edge: the instant at which its methods are over.
+  /// Runs the cycle boundary. Returns the instant at which its methods are over.
   virtual Nanoseconds edge(Nanoseconds now) noexcept = 0;
   virtual bool begin_job(Nanoseconds now) noexcept = 0;
   virtual Nanoseconds next_own(Nanoseconds now) noexcept = 0;
@@ -65,8 +65,8 @@ class SteppedProcessor {
   bool is_held(Nanoseconds now) const noexcept { return held_until_ > now; }
 
   Nanoseconds held_until_;   // by methods
-  bool has_looked_ = false;  // an edge was taken: releases come next
-  bool resumes_ = false;     // they do so after what the methods of the edge spent
+  bool has_looked_ = false;  // a cycle boundary has run: releases come next
+  bool resumes_ = false;     // they come after the time that the methods of the cycle boundary spent
 };
 
 }  // namespace chimera

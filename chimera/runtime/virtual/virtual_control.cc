@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes in what other real-time units of virtual time changed and sent.
+// Brings the changes and signals of other rtpus of virtual time into one rtpu.
 #include "chimera/runtime/virtual/virtual_control.h"
 
 #include <utility>
@@ -36,7 +36,7 @@ void VirtualControl::take(BoundarySignals& signals, Nanoseconds now) noexcept {
 void VirtualControl::follow(Nanoseconds now) noexcept {
   const std::uint64_t changes = peers_.look(rtpu_);
   if (std::exchange(followed_, changes) == changes) return;
-  peers_.watch_flags(rtpu_, tasks_.flag());  // somebody may have died
+  peers_.watch_flags(rtpu_, tasks_.flag());  // an rtpu may have died
   tasks_.sources().follow_others();
   tasks_.on_set_changed();
   const bool is_up = tasks_.flag().is_up();

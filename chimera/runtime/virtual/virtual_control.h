@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The control of one real-time unit of several in virtual time: takes in at the edges of the unit what the others
-// changed and sent and what the script wants of the unit, and shows the others what the edges changed.
+// The listener of one rtpu of several in virtual time. At the cycle boundaries it brings in changes and signals of the
+// others and acts of the script. Then it shows the others the changes of this rtpu.
 #pragma once
 
 #include <vector>
@@ -12,17 +12,17 @@
 
 namespace chimera {
 
-/// Context of everything not marked: edge.
+/// Context of everything not marked: cycle boundary.
 class VirtualControl final : public BoundaryListener {
  public:
-  /// Of the rtpu, which has joined the peers. Both outlive this; room for `n_acts` acts. Context: setup.
+  /// Serves the rtpu, which has joined the peers. Both outlive this; room for `n_acts` acts. Context: setup.
   VirtualControl(VirtualPeers& peers, RtpuId rtpu, std::size_t n_acts);
-  /// From now on changes of the flag that came from elsewhere are recorded there. Context: setup.
+  /// From now on `tap` records changes of the flag that came from elsewhere. Context: setup.
   void record_on(ContextTap& tap) noexcept { tap_ = &tap; }
 
-  /// The next edge carries it out.
+  /// The next cycle boundary carries the act out.
   void hand_over(const ScriptAct& act) noexcept;
-  /// The reaction `stop` of a task: the next edge turns all tasks of the rtpu OFF.
+  /// The reaction `stop` of a task: the next cycle boundary turns all tasks of the rtpu OFF.
   void stop_all() noexcept;
   /// Reads states and groups of other contexts as they are now.
   void follow(Nanoseconds now) noexcept;
@@ -43,8 +43,8 @@ class VirtualControl final : public BoundaryListener {
   RtpuId rtpu_;
   TaskSet& tasks_;
   ContextTap* tap_ = nullptr;
-  std::vector<ScriptAct> acts_;  // to be carried out by the next edge
-  std::uint64_t followed_ = 0;   // VirtualPeers::look(), then
+  std::vector<ScriptAct> acts_;  // to be carried out by the next cycle boundary
+  std::uint64_t followed_ = 0;   // result of VirtualPeers::look() at the last follow()
   bool stops_all_ = false;
   bool is_flag_known_up_ = false;  // as it was recorded, or published, last
 };

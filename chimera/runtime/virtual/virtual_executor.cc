@@ -20,10 +20,10 @@ struct ModelledTime {
   Nanoseconds& now_;
 
   Nanoseconds now() noexcept {
-    set(now_ + clock.spent());  // by methods at the edge
+    set(now_ + clock.spent());  // by methods at the cycle boundary
     return now_;
   }
-  void wait_until(Nanoseconds instant) noexcept { set(std::max(instant, now_)); }  // an edge may have lasted longer
+  void wait_until(Nanoseconds instant) noexcept { set(std::max(instant, now_)); }  // methods may have lasted longer
   Nanoseconds end_of(const Job& job, BodyEnd body, Nanoseconds start) noexcept {
     const bool had_event = body.answer != Answer::kNoEvent;
     Task& task = releases.task(job.task);

@@ -9,7 +9,7 @@
 
 namespace chimera {
 
-/// How virtual time is run. Context: setup.
+/// Options of virtual time. Context: setup.
 struct VirtualOptions {
   bool preemptive = false;
   std::optional<std::uint64_t> seed;      ///< execution times drawn from [min, budget] instead of the budget
@@ -19,7 +19,8 @@ struct VirtualOptions {
 /// Non-preemptive: the loop of the executive, job by job. Preemptive: virtual/preemptive.h.
 class VirtualExecutor {
  public:
-  /// The set and what the options point at outlive it. Requires: preemptive, where a task has a server. Context: setup.
+  /// The set and all pointers of the options outlive it. Requires: preemptive, where a task has a server. Context:
+  /// setup.
   VirtualExecutor(TaskSet& set, const RunOptions& options, const VirtualOptions& how);
 
   /// Spawns all tasks and turns the start set ON; what their methods spend is the origin of the grid, else 0.
@@ -41,7 +42,7 @@ class VirtualExecutor {
   Nanoseconds origin() const noexcept { return releases_.origin(); }
   /// Context: setup, between runs.
   std::span<const RefusedSignal> refused() noexcept { return releases_.signals().refused(); }
-  /// Of the switches that were asked for. Context: setup, between runs.
+  /// Receipts of all requested switches. Context: setup, between runs.
   const SwitchReceipts& receipts() noexcept { return releases_.receipts(); }
 
  private:

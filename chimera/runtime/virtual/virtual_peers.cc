@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the contexts of the other real-time units, and passes signals between them.
+// Reads the contexts of the other rtpus, and passes signals between them.
 #include "chimera/runtime/virtual/virtual_peers.h"
 
 #include <algorithm>
@@ -108,8 +108,8 @@ void VirtualPeers::raise(bool up) noexcept {
   show_change(RtpuId());
 }
 
-// The part of the flag that follows from the tasks that are ON is judged alike by every context, from states as they
-// are: only what is raised must be told.
+// Every context judges the part of the flag that follows from the ON tasks, and with the same result. So only the
+// raised parts are passed on.
 void VirtualPeers::watch_flags(RtpuId rtpu, IllegalFlag& flag) noexcept {
   Peer& me = peers_[rtpu.index];
   me.flags.assign(1, &raised_);

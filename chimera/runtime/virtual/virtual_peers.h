@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The real-time units of an application that runs in virtual time in one process: one context for each, and what each
-// sees of the others. What is read of another context is its present state: nothing is on the way. There is no manager:
-// operator variables and the operator's part of the flag are kept here.
+// The rtpus of an application that runs in virtual time in one process: one context for each, and its view of the
+// others. A context reads the present state of another one, without delay. There is no manager: this class keeps the
+// operator variables and the operator's part of the flag.
 #pragma once
 
 #include <atomic>
@@ -26,14 +26,14 @@ struct VirtualPost {
   bool is_echo = false;  ///< `reinit` because a constant changed elsewhere
 };
 
-/// Used by one thread. Context of everything not marked: edge; no allocation.
+/// Used by one thread. Context of everything not marked: cycle boundary; no allocation.
 class VirtualPeers final : public PeerView {
  public:
   /// Operator variables have their initial values. Refuses what PeerLayout refuses. The spec outlives it. Context:
   /// setup.
   static Result<std::unique_ptr<VirtualPeers>> create(const ApplicationSpec& spec);
-  /// The context of the rtpu, which was built with this as its view of others, can be seen. It outlives all use of
-  /// this. Context: setup.
+  /// Shows the context of the rtpu, which was built with this as its view of others, to the others. The context
+  /// outlives all use of this. Context: setup.
   void join(RtpuId rtpu, TaskSet& tasks);
 
   State state(TaskId task) const noexcept override;
@@ -41,34 +41,34 @@ class VirtualPeers final : public PeerView {
   GroupReader outputs(TaskId task) const noexcept override;
   GroupReader constants(TaskId task) const noexcept override;
   GroupReader operator_variable(std::size_t index) const noexcept override;
-  /// False when the rtpu of the target is dead, or has kMostPosts to take.
+  /// False if the rtpu of the target is dead, or has kMostPosts to take.
   bool post(Signal signal, TaskId target, TaskId from, bool is_echo) noexcept override;
   bool has_manager() const noexcept override { return is_start_; }
   /// Between begin and end of the start, which was judged as a whole, no `on` is judged by itself.
   void show_start(bool is_under_way) noexcept { is_start_ = is_under_way; }
 
-  /// Rung when the context of the rtpu has something to take in.
+  /// Rung when the context of the rtpu has new input.
   const std::atomic<std::uint32_t>& bell(RtpuId rtpu) const noexcept { return peers_[rtpu.index].bell; }
   void ring(RtpuId rtpu) noexcept { peers_[rtpu.index].bell.fetch_add(1, std::memory_order_relaxed); }
   /// States of tasks of that rtpu, or its part of the flag, changed: all others are rung.
   void show_change(RtpuId by) noexcept;
-  /// That rtpu looks at the states of all others. The changes since the start.
+  /// Notes that the rtpu reads the states of all others now. Returns the number of changes since the start.
   std::uint64_t look(RtpuId by) noexcept { return peers_[by.index].looked = changes_; }
   /// The next signal for the rtpu; false: there is none.
   bool take(RtpuId rtpu, VirtualPost& post) noexcept;
 
-  /// Somebody of that rtpu holds the flag up. True when that is new.
+  /// Sets whether a task or a reaction of the rtpu raises the flag. True if that is new.
   bool show_raised(RtpuId rtpu, bool is_raised) noexcept;
   /// The operator raises or lowers the flag.
   void raise(bool up) noexcept;
-  /// From now on `flag`, that of the rtpu, reads the parts of those who live, and the operator's.
+  /// From now on `flag`, that of the rtpu, reads the parts of all living rtpus, and the operator's.
   void watch_flags(RtpuId rtpu, IllegalFlag& flag) noexcept;
   /// The flag as rtpus that live see it.
   bool is_flag_up() const noexcept;
   /// Publishes a value of operator variable `index`: as many bytes as the description gives.
   void set_operator(std::size_t index, std::span<const std::byte> value, Nanoseconds now) noexcept;
 
-  /// The rtpu is dead: its tasks that were created are in ERROR, what it published stands.
+  /// The rtpu is dead: its tasks that were created are in ERROR, its publications stay readable.
   void die(RtpuId rtpu, Nanoseconds now) noexcept;
   /// When it died; kNever: it lives.
   Nanoseconds died(RtpuId rtpu) const noexcept { return peers_[rtpu.index].died; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One processor in virtual time: the jobs that have begun on it, which of them has it, and what each has used. Who gets
-// the processor is decided elsewhere (preemptive.h).
+// One processor in virtual time: the jobs that have begun on it, which of them has it, and what each has used.
+// preemptive.h decides which job gets the processor.
 #pragma once
 
 #include <cstddef>

@@ -17,7 +17,7 @@ using testing::VirtualUnits;
 struct Device {
   bool is_open[4] = {};  // of the hand, the drill, and the same of a second device
   const VirtualPeers* peers = nullptr;
-  int doubles = 0;             // so often one opened it while another had it
+  int doubles = 0;             // times that one opened it while another had it
   int not_ready = 0;
   int ons = 0;  // of the drill
   std::uint64_t fails_at = UINT64_MAX;  // the cycle of the hand
@@ -64,7 +64,7 @@ constexpr TaskId kHand{0u}, kDrill{1u}, kArm{2u}, kSecondHand{3u}, kSecondDrill{
 constexpr std::uint32_t kOfHand = 0, kOfDrill = 1, kWithHand = 0, kWithDrill = 1;
 
 struct VirtualRivals : ::testing::TestWithParam<bool> {
-  /// A run of so long with these acts; its receipts.
+  /// Runs for `duration` with these acts. Returns the receipts.
   std::span<const SwitchReceipt> go(Nanoseconds duration, std::vector<ScriptAct> acts) {
     const std::uint64_t fails_at = device.fails_at;
     device = {};

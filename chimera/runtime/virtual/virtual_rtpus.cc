@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Advances the processors of several real-time units on one clock, instant by instant.
+// Advances the processors of several rtpus on one clock, instant by instant.
 #include "chimera/runtime/virtual/virtual_rtpus.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::atomic<bool> kNoStop{false};
 constexpr std::size_t kMostRefused = 1024;
-// Tasks of several units may send each other signals for ever: after so many passes releases have their turn.
+// Tasks of several rtpus may send each other signals for ever: releases have their turn after kMostEdges passes.
 constexpr int kMostEdges = 16;
 
 std::vector<Silence> silences_of(const ApplicationSpec& spec) {
@@ -111,7 +111,7 @@ Result<void> VirtualRtpus::start() {
   return {};
 }
 
-// What methods spend counts one after the other, on whichever rtpu they run.
+// The times of methods add up, one after the other, even if they run on different rtpus.
 SignalReport VirtualRtpus::signal(TaskId task, Signal signal) {
   Unit& unit = unit_of(task);
   unit.clock.set(now_);
@@ -190,7 +190,7 @@ RunEnd VirtualRtpus::run(Nanoseconds duration) noexcept {
   return end;
 }
 
-// It has something to take in, and can.
+// True if the rtpu has new input and is free to handle it.
 bool VirtualRtpus::is_due(const Unit& unit) const noexcept {
   return !unit.is_dead && unit.control.is_due(now_) && !unit.processor->is_occupied(now_);
 }
@@ -204,7 +204,7 @@ void VirtualRtpus::stop_units() noexcept {
   }
 }
 
-// In the order of the script: before an act for another unit the edge with those for the last one is taken.
+// In the order of the script: before an act for another rtpu, the cycle boundary of the last rtpu carries out its acts.
 void VirtualRtpus::take_acts() noexcept {
   Unit* last = nullptr;
   while (const ScriptAct* next = script_.take(now_ - origin_)) act(*next, last);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several real-time units in virtual time, in one process and on one clock: each with its own tasks, policy and
-// processor. docs/formats/virtual-time.md has the rules.
+// Several rtpus in virtual time, in one process and on one clock: each with its own tasks, policy and processor.
+// docs/formats/virtual-time.md has the rules.
 //
-// Order of things at one instant, over all units: ends of jobs with their publications, the script (deaths first),
-// deaths of units whose primary tasks are silent for too long (silence.h), edges with their signals, releases, starts
-// of jobs with their inputs; each in the order of the units. A job reads at its start what others have published by
-// then, and publishes at its end. What comes of it at that instant follows in another round of these.
+// Order of things at one instant, over all rtpus: ends of jobs with their publications, the script (deaths first),
+// deaths of rtpus whose primary tasks are silent for too long (silence.h), cycle boundaries with their signals,
+// releases, starts of jobs with their inputs; each in the order of the rtpus. A job reads at its start the values that
+// others have published up to then, and publishes at its end. Effects of that at the same instant need another round.
 #pragma once
 
 #include <memory>
@@ -24,9 +24,8 @@ namespace chimera {
 /// One thread; a run repeats exactly.
 class VirtualRtpus {
  public:
-  /// Of the rtpus that have joined `peers`. The policy is that of each rtpu, and an rtpu is preemptive when it or `how`
-  /// says so. What is given outlives this. Requires: preemptive where a task has a server; no guest.
-  /// Context: setup.
+  /// Runs the rtpus that have joined `peers`, each with its own policy. An rtpu is preemptive if its spec or `how` says
+  /// so. All arguments outlive this. Requires: preemptive where a task has a server; no listener. Context: setup.
   VirtualRtpus(VirtualPeers& peers, const RunOptions& options, const VirtualOptions& how);
   VirtualRtpus(const VirtualRtpus&) = delete;
   VirtualRtpus& operator=(const VirtualRtpus&) = delete;
@@ -48,7 +47,7 @@ class VirtualRtpus {
   Nanoseconds origin() const noexcept { return origin_; }
   /// In order of time. Context: setup, between runs.
   std::vector<RefusedSignal> refused();
-  /// Of every switch that the script or a task asked for. Context: setup, between runs.
+  /// Receipts of all switches that the script or a task asked for. Context: setup, between runs.
   const SwitchReceipts& receipts() noexcept { return switches_.receipts(); }
 
  private:

@@ -16,7 +16,7 @@ using testing::act_at;
 using testing::VirtualUnits;
 
 struct VirtualSlowSwitches : ::testing::TestWithParam<bool> {
-  /// A run of so long with these acts; its receipts.
+  /// Runs for `duration` with these acts. Returns the receipts.
   std::span<const SwitchReceipt> go(Nanoseconds duration, std::vector<ScriptAct> acts) {
     units.reset();
     units = std::make_unique<VirtualUnits>(application(1), std::move(acts), GetParam());
@@ -80,7 +80,7 @@ TEST_P(VirtualSlowSwitches, WhatFailsOnOneRtpuIsUndoneOnBoth) {
   EXPECT_FALSE(units->peers().is_flag_up());
 }
 
-// The second rtpu dies at each tenth of a millisecond of the switch: what lives ends with the constants of one side.
+// The second rtpu dies at each tenth of a millisecond of the switch: living rtpus end with the constants of one side.
 TEST_P(VirtualSlowSwitches, WhoeverDiesWhoLivesComesToOneSide) {
   for (std::int64_t us = 0; us < 5000; us += 100) {
     shop = {};

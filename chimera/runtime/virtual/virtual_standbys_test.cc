@@ -12,7 +12,7 @@ namespace {
 
 using testing::VirtualUnits;
 
-/// What the components of a run do, and what they saw. One run at a time.
+/// Orders to the components of a run, and their observations. One run at a time.
 struct Scene {
   std::vector<double> u;
   std::int64_t fails_at = -1, hangs_at = -1;  // of the primary

@@ -19,7 +19,7 @@ using testing::act_at;
 using testing::VirtualUnits;
 
 struct VirtualSwitchesTest : ::testing::TestWithParam<bool> {
-  /// A run of so long with these acts; its receipts.
+  /// Runs for `duration` with these acts. Returns the receipts.
   std::span<const SwitchReceipt> go(Nanoseconds duration, std::vector<ScriptAct> acts = {}) {
     units.reset();
     units = std::make_unique<VirtualUnits>(application(limit, false), std::move(acts), GetParam());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: the parts of a Subsystem, each called by the test itself, on the application of TestWorld. All tasks are
-// OFF and both rtpus serve unless the test says otherwise.
+// For tests: the parts of a Subsystem, each called by the test, on the application of TestWorld. All tasks are OFF and
+// both rtpus serve, unless the test changes that.
 #pragma once
 
 #include <string>
@@ -29,9 +29,9 @@ class TestParts : public TestWorld {
   void are_on(const std::vector<TaskId>& tasks) {
     for (TaskId task : tasks) is(task, State::kOn);
   }
-  /// What was asked for since the last call, a line each.
+  /// The requests since the last call, one a line.
   std::string taken() { return lines(std::exchange(actions, {})); }
-  /// The task goes to `after`, and its rtpu reports on what was sent to it last.
+  /// The task goes to `after`, and its rtpu reports on the last signal for it.
   SignalResult reported(TaskId task, State after, SignalRefusal why = {}) {
     const Reported last = sent[task.index];
     const State before = state.observed.state(task);
@@ -41,7 +41,7 @@ class TestParts : public TestWorld {
   }
   void pass(Nanoseconds time) { state.now += time; }
 
-  /// "2 s: " and what the queue asks for when the time has come for which it waits, and not before.
+  /// "2 s: " and the requests of the queue at the time for which it waits. "too early" marks requests before that time.
   template <class Queue>
   std::string waits(Queue& queue) {
     const Nanoseconds due = queue.next_due();

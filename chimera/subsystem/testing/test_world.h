@@ -37,7 +37,7 @@ class TestWorld {
   static constexpr TaskId kArm{0u}, kPid{1u}, kTraj{2u}, kReserve{3u};
   static constexpr RtpuId kServo{0u}, kSpare{1u};
 
-  /// The actions that the event leads to, a line each.
+  /// The actions that follow from the event, one a line.
   std::string step(const Event& event) {
     std::vector<Action> actions;
     subsystem->step(event, now, actions);
@@ -52,7 +52,7 @@ class TestWorld {
     states[task.index] = state;
     return step(TaskSeen{task, {state, in_service, 1}});
   }
-  /// The task goes to `after` and its rtpu reports on what was sent to it last.
+  /// The task goes to `after`, and its rtpu reports on the last signal for it.
   std::string report(TaskId task, State after, std::string text = {}) {
     const Reported& last = sent[task.index];
     const State before = states[task.index];
@@ -95,12 +95,12 @@ class TestWorld {
     spec.sets = sets_;
     subsystem = std::make_unique<Subsystem>(spec);
   }
-  /// And reserve stands in for pid.
+  /// From now on pid and reserve open the same device, and reserve is a standby of pid.
   void make_standby() {
     spec.standbys = standbys_;
     make_rivals();
   }
-  /// The manager dies and another one finds what is there.
+  /// The manager dies, and another one finds the processes as they are.
   std::string rebirth() {
     subsystem = std::make_unique<Subsystem>(spec);
     return step(remembered);
