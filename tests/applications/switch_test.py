@@ -14,7 +14,7 @@ PERIOD, PERIODS = 8, 8  # s
 
 def run(program, description, folder):
     words = [program, "run", str(description), "--virtual", "--for", f"{PERIOD * PERIODS} s", "--json"]
-    done = subprocess.run(words, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=150,
+    done = subprocess.run(words, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True,
                           env={**os.environ, "ASAN_OPTIONS": "detect_leaks=0"})
     if done.returncode != 0:
         raise SystemExit(f"exit {done.returncode}\n{done.stdout}{done.stderr}")

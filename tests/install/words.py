@@ -14,7 +14,7 @@ import sys
 
 
 def help_of(program, words):
-    return subprocess.run([program, *words, "--help"], capture_output=True, text=True, check=True, timeout=30).stdout
+    return subprocess.run([program, *words, "--help"], capture_output=True, text=True, check=True).stdout
 
 
 def said_by_help(program, words=()):
@@ -48,7 +48,7 @@ def said_by_completion(path, commands):
     for command in commands:
         script = 'source "$1"; _chimera_words "$2"'
         run = subprocess.run(["bash", "-c", script, "bash", str(path), command], capture_output=True, text=True,
-                             check=True, timeout=30)
+                             check=True)
         said[command] = set(run.stdout.split())
     return said
 
@@ -58,7 +58,7 @@ def complete(path, program, words):
     script = ('source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _chimera; '
               'printf "%s\\n" "${COMPREPLY[@]}"')
     run = subprocess.run(["bash", "-c", script, "bash", str(path), program, *words], capture_output=True, text=True,
-                         check=True, timeout=60)
+                         check=True)
     return set(run.stdout.split())
 
 

@@ -4,7 +4,6 @@ import pathlib
 import re
 import shlex
 import socket
-import sys
 import unittest
 
 from system import System, await_that
@@ -42,62 +41,30 @@ class Typed(unittest.TestCase):
         return before
 
 
-class Processes(Typed):
-    def test_every_command_of_the_lesson_does_what_it_says(self):
-        self.begin("09_processes")
-        first, *others = commands("09_processes")
-        self.assertEqual(first, "chimera run processes.yaml")
-        with System((self.folder / "processes.yaml").read_text(), name="processes") as system:
-            for command in others:
-                if command == 'kill -KILL "$(chimera status --pid plan)"':
-                    self.kill_the_plan(system)
-                else:
+class Lessons(Typed):
+    def play(self, lesson, name):
+        """The commands beside the run in real time, except the virtual ones, which tests/examples has."""
+        self.begin(lesson)
+        with System((self.folder / f"{name}.yaml").read_text(), name=name) as system:
+            tasks = system.on()
+            for command in commands(lesson):
+                if killed := re.fullmatch(r'kill -KILL "\$\(chimera status --pid (\w+)\)"', command):
+                    system.await_restart(killed[1], self.kill(system, killed[1]))
+                    await_that(lambda: len(system.on()) == len(tasks), system.told)
+                elif not command.startswith("chimera run"):
                     self.type(system, command)
-            self.assertIn("plan", self.said["status"])
-            self.assertIn("plan ended by signal 9 (SIGKILL)", self.said["events"])
-            self.assertIn("plan is restarted, 1 of at most 3 times", self.said["events"])
-            self.assertIn("q_ref", self.said["why"])
-            self.assertIn("plan died at 1.000 s", self.said["run"])
 
-    def kill_the_plan(self, system):
-        before = system.task("arm")
-        system.await_restart("plan", self.kill(system, "plan"))
-        system.await_state("trajectory", "ON")
-        after = system.await_cycles("arm")
-        self.assertEqual((after["state"], after["incarnation"], after["faults"]), ("ON", before["incarnation"], 0))
+    def test_an_rtpu_that_is_killed_comes_back(self):
+        self.play("09_processes", "processes")
+        self.assertIn("plan ended by signal 9 (SIGKILL)", self.said["events"])
+        self.assertIn("plan is restarted, 1 of at most 3 times", self.said["events"])
 
-
-class Standby(Typed):
-    def test_every_command_of_the_lesson_does_what_it_says(self):
-        """A machine that is away for half a period lets q_ref move too far: that is printed."""
-        self.begin("19_standby")
-        typed = commands("19_standby")
-        real = typed.index("chimera run standby.yaml") + 1
-        self.assertEqual(len([c for c in typed[:real - 1] if "--virtual" in c]), 2)  # tests/examples has them
-        with System((self.folder / "standby.yaml").read_text(), name="standby") as system:
-            system.await_state("pinvkin", "ON")
-            for command in typed[real:]:
-                if command == 'kill -KILL "$(chimera status --pid trial)"':
-                    system.await_restart("trial", self.kill(system, "trial"))
-                    system.await_state("ginvkin", "ON")
-                    system.await_state("pinvkin", "OFF")
-                    continue
-                if command == "chimera switch figure_3d":
-                    self.assertIn("standby: figure_3d with ginvkin for pinvkin", self.said["status"])
-                    self.assertIn("took over from 'pinvkin'", self.said["events"])
-                self.type(system, command)
-            self.assertRegex(self.said["switch"], r"1 task arrives, 1 leaves, \d+ cycles? lost\n.*q_ref moves "
-                                                  r"by [^ ]+ rad, limit 0.005 rad\n")
-            self.assertIn("figure_3d", self.said["receipts"])
-            receipts = sorted(system.call("receipts")["receipts"], key=lambda one: one["number"])
-            self.assertEqual([(one["way"], one["from"], one["to"], one["end"]) for one in receipts[:2]],
-                             [("takeover", "figure_3d", "figure_3d", "done"),
-                              ("fast", "figure_3d", "figure_3d", "done")])
-            for one in receipts:
-                q_ref, = [variable for variable in one["variables"] if variable["variable"] == "q_ref"]
-                self.assertEqual(q_ref["limit"], 0.005)
-                print(f"step of q_ref: {q_ref['step']}{', beyond its limit' if q_ref['beyond'] else ''}",
-                      file=sys.stderr)
+    def test_a_standby_takes_over_and_a_switch_leads_back(self):
+        self.play("19_standby", "standby")
+        self.assertIn("took over from 'pinvkin'", self.said["events"])
+        self.assertRegex(self.said["switch"], r"1 task arrives, 1 leaves, \d+ cycles? lost\n.*q_ref moves "
+                                              r"by [^ ]+ rad, limit 0.005 rad\n")
+        self.assertIn("figure_3d", self.said["receipts"])
 
 
 class SafeMachine(Typed):

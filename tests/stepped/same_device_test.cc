@@ -17,9 +17,14 @@ tasks:
 const std::string kSwitch = "configurations: {with_hand: [hand, user], with_drill: [drill, user]}\nstart: with_hand\n";
 const std::string kWithHand = "hand user ", kWithDrill = "drill user ";
 
+/// The device: a file that is removed when the tests are over.
+struct LockFile {
+  ~LockFile() { ::unlink(path.c_str()); }
+  const std::string path = ::testing::TempDir() + "chimera_" + std::to_string(::getpid()) + ".lock";
+};
 std::string with_device(std::string text) {
-  const std::string lock = ::testing::TempDir() + "chimera_" + std::to_string(::getpid()) + ".lock";
-  return replaced(replaced(std::move(text), "LOCK", lock), "LOCK", lock);
+  static const LockFile lock;
+  return replaced(replaced(std::move(text), "LOCK", lock.path), "LOCK", lock.path);
 }
 std::string with_standby(const std::string& text) {
   return with_device(replaced(text, "late: 3}", "late: 3}, standby_for: hand")) +
