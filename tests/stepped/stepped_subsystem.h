@@ -235,10 +235,13 @@ class SteppedSubsystem {
   std::optional<std::int32_t> end_asked;  ///< the exit code with which the manager asked the keeper to end everything
 
  private:
+  /// With the components that the description names: a manager reads the whole bundle at each start.
   static Bundle with_library(const std::string& description) {
-    static const Library library = test_library();
-    Bundle bundle{"0.1.0", "test.yaml", description, {}, {}, {}, library};
-    return bundle;
+    static const Library all = test_library();
+    std::vector<LibraryEntry> named;
+    for (const LibraryEntry& entry : all.entries())
+      if (description.find("component: " + entry.descriptor.name) != description.npos) named.push_back(entry);
+    return {"0.1.0", "test.yaml", description, {}, {}, {}, Library::of_entries(std::move(named), all.units())};
   }
   /// Objects stay open for all tests of the process: what a component keeps in static variables is shared.
   const chimera_component* component_of(const TaskSpec& task) {
