@@ -100,7 +100,7 @@ TEST_F(QuestionsTest, WhoGoesTakesHisQuestionsAlong) {
 TEST_F(QuestionsTest, ADeathCostsOneQuestion) {
   ask("dies", 1);
   ask("lives", 1);
-  ::kill(questions_->analyst(), SIGKILL);  // still its process id: no process has reaped it
+  ::kill(questions_->analyst(), SIGKILL);  // not reaped yet: still its process id
   ASSERT_TRUE(until(2));
   // It may have answered before it died.
   if (!answers_["dies"].is_good()) {
@@ -113,7 +113,7 @@ TEST_F(QuestionsTest, ADeathCostsOneQuestion) {
 TEST_F(QuestionsTest, ADeathBetweenTwoQuestionsCostsNone) {
   ask("one", 1);
   ASSERT_TRUE(until(1));
-  ::kill(questions_->analyst(), SIGKILL);  // still its process id: no process has reaped it
+  ::kill(questions_->analyst(), SIGKILL);  // not reaped yet: still its process id
   siginfo_t dead{};
   ASSERT_EQ(::waitid(P_PID, static_cast<id_t>(questions_->analyst()), &dead, WEXITED | WNOWAIT), 0);
   ask("two", 1);
@@ -124,7 +124,7 @@ TEST_F(QuestionsTest, ADeathBetweenTwoQuestionsCostsNone) {
 
 TEST_F(QuestionsTest, WhatTakesTooLongIsGivenUp) {
   ask("slow", 1);
-  ::kill(questions_->analyst(), SIGSTOP);  // still its process id: this process is its parent
+  ::kill(questions_->analyst(), SIGSTOP);  // still its process id: this process is its parent  // not reaped yet
   const Nanoseconds late = now() + kAnalysisLimit;
   EXPECT_LE(questions_->next_due(), late);
   questions_->serve(late);

@@ -80,7 +80,8 @@ class SafeMachine(Typed):
             return str(found.getsockname()[1])
 
     def shoot(self, how):
-        """The drive stands, and turns again when the machine is back."""
+        """The drive that turns stands then; the machine comes back."""
+        self.drive.await_value("told", [3.0])
         since, before = self.machine.next_event(), self.kill(self.machine, "servo", how)
         self.drive.await_value("told", [0.0])
         self.machine.await_event(since, "safe", "written")
