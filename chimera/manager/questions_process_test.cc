@@ -124,7 +124,7 @@ TEST_F(QuestionsTest, ADeathBetweenTwoQuestionsCostsNone) {
 
 TEST_F(QuestionsTest, WhatTakesTooLongIsGivenUp) {
   ask("slow", 1);
-  ::kill(questions_->analyst(), SIGSTOP);  // still its process id: this process is its parent  // not reaped yet
+  ::kill(questions_->analyst(), SIGSTOP);  // not reaped yet: still its process id
   const Nanoseconds late = now() + kAnalysisLimit;
   EXPECT_LE(questions_->next_due(), late);
   questions_->serve(late);
