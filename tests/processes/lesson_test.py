@@ -81,9 +81,10 @@ class SafeMachine(Typed):
 
     def shoot(self, how):
         """The drive that turns stands then; the machine comes back."""
+        self.machine.await_state("drive", "ON")
         self.drive.await_value("told", [3.0])
         since, before = self.machine.next_event(), self.kill(self.machine, "servo", how)
-        self.drive.await_value("told", [0.0])
+        await_that(lambda: self.drive.value("told") == [0.0], self.machine.told)
         self.machine.await_event(since, "safe", "written")
         self.machine.await_restart("servo", before)
 
