@@ -6,6 +6,7 @@ were lost. How long the owner waits: bench row 21.
 usage: door_campaign.py --build TREE --seconds N
 """
 import argparse
+import atexit
 import copy
 import grp
 import json
@@ -189,6 +190,7 @@ class Door:
         self.is_root = os.getuid() == 0
         options = ("--priority", "60", "--observe-group", GROUP.gr_name) if self.is_root else ()
         self.system = System(TEXT, options)
+        atexit.register(self.system.end)  # also when the campaign fails
         for folder in (self.system.place, self.system.runtime):
             folder.chmod(0o711)
         self.n = self.connections = 0
@@ -233,7 +235,6 @@ class Door:
             yield f"manager {highest:.0f} MiB at most, {growth:.0f} MiB more than before"
 
     def figures(self):
-        self.system.end()
         return {"n": self.n, "counted": "lines", "connections": self.connections, "lost_clean": self.lost[0],
                 "cycles_clean": self.cycles[0], "lost": self.lost[1], "cycles": self.cycles[1]}
 
