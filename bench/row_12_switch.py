@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Needs: demo component_gain_files component_t_delays_files component_mujoco_robot_files
-"""Row 12, a switch of configurations. 100 tasks at 1 kHz on two real-time units, 25 of each unit leave and as many
+"""Row 12, a switch of configurations. 100 tasks at 1 kHz on two rtpus, 25 of each unit leave and as many
 others arrive, there and back: from the return of the last `on` to the instant of the change, in periods, and how many
 cycles were lost by all of them. A witness on each processor says which of them the host disturbed: cycles are counted
 in the others, and the instant of the change is judged where no job of the run has been stalled for 0.5 ms before, since

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Needs: process_campaigns
-"""Row 13, detection: from the SIGKILL of a real-time unit to its death as the manager tells it (event rtpu-ended), by
+"""Row 13, detection: from the SIGKILL of an rtpu to its death as the manager tells it (event rtpu-ended), by
 way of the keeper's pidfd. Baseline, in turn with it: the pidfd of a small child polled in this very process. The task
 of the other unit must lose no cycle by it: counted beside as long a time in which nobody dies."""
 import json

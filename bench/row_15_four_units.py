@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Needs: process_campaigns
-"""Row 15, with processes: from the command to the moment at which every task of four real-time units on two CPUs is ON,
+"""Row 15, with processes: from the command to the moment at which every task of four rtpus on two CPUs is ON,
 as the control protocol tells it. The first cycle comes at the next release after that."""
 import json
 import os

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Needs: demo component_gain_files component_t_delays_files
-"""Row 18: what looking on costs the tasks. 100 tasks at 1 kHz on one real-time unit and with them three that count how
+"""Row 18: what looking on costs the tasks. 100 tasks at 1 kHz on one rtpu and with them three that count how
 long after its release each of their cycles begins, one in front, one in the middle, one behind. Windows of 0.5 s in
 turn: alone, alone again (A/A), under `status` every 100 ms (what `chimera top` asks for), and under a tap of 100
 variables read as fast as it comes. Of each window p50 and p99 over the three; the figure is the median over the

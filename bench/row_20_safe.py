@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Needs: process_campaigns
-"""Row 20: from the SIGKILL of a real-time unit to its safe frame at the other end of the serial line. Baseline, in turn
+"""Row 20: from the SIGKILL of an rtpu to its safe frame at the other end of the serial line. Baseline, in turn
 with it: the pidfd of a small child polled in this very process, which then writes the same bytes to a line of its
 own."""
 import json

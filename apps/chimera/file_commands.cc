@@ -122,8 +122,8 @@ FileCommand schedule_row() {
                               "starts only when every task\nkeeps its deadline, those with 'may miss' apart.\n"
                               "Exit code 0: everything keeps its deadlines; 1: it does not.",
                     .example = "chimera schedule examples/01_puma_pid/puma_pid.yaml --svg window.svg",
-                    .manual = "Proves that every task of FILE keeps its deadlines, or tells who does not, who would "
-                              "have to give way first, and what would fit; for each CPU the load, the longest "
+                    .manual = "Proves that every task of FILE keeps its deadlines, or names the tasks that do not, the "
+                              "tasks that give way first, and what would fit; for each CPU the load, the longest "
                               "responses, the worst window, and how old data gets from sensors to actuators."},
           .carry_out = schedule};
 }

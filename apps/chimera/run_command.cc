@@ -47,8 +47,8 @@ const std::vector<Option>& printing_options() {
        .manual = "A timed act, such as '2 s: off pid', '3 s: flag up' or '4 s: set kp 100 N.m/rad'. The signals are "
                  "spawn, on, off, kill, clear, reinit, and ring for an event; what is set is an operator variable; a "
                  "switch makes exactly the tasks of a configuration ON without losing a cycle, or those that `switch "
-                 "--on TASK... --off TASK...` leads to, as in `chimera switch`; `die` ends a real-time unit like the "
-                 "death of its process, and nobody restarts it (`--virtual` with tasks on several). May be "
+                 "--on TASK... --off TASK...` leads to, as in `chimera switch`; `die` ends an rtpu like the "
+                 "death of its process, and no process restarts it (`--virtual` with tasks on several). May be "
                  "repeated.",
        .repeats = Repeats::kManyEach},
       {.name = "--watch",
@@ -92,9 +92,9 @@ const std::vector<Option>& own_options() {
       {.name = "--virtual",
        .help = "in virtual time: as fast as it goes, the same result every time",
        .manual =
-           "In virtual time: as fast as it goes, the same result every time; every real-time unit has a processor of "
+           "In virtual time: as fast as it goes, the same result every time; every rtpu has a processor of "
            "its own, all on one clock. Needs `--for`. When standard error is "
-           "a terminal, a long run tells there how far it is."},
+           "a terminal, a long run prints its progress there."},
       {.name = "--svg",
        .value = "FILE",
        .help = "virtual time: draw what --watch names to this file instead of printing it",
@@ -118,7 +118,7 @@ const std::vector<Option>& own_options() {
       {.name = "--may-miss",
        .value = "TASK",
        .help = "real time: run although this task is not guaranteed to keep its deadlines; may be repeated",
-       .manual = "Real time: run although TASK is not guaranteed to keep its deadlines (`chimera schedule` tells why). "
+       .manual = "Real time: run although TASK is not guaranteed to keep its deadlines (`chimera schedule` says why). "
                  "Without it such a set is refused, unless the task says `on_miss: abort` or `tolerate`. May be "
                  "repeated.",
        .repeats = Repeats::kManyEach},
@@ -318,7 +318,7 @@ FileCommand run_row() {
                           "(release to\nend), jitter (latest start minus earliest, each after its release), deadlines "
                           "missed, releases dropped,\nfaults.\nThe last lines say whether it was clean, and what was "
                           "not.\nExit code 0 only if the run came to its end, every --expect holds, no task was in "
-                          "ERROR at the end, no\n`off` or `kill` failed then, no real-time unit was given up; with "
+                          "ERROR at the end, no\n`off` or `kill` failed then, no rtpu was given up; with "
                           "--strict only if all was clean; 2: wrong usage.",
                 .example =
                     "chimera run examples/02_cruise_control/cruise_control.yaml --virtual --for '60 s' --watch vz",

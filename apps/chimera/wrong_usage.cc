@@ -71,7 +71,7 @@ std::string about_operands(const CLI::ParseError& fault, const CLI::App& command
 
 /// Prints what is wrong with the words of a command, and where more is to be read.
 int report(const std::string& what, const CLI::App& command) {
-  const std::string text = what + example_of(command) + "`" + name_of(command) + " --help` tells more\n";
+  const std::string text = what + example_of(command) + "`" + name_of(command) + " --help` says more\n";
   std::fputs(text.c_str(), stderr);
   return cli::kUsage;
 }

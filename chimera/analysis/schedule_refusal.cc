@@ -34,7 +34,7 @@ Fault fault_of(const Configuration& configuration, const CpuSchedule& cpu, const
           .found = found,
           .expected = "at most " + time_text(row.work.deadline),
           .nearest = {},
-          .remedy = helps + "chimera schedule tells more, --may-miss " + task.name + " runs it all the same"};
+          .remedy = helps + "chimera schedule says more, --may-miss " + task.name + " runs it all the same"};
 }
 
 }  // namespace

@@ -217,8 +217,8 @@ struct LimitTest : ClientTest {
     return {std::chrono::nanoseconds(std::chrono::steady_clock::now() - begun).count()};
   }
   const std::string silent =
-      "the manager of 'subject' does not answer for 200 ms; its real-time units go on without "
-      "it; try again, or tell whoever started it";
+      "the manager of 'subject' does not answer for 200 ms; its rtpus go on without "
+      "it; try again, or tell the user who started it";
 };
 
 TEST_F(LimitTest, HoldsForAConnectionThatNobodyTakes) {

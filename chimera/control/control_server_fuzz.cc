@@ -32,7 +32,7 @@ void require(bool holds, const char* what) {
 class Model final : public ControlBackend {
  public:
   void call(const MethodRule& method, const Json& parameters, const Caller& caller, Reply reply) override {
-    require(caller.role >= method.role, "nobody calls what its role does not open");
+    require(caller.role >= method.role, "a role calls only what it opens");
     if (std::string_view(method.name) != "signal") return reply(RpcResponse::good({{"method", method.name}}));
     const RpcResponse answer = signal(parameters);
     if (++signals_ % 2 == 0)

@@ -75,12 +75,12 @@ Listeners listeners_at(const std::string& path) {
 
 std::string silence_text(const std::string& path, const Listeners& listeners, Nanoseconds limit) {
   const std::string name = "'" + fs::path(path).stem().string() + "'", for_long = " for " + time_text(limit);
-  const std::string goes_on = "its real-time units go on without it; ";
+  const std::string goes_on = "its rtpus go on without it; ";
   const std::string end =
       listeners.keeper == 0 ? "" : "`kill " + std::to_string(listeners.keeper) + "` ends everything in order";
   if (listeners.manager == 0 && listeners.keeper == 0)
     return "the manager of " + name + " does not answer" + for_long + "; " + goes_on +
-           "try again, or tell whoever started it";
+           "try again, or tell the user who started it";
   if (listeners.manager == 0)
     return "no manager of " + name + " has answered" + for_long + ", none runs just now; " + goes_on +
            "try again: its keeper starts another; " + end;

@@ -49,14 +49,14 @@ TEST_F(ListenersTest, AreTheKeeperAndTheManager) {
 TEST(SilenceText, SaysWhoAndWhatToDo) {
   EXPECT_EQ(
       silence_text("/run/arm.sock", {120, 123, false}, seconds(5)),
-      "the manager (process 123) of 'arm' does not answer for 5 s: it hangs, or has too much to do; its real-time "
-      "units go on without it; try again; `kill -KILL 123` has the keeper start another, `kill 120` ends "
+      "the manager (process 123) of 'arm' does not answer for 5 s: it hangs, or has too much to do; its rtpus "
+      "go on without it; try again; `kill -KILL 123` has the keeper start another, `kill 120` ends "
       "everything in order");
   EXPECT_EQ(silence_text("/run/arm.sock", {120, 0, false}, seconds(5)),
-            "no manager of 'arm' has answered for 5 s, none runs just now; its real-time units go on without it; try "
+            "no manager of 'arm' has answered for 5 s, none runs just now; its rtpus go on without it; try "
             "again: its keeper starts another; `kill 120` ends everything in order");
   EXPECT_EQ(silence_text("/run/arm.sock", {}, milliseconds(200)),
-            "the manager of 'arm' does not answer for 200 ms; its real-time units go on without it; try again, or tell "
+            "the manager of 'arm' does not answer for 200 ms; its rtpus go on without it; try again, or tell "
             "whoever started it");
 }
 

@@ -10,8 +10,8 @@
 namespace chimera::control {
 namespace {
 
-constexpr const char* kOf[] = {"nobody", "the role observe", "the roles up to operate", "all roles but the owner's",
-                               "everybody"};
+constexpr const char* kOf[] = {"no role", "the role observe", "the roles up to operate", "all roles but the owner's",
+                               "all users"};
 
 std::size_t places_up_to(Rank rank) { return kPlacesUpTo[static_cast<std::size_t>(rank)]; }
 

@@ -70,7 +70,7 @@ TEST_F(PlacesTest, WhoDoesNothingGivesWayTheLowestRankFirstThenHalfLinesThenTheL
     for (Occupant& one : all)
       if (one.number == first) one = {0, 9, Rank::kConfigure, Standing::kActs, {}};
   }
-  EXPECT_EQ(refusal(0, Rank::kOwner), "the 64 of everybody are all in use");
+  EXPECT_EQ(refusal(0, Rank::kOwner), "the 64 of all users are all in use");
 }
 
 TEST_F(PlacesTest, NobodyGivesWayToALowerRank) {

@@ -76,7 +76,7 @@ std::string takeover_text(const SwitchReceipt& receipt, const ApplicationSpec& s
   const auto name = [&](TaskId task) { return quoted(spec.tasks[task.index].name); };
   const std::string text = what(receipt) + " at " + at(receipt.asked, origin) + " by " + name(receipt.by) + " from " +
                            name(receipt.in_place_of) +
-                           (receipt.was_death ? ", whose real-time unit died," : ", which is in ERROR,");
+                           (receipt.was_death ? ", whose rtpu died," : ", which is in ERROR,");
   if (receipt.end != SwitchEnd::kDone) return text + " aborted: " + reason_text(receipt, spec) + "\n";
   std::uint64_t lost = 0;
   for (const TaskPart& part : receipt.tasks) lost += part.lost;

@@ -90,7 +90,7 @@ TEST(ReceiptText, OfOneThatIsNotDoneSaysWhy) {
                                  "for 10 s\n");
   told.receipt.why = NoSwitch::kNoAnswer;
   told.receipt.task = {};
-  EXPECT_EQ(told.text(), begin + "aborted: a real-time unit did not answer, for 10 s\n");
+  EXPECT_EQ(told.text(), begin + "aborted: an rtpu did not answer, for 10 s\n");
   told.receipt.task = kTorque;
   told.receipt.end = SwitchEnd::kRefused;
   told.receipt.why = NoSwitch::kInError;
@@ -201,7 +201,7 @@ TEST(ReceiptText, OfATakeoverSaysForWhomAndHowItWasLost) {
   told.receipt.flag = microseconds(500);
   told.moved.step_of_cycle = {1, 5, true, false};
   EXPECT_EQ(told.text(),
-            "takeover 3 at 2.000 s by 'torque' from 'pid', whose real-time unit died, after 1.500 ms, 500 us under the "
+            "takeover 3 at 2.000 s by 'torque' from 'pid', whose rtpu died, after 1.500 ms, 500 us under the "
             "flag: 0 cycles lost; tau moves by 1 N.m, limit 5 N.m\n");
   const std::string json = told.json();
   EXPECT_NE(json.find("\"from\": \"pid\", \"to\": \"pid\", \"way\": \"takeover\", "), std::string::npos) << json;
@@ -214,7 +214,7 @@ TEST(ReceiptText, OfATakeoverSaysForWhomAndHowItWasLost) {
   told.receipt.task = kTorque;
   told.receipt.said.assign("no voltage");
   EXPECT_EQ(told.text(),
-            "takeover 3 at 2.000 s by 'torque' from 'pid', whose real-time unit died, aborted: on of task 'torque': no "
+            "takeover 3 at 2.000 s by 'torque' from 'pid', whose rtpu died, aborted: on of task 'torque': no "
             "voltage\n");
 }
 

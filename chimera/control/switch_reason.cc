@@ -49,7 +49,7 @@ std::string waited_text(const SwitchReceipt& receipt) {
 std::string gapless_text(const SwitchWay& way, const ApplicationSpec& spec) {
   if (!way.gapless.is_valid()) return "on of an arriving task fits no gap";
   return "on of task " + quoted(spec.tasks[way.gapless.index].name) + " needs a gap of " + time_text(way.needed) +
-         ", and its real-time unit has none";
+         ", and its rtpu has none";
 }
 
 std::string absent_text(const SwitchWay& way, const ApplicationSpec& spec) {
@@ -153,11 +153,11 @@ std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spe
                                 waited_text(receipt);
     case NoSwitch::kNoValue: return "task " + task + " had no value of " + variable + waited_text(receipt);
     case NoSwitch::kNotSafe: return unsafe_text(receipt, spec);
-    case NoSwitch::kDisturbed: return "task " + task + " went to another state meanwhile";
-    case NoSwitch::kFlagRaised: return "the illegal-configuration flag was raised meanwhile";
+    case NoSwitch::kDisturbed: return "task " + task + " went to another state during the switch";
+    case NoSwitch::kFlagRaised: return "the illegal-configuration flag was raised during the switch";
     case NoSwitch::kRunEnded: return "the run ended";
-    case NoSwitch::kLate: return "a real-time unit was too late to agree to the instant of the change";
-    case NoSwitch::kMemberDied: return "a real-time unit died";
+    case NoSwitch::kLate: return "an rtpu was too late to agree to the instant of the change";
+    case NoSwitch::kMemberDied: return "an rtpu died";
     case NoSwitch::kDamaged: return "the order on the decision page is not what the manager wrote";
     case NoSwitch::kCancelled: {
       const std::string by(receipt.said.view());
@@ -168,8 +168,8 @@ std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spe
              ": " + std::string(receipt.said.view());
     case NoSwitch::kStepFailed: return "a method of task " + task + " failed: " + std::string(receipt.said.view());
     case NoSwitch::kNotReady:
-      return (task.empty() ? "a real-time unit" : "task " + task) + " was not ready" + waited_text(receipt);
-    case NoSwitch::kNoAnswer: return "a real-time unit did not answer" + waited_text(receipt);
+      return (task.empty() ? "an rtpu" : "task " + task) + " was not ready" + waited_text(receipt);
+    case NoSwitch::kNoAnswer: return "an rtpu did not answer" + waited_text(receipt);
     default: return reason_word(receipt.why);
   }
 }

@@ -104,7 +104,7 @@ class TreeBuilder : public YAML::EventHandler {
   Node& begin(Node::Kind kind, const YAML::Mark& mark) {
     if (depth_ == kMaxNesting) {
       refuse("text-nesting", mark, "more than " + std::to_string(kMaxNesting) + " levels of nesting",
-             "no description needs so many: take brackets out");
+             "no description needs more: take brackets out");
       throw Stop{};
     }
     Node& node = slot();

@@ -44,7 +44,7 @@ std::string others(const Graph& graph, PortKind kind, const std::string& variabl
 std::string input_text(const Graph& graph, const Port& port) {
   const bool is_given = std::find(graph.given.begin(), graph.given.end(), port.variable) != graph.given.end();
   const std::string from = others(graph, PortKind::kOut, port.variable);
-  return port.variable + (from.empty() ? (is_given ? " (given)" : " (nobody)") : " (" + from + ")");
+  return port.variable + (from.empty() ? (is_given ? " (given)" : " (none)") : " (" + from + ")");
 }
 
 std::string output_text(const Graph& graph, const Port& port) {

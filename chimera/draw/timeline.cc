@@ -85,7 +85,7 @@ std::string text(const Timeline& timeline) {
     all += std::string("          ") + letter + " = " + name + "\n";
   }
   if (others > 1) all.insert(all.size() - 1, " and " + std::to_string(others - 1) + " more");
-  return all + "          . = nobody\n";
+  return all + "          . = idle\n";
 }
 
 }  // namespace chimera::draw

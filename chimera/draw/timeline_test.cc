@@ -45,19 +45,19 @@ TEST(Timeline, SharedFirstLettersAreReplacedByTheAlphabet) {
   const Timeline drawn = timeline(records, tasks, {}, milliseconds(1), milliseconds(3));
   EXPECT_EQ(drawn.letters, "ABC");
   EXPECT_EQ(text(drawn), "       0  ABC\n          A = pid\n          B = plan\n          C = arm\n"
-                         "          . = nobody\n");
+                         "          . = idle\n");
 }
 
 TEST(Timeline, BreaksLinesAtSixtyUnits) {
   const Timeline drawn = timeline({}, {}, {}, milliseconds(1), milliseconds(61));
-  EXPECT_EQ(text(drawn), "       0  " + std::string(60, '.') + "\n      60  .\n          . = nobody\n");
+  EXPECT_EQ(text(drawn), "       0  " + std::string(60, '.') + "\n      60  .\n          . = idle\n");
 }
 
 TEST(Timeline, TasksWithoutALetterOfTheirOwnShareALineOfTheLegend) {
   std::vector<std::string> tasks;
   for (int i = 0; i < 65; ++i) tasks.push_back("t" + std::to_string(i));
   const std::string said = text(timeline({}, tasks, {}, milliseconds(1), milliseconds(2)));
-  EXPECT_NE(said.find("          9 = t61\n          ? = t62 and 2 more\n          . = nobody\n"), std::string::npos)
+  EXPECT_NE(said.find("          9 = t61\n          ? = t62 and 2 more\n          . = idle\n"), std::string::npos)
       << said;
 }
 

@@ -33,12 +33,12 @@ void tell_of_guard(ManagerState& world, const KeeperMessage& message, Nanosecond
     const TaskId task(static_cast<std::uint32_t>(message.code));
     const std::string whose = message.letter == 0 ? "`safe_after`" : "`stale_after` of its standby";
     world.tell("safe", task, RtpuId(message.index),
-               "published nothing for as long as " + whose + " says: its real-time unit is ended", now);
+               "published nothing for as long as " + whose + " says: its rtpu is ended", now);
   } else if (message.kind == Kind::kGuardState && message.code == KeeperMessage::kGuardIsSlow) {
     world.tell("safe", TaskId{}, RtpuId{},
                "the guard has no real-time rights: it writes safe frames, and nothing bounds when", now);
   } else if (message.kind == Kind::kGuardState && message.code == KeeperMessage::kGuardIsDead) {
-    world.tell("safe", TaskId{}, RtpuId{}, "the guard is dead: nobody writes safe frames until the next run", now);
+    world.tell("safe", TaskId{}, RtpuId{}, "the guard is dead: no safe frames are written until the next run", now);
   }
 }
 

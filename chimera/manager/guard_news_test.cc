@@ -37,13 +37,13 @@ TEST_F(GuardNews, FramesThatWereWrittenAndThatCouldNotBe) {
 TEST_F(GuardNews, ATaskThatWasSilentAndHowTheGuardIs) {
   const auto law = static_cast<std::int32_t>(fake.task("law").index);
   EXPECT_EQ(told({.kind = Kind::kSilent, .index = 1, .code = law}),
-            "law: published nothing for as long as `safe_after` says: its real-time unit is ended\n");
+            "law: published nothing for as long as `safe_after` says: its rtpu is ended\n");
   EXPECT_EQ(told({.kind = Kind::kSilent, .index = 1, .code = law, .letter = 1}),
-            "law: published nothing for as long as `stale_after` of its standby says: its real-time unit is ended\n");
+            "law: published nothing for as long as `stale_after` of its standby says: its rtpu is ended\n");
   EXPECT_EQ(told({.kind = Kind::kGuardState, .code = KeeperMessage::kGuardIsSlow}),
             "the guard has no real-time rights: it writes safe frames, and nothing bounds when\n");
   EXPECT_EQ(told({.kind = Kind::kGuardState, .code = KeeperMessage::kGuardIsDead}),
-            "the guard is dead: nobody writes safe frames until the next run\n");
+            "the guard is dead: no safe frames are written until the next run\n");
 }
 
 TEST_F(GuardNews, WhatFitsNothingIsNotTold) {

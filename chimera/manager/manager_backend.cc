@@ -328,7 +328,7 @@ void ManagerBackend::drill(const Request& request) {
     const std::string near = nearest(name, names);
     if (at == names.end())
       return request.reply(RpcResponse::unknown(
-          "no real-time unit '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near));
+          "no rtpu '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near));
     to_kill = RtpuId(static_cast<std::size_t>(at - names.begin()));
   }
   driver_.drill().begin(wait, to_kill, now(), [this, reply = request.reply](const DrillOutcome& outcome) {

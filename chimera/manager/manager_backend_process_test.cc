@@ -281,7 +281,7 @@ TEST_F(ManagerBackendTest, WhySeesADeadRtpu) {
   fake_.kill_rtpu(0, SIGKILL);
   ASSERT_TRUE(fake_.until([&] { return !world().rtpus[0].is_alive; }));
   const std::string verdict = good("why", {{"variable", "x"}})["verdict"].as_string();
-  EXPECT_TRUE(verdict.starts_with("x: the real-time unit servo of its producer sensor is dead: ")) << verdict;
+  EXPECT_TRUE(verdict.starts_with("x: the rtpu servo of its producer sensor is dead: ")) << verdict;
 }
 
 TEST_F(ManagerBackendTest, ProfileIsThatOfEveryOtherFace) {

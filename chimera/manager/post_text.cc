@@ -43,7 +43,7 @@ std::string duration_of(const Post& post) {
 std::string missed_text(const ApplicationSpec& spec, const Post& post) {
   std::string text = "missed its deadline";
   if (post.from.index >= spec.tasks.size())
-    return text + ": no task of its real-time unit ran for " + duration_of(post) +
+    return text + ": no task of its rtpu ran for " + duration_of(post) +
            ": the CPU was taken by the kernel, RT throttling or another process";
   const TaskSpec& culprit = spec.tasks[post.from.index];
   text += post.from == post.task ? ": it used " : ": " + std::string(culprit.name) + " used ";
@@ -101,19 +101,19 @@ std::string event_text(const ApplicationSpec& spec, const Post& post, const std:
     case EventKind::kBlocked:
       return "missed its deadline: it waits in a system call (it used " + duration_of(post) + ")";
     case EventKind::kHang:
-      if (post.detail == 0) return "its thread ended in a cycle: this real-time unit ends";
-      return "its job has not ended " + duration_of(post) + " after its release: this real-time unit ends";
+      if (post.detail == 0) return "its thread ended in a cycle: this rtpu ends";
+      return "its job has not ended " + duration_of(post) + " after its release: this rtpu ends";
     case EventKind::kGaveWay:
-      return "demoted below all other threads: the tasks of its real-time unit used " + duration_of(post) +
+      return "demoted below all other threads: the tasks of its rtpu used " + duration_of(post) +
              " lately, nearly all that the kernel leaves to real-time threads";
     case EventKind::kTakeover:
       if (post.from.index >= spec.tasks.size()) return "is ON in place of another task";
       return "is ON in place of " + std::string(spec.tasks[post.from.index].name) + ", " + duration_of(post) +
-             " after its real-time unit found that one lost";
+             " after its rtpu found that one lost";
     case EventKind::kStop:
       break;
   }
-  return "stopped by its reaction: all tasks of this real-time unit go OFF";
+  return "stopped by its reaction: all tasks of this rtpu go OFF";
 }
 
 std::string counted(const char* what, const char* how, std::uint64_t more, std::uint64_t all) {

@@ -41,7 +41,7 @@ TEST_F(PostText, AMissNamesItsCauseWithTimeAndBudget) {
 
 TEST_F(PostText, AMissWithoutATaskOfTheUnitSaysWhoElseHadTheCpu) {
   EXPECT_EQ(text(EventKind::kMissed, kLaw, TaskId{}, microseconds(2270)),
-            "missed its deadline: no task of its real-time unit ran for 2.27 ms: the CPU was taken by the kernel, RT "
+            "missed its deadline: no task of its rtpu ran for 2.27 ms: the CPU was taken by the kernel, RT "
             "throttling or another process");
 }
 
@@ -49,16 +49,16 @@ TEST_F(PostText, AJobThatWaitsHangsOrIsDemotedSaysItsTime) {
   EXPECT_EQ(text(EventKind::kBlocked, kLaw, TaskId{}, microseconds(20)),
             "missed its deadline: it waits in a system call (it used 20 us)");
   EXPECT_EQ(text(EventKind::kHang, kLaw, TaskId{}, seconds(3)),
-            "its job has not ended 3 s after its release: this real-time unit ends");
-  EXPECT_EQ(text(EventKind::kHang, kLaw, TaskId{}, {}), "its thread ended in a cycle: this real-time unit ends");
+            "its job has not ended 3 s after its release: this rtpu ends");
+  EXPECT_EQ(text(EventKind::kHang, kLaw, TaskId{}, {}), "its thread ended in a cycle: this rtpu ends");
   EXPECT_EQ(text(EventKind::kGaveWay, kLaw, TaskId{}, milliseconds(930)),
-            "demoted below all other threads: the tasks of its real-time unit used 930 ms lately, nearly all that the "
+            "demoted below all other threads: the tasks of its rtpu used 930 ms lately, nearly all that the "
             "kernel leaves to real-time threads");
 }
 
 TEST_F(PostText, ATakeoverSaysFromWhomAndHowSoon) {
   EXPECT_EQ(text(EventKind::kTakeover, kLaw, kLog, microseconds(37)),
-            "is ON in place of log, 37 us after its real-time unit found that one lost");
+            "is ON in place of log, 37 us after its rtpu found that one lost");
   EXPECT_EQ(text(EventKind::kTakeover, kLaw, TaskId{}, microseconds(37)), "is ON in place of another task");
 }
 

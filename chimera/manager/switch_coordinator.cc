@@ -175,7 +175,7 @@ void SwitchCoordinator::assess(const TaskBits& target, SwitchOutcome& outcome) {
   if (present_) {
     receipt.said.assign(under_way() + ", is under way: " + progress());
   } else if (!is_free()) {
-    receipt.said.assign("the real-time units are not done with the last switch");
+    receipt.said.assign("the rtpus are not done with the last switch");
   } else if (!world_.logic.is_settled()) {
     receipt.said.assign("tasks are being brought up");
     outcome.remedy = "`chimera status` shows which; ask again when they are ON";

@@ -403,7 +403,7 @@ TEST_F(SwitchCoordinatorTest, APlanThatNobodyOrderedIsAborted) {
   EXPECT_TRUE(fake.until([&] { return agreement().plan().phase == SwitchPhase::kAborted; }));
   ask(kRest);
   ASSERT_TRUE(until_answered());
-  EXPECT_EQ(got->receipt.said.view(), "the real-time units are not done with the last switch");
+  EXPECT_EQ(got->receipt.said.view(), "the rtpus are not done with the last switch");
 }
 
 // The memory of an rtpu may hold any value.

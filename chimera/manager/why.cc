@@ -42,7 +42,7 @@ std::string complaint(const WhyLink& link) {
   const VariableFacts& f = link.facts;
   switch (link.trouble) {
     case VariableTrouble::kRtpuDead:
-      return with_words("the real-time unit " + f.rtpu + " of " + producer_text(f) + " is dead", f);
+      return with_words("the rtpu " + f.rtpu + " of " + producer_text(f) + " is dead", f);
     case VariableTrouble::kProducerMissing:
       return f.producer.empty() ? "no task that produces it was created" : producer_text(f) + " was not created";
     case VariableTrouble::kProducerError: return with_words(producer_text(f) + " is in ERROR", f);

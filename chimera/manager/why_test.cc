@@ -86,7 +86,7 @@ TEST_F(WhyTest, EveryTroubleHasItsSentence) {
   x.is_rtpu_dead = true;
   x.last_words = "servo ended by signal 9 (SIGKILL)";
   EXPECT_EQ(verdict("x"),
-            "x: the real-time unit servo of its producer arm (puma) is dead: servo ended by signal 9 (SIGKILL)");
+            "x: the rtpu servo of its producer arm (puma) is dead: servo ended by signal 9 (SIGKILL)");
   x.is_rtpu_dead = false;
   x.producer.clear();
   EXPECT_EQ(verdict("x"), "x: no task that produces it was created");

@@ -19,7 +19,7 @@ namespace chimera {
 /// system's reason. Context: setup.
 Result<pid_t> fork_quietly(const std::string& folder, const std::function<int()>& work);
 
-/// What the parent does while the child runs. Context: setup.
+/// Work of the parent while the child runs. Context: setup.
 class ChildWatcher {
  public:
   /// The child is about to make system call `number`. Called for a traced child only.

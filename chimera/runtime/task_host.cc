@@ -63,7 +63,7 @@ std::int32_t request_lists(void* context, const char* text) {
     return refuse_request(context, text, (Message("there is no task '") << fault.word << "'").view());
   if (fault) return refuse_request(context, text, "expected '--on TASK... --off TASK...'");
   TaskLists* const kept = sent.takes_requests() ? sent.lists_of(host.task->id) : nullptr;
-  if (kept == nullptr) return refuse_request(context, text, "nobody takes requests here");
+  if (kept == nullptr) return refuse_request(context, text, "requests are not taken here");
   *kept = lists;
   host.task->requested_set = kListsRequested;
   host.task->has_news = true;
@@ -79,7 +79,7 @@ std::int32_t host_request(void* context, const char* name) {
   if (set == sets.size()) return refuse_request(context, name, "there is none of this name");
   if (sets.size() == 1) return refuse_request(context, name, "it is the only one");
   if (!host.set->sent().takes_requests())
-    return refuse_request(context, name, "nobody takes requests here");
+    return refuse_request(context, name, "requests are not taken here");
   host.task->requested_set = static_cast<std::uint16_t>(set);
   host.task->has_news = true;
   return CHIMERA_OK;

@@ -163,7 +163,7 @@ TEST_F(TaskHostTest, ARequestForAConfigurationIsKeptWhereSomebodyTakesIt) {
   const NamedSet sets[] = {{"near", {}}, {"far", {}}};
   const_cast<ApplicationSpec&>(set->spec()).sets = sets;
   EXPECT_EQ(host().request(context(), "far"), CHIMERA_FAULT);
-  EXPECT_STREQ(task().faults.note, "asks for the configuration 'far': nobody takes requests here");
+  EXPECT_STREQ(task().faults.note, "asks for the configuration 'far': requests are not taken here");
   EXPECT_EQ(task().requested_set, kNoRequest);
   set->sent().allow_requests({});
   task().has_news = false;
@@ -182,7 +182,7 @@ TEST_F(TaskHostTest, ARequestForTasksIsKeptWhereSomebodyTakesLists) {
   const std::string on = "--on " + mine;
   set->sent().allow_requests({});
   EXPECT_EQ(host().request(context(), on.c_str()), CHIMERA_FAULT);
-  EXPECT_EQ(task().faults.note, "asks for '" + on + "': nobody takes requests here");
+  EXPECT_EQ(task().faults.note, "asks for '" + on + "': requests are not taken here");
   std::vector<TaskLists> lists(set->tasks().size());
   set->sent().allow_requests(lists);
   const auto refusal = [&](const char* text) {

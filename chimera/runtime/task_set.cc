@@ -12,7 +12,7 @@ Result<void> check_producers(const ApplicationSpec& spec) {
   for (const Variable& variable : spec.variables) {
     if (!variable.producers.empty() || variable.operator_index != UINT32_MAX) continue;
     const std::string_view reader = spec.tasks[variable.consumers[0].task.index].name;
-    return (Message("nobody produces state variable ") << variable.name).error(ErrorCode::kBadInput, reader);
+    return (Message("no task produces state variable ") << variable.name).error(ErrorCode::kBadInput, reader);
   }
   return {};
 }

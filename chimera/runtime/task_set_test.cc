@@ -344,7 +344,7 @@ TEST(TaskSet, RefusesAVariableThatNobodyProduces) {
   app.make();
   const auto set = HeapTaskSet::create(app.spec, app.components);
   ASSERT_FALSE(set);
-  EXPECT_EQ(set.error().message.view(), "nobody produces state variable n");
+  EXPECT_EQ(set.error().message.view(), "no task produces state variable n");
 }
 
 TEST(TaskSet, WorksInBytesThatItIsGivenAndTakesNoMoreWhileItRuns) {

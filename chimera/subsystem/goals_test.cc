@@ -24,7 +24,7 @@ TEST_F(GoalsTest, OffOfOneThatIsStillToBeTurnedOnIsDoneAtOnceAndFailsTheTransact
   EXPECT_EQ(command(Signal::kOff, {kPid}), "goal pid 0\nanswer 3 yes pid OFF>OFF\n");
   EXPECT_EQ(report(kArm, State::kOn), "send servo: off arm\n");
   EXPECT_EQ(report(kArm, State::kOff),
-            "goal arm 0\ngoal traj 0\nanswer 2 no: pid: off was asked for meanwhile\n");
+            "goal arm 0\ngoal traj 0\nanswer 2 no: pid: off was asked for in between\n");
 }
 
 TEST_F(GoalsTest, KillWaitsForTheSpawnThatIsUnderWayAndTakesItsGoalBack) {

@@ -127,8 +127,8 @@ void OnTransaction::on_task_seen(TaskId task) {
 bool OnTransaction::withdraw(TaskId task, Signal signal) {
   Member* member = find(task);
   if (member == nullptr || member->is_withdrawn) return false;
-  fail(task, {RefusalKind::kOvertaken, state_.name(task) + ": " + signal_name(signal) + " was asked for meanwhile", {}},
-       !request_.is_goals);
+  const std::string why = state_.name(task) + ": " + signal_name(signal) + " was asked for in between";
+  fail(task, {RefusalKind::kOvertaken, why, {}}, !request_.is_goals);
   member->is_withdrawn = true;
   if (member->stage != Stage::kSent && !member->is_half_on) member->stage = Stage::kOver;
   return true;

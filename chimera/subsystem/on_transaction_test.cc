@@ -107,7 +107,7 @@ TEST_F(OnTransactionTest, LeavesATaskThatIsWithdrawnToTheCommandThatDidIt) {
   EXPECT_FALSE(transaction.withdraw(kArm, Signal::kOff)) << "it was withdrawn already";
   EXPECT_EQ(report(kTraj, State::kOn), "send spare: off traj\n") << "and none to arm";
   EXPECT_EQ(report(kTraj, State::kOff),
-            "goal arm 0\ngoal traj 0\ngoal pid 0\nanswer 7 no: arm: off was asked for meanwhile\n");
+            "goal arm 0\ngoal traj 0\ngoal pid 0\nanswer 7 no: arm: off was asked for in between\n");
 }
 
 TEST_F(OnTransactionTest, SendsNothingToAnRtpuThatEnded) {

@@ -155,7 +155,7 @@ TEST_F(SubsystemTest, OffDoesNotWaitBehindAnOnThatIsUnderWay) {
   EXPECT_EQ(command(Signal::kOff, {kArm}), "goal arm 0\nsend servo: off arm\n");
   seen(kArm, State::kOn);
   EXPECT_EQ(step(Reported{on.command, kArm, Signal::kOn, true, Refusal::kNone, State::kOff, State::kOn, {}}),
-            "goal traj 0\ngoal pid 0\nanswer 2 no: arm: off was asked for meanwhile\n");
+            "goal traj 0\ngoal pid 0\nanswer 2 no: arm: off was asked for in between\n");
   EXPECT_EQ(report(kArm, State::kOff), "answer 3 yes arm ON>OFF\n");
 }
 

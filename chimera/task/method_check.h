@@ -112,7 +112,7 @@ constexpr bool check_signatures() {
   static_assert(!Name_event_source<T>::kFound ||
                     (Name_event_source<T>::kCallable && !Name_event_source<T>::kTakesCycle && Name_sync<T>::kFound &&
                      std::is_same_v<typename Name_event_source<T>::Answer, int>),
-                "'event_source' tells the descriptor that sync reads: write it as int event_source(), public, beside "
+                "'event_source' returns the descriptor that sync reads: write it as int event_source(), public, beside "
                 "sync, or give this member another name");
 #undef CHIMERA_FACE_ANSWERS
 #undef CHIMERA_FACE_ACTS

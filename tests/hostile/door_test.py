@@ -115,7 +115,7 @@ class ControlServer(unittest.TestCase):
                 out, err = one.communicate(timeout=HANG)
                 self.assertEqual((one.returncode, out), (1, ""))
                 self.assertEqual(err, f"the manager (process {pids['manager']}) of 'subject' does not answer for 5 s: "
-                                      f"it is stopped; its real-time units go on without it; try again; "
+                                      f"it is stopped; its rtpus go on without it; try again; "
                                       f"`kill -KILL {pids['manager']}` has the keeper start another, "
                                       f"`kill {pids['keeper']}` ends everything in order\n")
         finally:

@@ -47,7 +47,7 @@ class Standby(unittest.TestCase):
             system.await_value("seen", 3)
             words = "published nothing for as long as `stale_after` of its standby says"
             await_that(lambda: [e for e in system.events() if e["text"].startswith(words) and
-                                e["text"].endswith(": its real-time unit is ended")], "the event")
+                                e["text"].endswith(": its rtpu is ended")], "the event")
             system.await_state("main", "OFF")  # of its successor
             system.await_state("reference", "ON")
             self.assertEqual(system.value("seen"), 3)

@@ -42,7 +42,7 @@ TEST(Schedule, TellsThatEverythingFits) {
             "       0  AAAABBBBBBBBBBBBBBBBAAAABB\n"
             "          A = a\n"
             "          B = b\n"
-            "          . = nobody\n");
+            "          . = idle\n");
 }
 
 TEST(Schedule, TellsWhoMissesInAnExecutiveAndWhatWouldHelp) {
@@ -254,7 +254,7 @@ TEST(Schedule, TheLegendOfTheWindowNamesWhoIsSeen) {
   const std::string text = description("r: {policy: rm, executor: preemptive}",
                                        {{"a", "r", "low", "1000", 10}, {"b", "r", "low", "1", 300000}});
   const CommandResult output = scheduled(text, "");
-  EXPECT_NE(output.out.find("\n          B = b\n          . = nobody\n          too short to be seen here: a\n"),
+  EXPECT_NE(output.out.find("\n          B = b\n          . = idle\n          too short to be seen here: a\n"),
             std::string::npos)
       << output.out;
 }

@@ -85,7 +85,7 @@ class ScheduleLines {
     if (!lost.empty()) text += "  not guaranteed: " + list(lost) + "\n";
     const Demand& demand = cpu.verdict.demand;
     if (demand.within.count > 0)
-      text += "  processor demand: what is due within " + time_text(demand.within) + " is not done by then" +
+      text += "  processor demand: jobs due within " + time_text(demand.within) + " are not done in time" +
               (demand.ends == kNever ? "" : ", but after " + time_text(demand.ends)) + "\n";
     if (!giving.empty()) text += "  first to give way: " + list(giving) + "\n";
     return text;

@@ -27,7 +27,7 @@ std::string origin_text(const Json& reading) {
 
 std::string producer_of(const Json& link) {
   const std::string producer = text_of(link, "producer"), component = text_of(link, "component");
-  if (producer.empty()) return "nobody";
+  if (producer.empty()) return "no task";
   return component.empty() || component == producer ? producer : producer + " (" + component + ")";
 }
 
@@ -180,7 +180,7 @@ std::string plan_text(const Json& answer) {
   }
   for (const Json& variable : answer["variables"]) {
     const std::string producer = text_of(variable, "from");
-    text += "  " + text_of(variable, "variable") + ": from " + (producer.empty() ? "nobody" : producer) + " to " +
+    text += "  " + text_of(variable, "variable") + ": from " + (producer.empty() ? "no task" : producer) + " to " +
             text_of(variable, "to") + "\n";
   }
   if (const Json& off = answer["late_off"]; off.is_object())

@@ -44,8 +44,8 @@ RunningCommand drill_row() {
                     .options = {{.name = "--wait", .value = "TIME", .help = "how long to wait for them ('10 s')"},
                                 {.name = "--kill",
                                  .value = "RTPU",
-                                 .help = "also kill this real-time unit and tell when its safe frames were written",
-                                 .manual = "Also kills this real-time unit when all are safe, and tells the time from "
+                                 .help = "also kill this rtpu and print when its safe frames were written",
+                                 .manual = "Also kills this rtpu when all are safe, and prints the time from "
                                            "the kill to the last byte of its safe frames; the exit code is 1 unless "
                                            "it had one and all were written. It is restarted as after any death."},
                                 {.name = "--yes", .help = "do not ask before"}},
@@ -177,7 +177,7 @@ RunningCommand profile_row() {
 
 RunningCommand receipts_row() {
   return {.words = {.name = "receipts",
-                    .help = "Print what became of the last switches of configurations",
+                    .help = "Print the results of the last switches of configurations",
                     .operands = "[SUBSYSTEM]",
                     .most = 1,
                     .options = {{.name = "--last",
@@ -189,7 +189,7 @@ RunningCommand receipts_row() {
                     .footer = "change: from the request to the instant of the change; lost: cycles; moves: how far "
                               "each variable did\nthat got another producer",
                     .example = "chimera receipts --last 5",
-                    .manual = "Prints what became of the last requests for a switch of configurations: who asked, from "
+                    .manual = "Prints the results of the last requests for a switch of configurations: who asked, from "
                               "where to where, done or why not, how long until the change, how many cycles were "
                               "lost, how far each variable moved that got another producer. When the subsystem does "
                               "not run, from its file: `$XDG_STATE_HOME/chimera/SUBSYSTEM/receipts.jsonl`, else in "
@@ -294,16 +294,16 @@ RunningCommand spawn_row() {
 
 RunningCommand status_row() {
   return {.words = {.name = "status",
-                    .help = "Print the real-time units, the tasks and the illegal-configuration flag",
+                    .help = "Print the rtpus, the tasks and the illegal-configuration flag",
                     .options = {{.name = "--pid",
                                  .value = "RTPU",
-                                 .help = "only the process number of this real-time unit, of 'keeper' or of "
+                                 .help = "only the process number of this rtpu, of 'keeper' or of "
                                          "'manager'",
-                                 .manual = "Only the number of the process of this real-time unit, for `kill`; "
+                                 .manual = "Only the number of the process of this rtpu, for `kill`; "
                                            "`keeper` and `manager` are names, too.",
                                  .is_act = true}},
                     .example = "chimera status",
-                    .manual = "Prints the real-time units, the tasks and the illegal-configuration flag."},
+                    .manual = "Prints the rtpus, the tasks and the illegal-configuration flag."},
           .method = "status",
           .once = status,
           .names_its_subsystem = true};
@@ -334,14 +334,14 @@ RunningCommand switch_row() {
                                 {.name = "--dry-run", .help = "only say what it would do; changes nothing"},
                                 {.name = "--cancel",
                                  .help = "take back the switch that is under way",
-                                 .manual = "Takes back the switch that is under way, whoever asked for it: it is "
+                                 .manual = "Takes back the switch that is under way, also that of another user: it is "
                                            "aborted unless it is committed. Prints its receipt."}},
                     .example = "chimera switch hand",
-                    .manual = "Changes to a configuration while everything cycles: exactly its tasks are ON "
-                              "afterwards. `on` of those that arrive runs beside their predecessors, all real-time "
-                              "units change at one instant, then those that leave are turned OFF: all or nothing, "
-                              "and no cycle is lost. Prints the receipt. What fails before that instant changes "
-                              "nothing; the exit code is 1 then. (`on CONFIGURATION` turns tasks ON and none OFF.)",
+                    .manual = "Changes to a configuration while the tasks cycle: exactly its tasks are ON afterwards. "
+                              "`on` of arriving tasks runs beside their predecessors. All rtpus change at one instant. "
+                              "Then leaving tasks go OFF. All or nothing, and no cycle is lost. Prints the receipt. A "
+                              "failure before that instant changes nothing; the exit code is 1 then. (`on CONFIGURATION` "
+                              "turns tasks ON and none OFF.)",
                     .is_act = true},
           .method = "switch",
           .once = switch_to};
@@ -352,12 +352,12 @@ constexpr Option kEvery{.name = "--every", .value = "TIME", .help = "how often, 
 RunningCommand top_row() {
   return {
       .words = {.name = "top",
-                .help = "Show the real-time units and tasks live, on the whole screen: q ends it",
+                .help = "Show the rtpus and tasks live, on the whole screen: q ends it",
                 .options = {kEvery},
                 .footer = "EXEC: mean execution time since the last update; MAX: longest so far; USED: MAX of BUDGET; "
                           "INPUT: age of the\noldest input",
                 .example = "chimera top",
-                .manual = "Shows the real-time units and tasks live on the whole screen. EXEC is the mean execution "
+                .manual = "Shows the rtpus and tasks live on the whole screen. EXEC is the mean execution "
                           "time since the last "
                           "look, MAX the longest so far, USED that of BUDGET, INPUT the age of the oldest input. A "
                           "task that is not created has the state `none`. The keys o n e b j m a sort, the arrows "
@@ -390,8 +390,8 @@ RunningCommand why_row() {
                     .most = 1,
                     .operand_kind = WordKind::kVariable,
                     .example = "chimera why tau",
-                    .manual = "Tells who produces a variable, when, from which inputs, and the first ancestor that is "
-                              "wrong, stale or missing."},
+                    .manual = "Names the producer of a variable, time and inputs of its value, and the first ancestor "
+                              "that is wrong, stale or missing."},
           .method = "why",
           .once = why};
 }

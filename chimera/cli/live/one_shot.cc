@@ -65,7 +65,7 @@ CommandResult pid(Session& session, const Call& call) {
   for (const auto& [one, number] : pids) names.push_back(one);
   const std::string near = nearest(name, names);
   const std::string why = found != pids.end() ? "--pid: the process of '" + name + "' is dead"
-                                              : "--pid: no real-time unit '" + name + "'" +
+                                              : "--pid: no rtpu '" + name + "'" +
                                                     (near.empty() ? "" : "; did you mean '" + near + "'?");
   return refused(Error{ErrorCode::kNotFound, std::string_view(why), {}}, call.json);
 }

@@ -48,7 +48,7 @@ Result<Known> known(const Json& described, const std::string& name) {
   for (const Json& variable : described["variables"]) {
     names.push_back(text_of(variable, "variable"));
     if (names.back() != name) continue;
-    if (truth_at(variable, "constant")) return wrong("'" + name + "' is a constant: nobody publishes it");
+    if (truth_at(variable, "constant")) return wrong("'" + name + "' is a constant: no task publishes it");
     return Known{text_of(variable, "unit"), text_of(variable, "shape").empty()};
   }
   const std::string near = nearest(name, names);

@@ -241,7 +241,7 @@ TEST_F(ShellTest, TheProcessOfAUnitIsANumberForKill) {
   EXPECT_EQ(run({"status", "--pid", "servo"}), "0|4711\n|");
   EXPECT_EQ(run({"status", "--pid", "keeper"}), "0|1\n|");
   EXPECT_EQ(run({"status", "--pid", "manager"}), "0|12\n|");
-  EXPECT_EQ(run({"status", "--pid", "sevro"}), "1||--pid: no real-time unit 'sevro'; did you mean 'servo'?\n");
+  EXPECT_EQ(run({"status", "--pid", "sevro"}), "1||--pid: no rtpu 'sevro'; did you mean 'servo'?\n");
   EXPECT_EQ(run({"status", "--pid", "spare"}), "1||--pid: the process of 'spare' is dead\n");
 }
 
@@ -284,7 +284,7 @@ TEST_F(ShellTest, AScopeRecordsRoundItsTriggerAndCountsItsGaps) {
 TEST_F(ShellTest, AScopeRefusesWhatCannotBe) {
   serve();
   EXPECT_EQ(run({"scope", "eror"}), "1||[puma_pid]\nno state variable 'eror'; did you mean 'error'?\n");
-  EXPECT_EQ(run({"scope", "ndof"}), "2||[puma_pid]\n'ndof' is a constant: nobody publishes it\n");
+  EXPECT_EQ(run({"scope", "ndof"}), "2||[puma_pid]\n'ndof' is a constant: no task publishes it\n");
   EXPECT_EQ(run({"scope", "error", "--pre", "1 s"}), "2||[puma_pid]\n--pre belongs to --trigger\n");
   EXPECT_EQ(run({"scope", "error", "--trigger", "q > 1 rad"}),
             "2||[puma_pid]\ntrigger 'q > 1 rad': say which element, such as q[0]\n");

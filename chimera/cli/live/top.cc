@@ -189,8 +189,8 @@ std::vector<TopLine> help_lines(const TopView& view) {
       "EXEC    mean execution time of a cycle since the last update; MAX: the longest so far",
       "USED    MAX as a part of BUDGET; above 100 % the stated budget is wrong",
       "JITTER  latest start minus earliest, each after its release",
-      "MISSED  deadlines missed since the task was made, or its real-time unit restarted",
-      "INPUT   age of the oldest input; never: nobody has written it",
+      "MISSED  deadlines missed since the task was made, or its rtpu restarted",
+      "INPUT   age of the oldest input; never: no task has written it",
       "red     in ERROR, or more missed since the last update; faint: not ON",
       "keys    q quits, h leaves this page; o n e b j m a sort; up and down move",
       "narrow  a screen below 80 columns leaves out BUDGET, then JITTER, RATE, EXEC"};

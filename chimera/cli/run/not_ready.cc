@@ -38,9 +38,9 @@ std::string not_ready(const Json& status) {
   for (const Json& rtpu : status["rtpus"]) {
     const std::string name = text_at(rtpu, "name"), running = text_at(rtpu, "running");
     if (!truth_at(rtpu, "alive"))
-      under_way.push_back("the process of real-time unit " + name + " is dead");
+      under_way.push_back("the process of rtpu " + name + " is dead");
     else if (text_at(rtpu, "phase") == "starting")
-      under_way.push_back("real-time unit " + name + " still makes its tasks (" + tasks_of(status, name) +
+      under_way.push_back("rtpu " + name + " still makes its tasks (" + tasks_of(status, name) +
                           "): it loads a shared object or runs a constructor");
     else if (!running.empty())
       under_way.push_back("`" + running + "` is under way");

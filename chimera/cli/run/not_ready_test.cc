@@ -25,9 +25,9 @@ TEST(NotReady, NamesTheTaskAndTheMethod) {
 
 TEST(NotReady, NamesAProcessThatDoesNotComeUp) {
   EXPECT_EQ(not_ready({{"tasks", {task("log", "NOT-CREATED", false)}}, {"rtpus", {rtpu("starting")}}}),
-            "real-time unit servo still makes its tasks (log): it loads a shared object or runs a constructor");
+            "rtpu servo still makes its tasks (log): it loads a shared object or runs a constructor");
   EXPECT_EQ(not_ready({{"tasks", {task("log", "NOT-CREATED", false)}}, {"rtpus", {rtpu("ended", nullptr, false)}}}),
-            "the process of real-time unit servo is dead");
+            "the process of rtpu servo is dead");
 }
 
 TEST(NotReady, TellsStatesWhenNobodyStandsOut) {
