@@ -340,8 +340,8 @@ RunningCommand switch_row() {
                     .manual = "Changes to a configuration while the tasks cycle: exactly its tasks are ON afterwards. "
                               "`on` of arriving tasks runs beside their predecessors. All rtpus change at one instant. "
                               "Then leaving tasks go OFF. All or nothing, and no cycle is lost. Prints the receipt. A "
-                              "failure before that instant changes nothing; the exit code is 1 then. (`on CONFIGURATION` "
-                              "turns tasks ON and none OFF.)",
+                              "failure before that instant changes nothing; the exit code is 1 then. (`on "
+                              "CONFIGURATION` turns tasks ON and none OFF.)",
                     .is_act = true},
           .method = "switch",
           .once = switch_to};
