@@ -57,7 +57,7 @@ TEST(SilenceText, SaysWhoAndWhatToDo) {
             "again: its keeper starts another; `kill 120` ends everything in order");
   EXPECT_EQ(silence_text("/run/arm.sock", {}, milliseconds(200)),
             "the manager of 'arm' does not answer for 200 ms; its rtpus go on without it; try again, or tell "
-            "whoever started it");
+            "the user who started it");
 }
 
 }  // namespace
