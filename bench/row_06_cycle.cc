@@ -4,8 +4,8 @@
 #include "bench/bench.h"
 #include "bench/tasks.h"
 #include "chimera/platform/clock.h"
+#include "chimera/runtime/cycle/releases.h"
 #include "chimera/runtime/executive/executive.h"
-#include "chimera/runtime/releases.h"
 
 namespace chimera::bench {
 namespace {

@@ -40,7 +40,7 @@ FAILING = f"component: faulty, alias: {{y: u}}, constants: {{throw_after: {UNTIL
 COLD, HOT, NONE = ", standby_for: main", ", standby_for: {task: main, hot: true}", ""
 
 
-def kill_unit(system, _):
+def kill_rtpu(system, _):
     pidfd = os.pidfd_open(system.rtpu("first")["pid"])
     began = time.monotonic_ns()
     signal.pidfd_send_signal(pidfd, signal.SIGKILL)
@@ -129,8 +129,8 @@ def line(what, times, baseline, baseline_name, has_goal=True):
                       "met": figure <= PERIOD_US if has_goal else None, "n": ROUNDS}))
 
 
-CASES = {"kill, cold": (SOUND, COLD, kill_unit, "spare"), "kill, hot": (SOUND, HOT, kill_unit, "spare"),
-         "kill, none": (SOUND, NONE, kill_unit, "main"), "fault, cold": (FAILING, COLD, await_fault, "spare"),
+CASES = {"kill, cold": (SOUND, COLD, kill_rtpu, "spare"), "kill, hot": (SOUND, HOT, kill_rtpu, "spare"),
+         "kill, none": (SOUND, NONE, kill_rtpu, "main"), "fault, cold": (FAILING, COLD, await_fault, "spare"),
          "fault, hot": (FAILING, HOT, await_fault, "spare"),
          "fault, none": (FAILING, NONE, await_fault_and_answer, "spare")}
 found = {name: [] for name in CASES}

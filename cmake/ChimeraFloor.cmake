@@ -176,9 +176,7 @@ function(chimera_tests name)
   if(arg_MEMORY)
     set(options)
   endif()
-  file(GLOB all CONFIGURE_DEPENDS *_test.cc hosted/*_test.cc
-    virtual/*_test.cc executive/*_test.cc preemptive/*_test.cc switch/*_test.cc rules/*_test.cc
-    command/*_test.cc files/*_test.cc run/*_test.cc batch/*_test.cc live/*_test.cc)
+  file(GLOB all CONFIGURE_DEPENDS *_test.cc */*_test.cc)
   set(plain ${all})
   list(FILTER plain EXCLUDE REGEX "_(threads|process|realtime)_test\\.cc$")
   foreach(kind threads process realtime)
@@ -268,10 +266,8 @@ endfunction()
 
 function(chimera_floor name)
   cmake_parse_arguments(arg "EXCEPTIONS;TEXT;TOGETHER" "" "LINKS;LIBRARIES" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS
-    *.cc hosted/*.cc virtual/*.cc executive/*.cc preemptive/*.cc switch/*.cc rules/*.cc
-    command/*.cc files/*.cc run/*.cc batch/*.cc live/*.cc)
-  list(FILTER sources EXCLUDE REGEX "_(test|fuzz|stress)\\.cc$")
+  file(GLOB sources CONFIGURE_DEPENDS *.cc */*.cc)
+  list(FILTER sources EXCLUDE REGEX "_(test|fuzz|stress)\\.cc$|/testing/")
   set(target chimera_${name})
   set(scope PUBLIC)
   if(arg_TEXT)

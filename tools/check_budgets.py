@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sizes and names: files of at most 500 lines, functions of at most 60, lines of at most 120 columns. A function-like
-macro has an allowed name or is undefined again in the same file."""
+"""Sizes and names: folders of chimera/ with at most 40 production files, files of at most 500 lines, functions of at
+most 60, lines of at most 120 columns. A function-like macro has an allowed name or is undefined again in the same
+file."""
+import collections
 import pathlib
 import re
 import sys
@@ -9,7 +11,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent / "check"))
 import functions  # noqa: E402
 import sources  # noqa: E402
 
-FILE_LINES, FUNCTION_LINES, COLUMNS = 500, 60, 120
+FOLDER_FILES, FILE_LINES, FUNCTION_LINES, COLUMNS = 40, 500, 60, 120
+PRODUCTION = re.compile(r"(chimera/.+)/[^/]+(?<!_test)(?<!_fuzz)(?<!_stress)\.(?:h|cc)")
 CODE = (".h", ".cc", ".c", ".py", ".sh", ".cmake", ".js", ".ts", ".css", ".pml")
 MACRO = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(\w+)\(", re.MULTILINE)
 MACRO_ALLOWED = re.compile(r"CHIMERA_ASSERT$|CHIMERA_COMPONENT|PBO_|SVAR_")
@@ -46,7 +49,14 @@ def macros_and_names(name, content):
         yield f"{name}:{lines_of(content, match.start())}: type name {match[1]} says nothing"
 
 
+def full_folders(names):
+    folders = collections.Counter(match[1] for match in map(PRODUCTION.fullmatch, names) if match)
+    return (f"{folder}: {n} production files, at most {FOLDER_FILES} are allowed"
+            for folder, n in sorted(folders.items()) if n > FOLDER_FILES)
+
+
 def check(root):
+    yield from full_folders(sources.files(root))
     for name in sources.files(root):
         if not is_code(name):
             continue

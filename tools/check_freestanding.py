@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Floors 0, 2, 3 and 4, the runtime half for every machine (chimera/runtime, its executive and switch) and components
-build freestanding for x86-64 and for a 32-bit microcontroller (ARM Cortex-M3), without exceptions or RTTI, and ask for
-no heap, stream, thread or file. The hosted halves of these floors lie in subfolders (base/hosted, runtime/hosted),
+"""Floors 0, 2, 3 and 4, the runtime without its folders hosted, preemptive and virtual, and components build
+freestanding for x86-64 and for a 32-bit microcontroller (ARM Cortex-M3), without exceptions or RTTI, and ask for no
+heap, stream, thread or file. The hosted halves of these floors lie in subfolders (base/hosted, runtime/hosted),
 which a microcontroller replaces, and which the other half does not include."""
 import concurrent.futures
 import itertools
@@ -16,7 +16,8 @@ import tempfile
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "check"))
 import sources  # noqa: E402
 
-FOLDERS = ("base", "table", "task", "schedule", "runtime", "runtime/executive", "runtime/switch")
+FOLDERS = ("base", "table", "task", "schedule", "runtime", "runtime/record", "runtime/job", "runtime/plan",
+           "runtime/state", "runtime/life", "runtime/switch", "runtime/cycle", "runtime/executive")
 FILE = re.compile(rf"chimera/({'|'.join(FOLDERS)})/[^/]+(?<!_test)(?<!_stress)(?<!_fuzz)\.(h|cc)$")
 HOSTED = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"(chimera/\w+/hosted/[^"]+)"', re.MULTILINE)
 COMPONENTS = ("library/gain/gain.cc", "library/pid_joint/pid_joint.cc", "library/tderiv/tderiv.cc")
@@ -32,7 +33,7 @@ ARITHMETIC = re.compile(r"__aeabi_(?!read_tp)\w+$|__atomic_(load|store|exchange|
 # std::string_view and std::span out of range: ends the program, never in a cycle.
 ENDING = re.compile(r"_ZSt\d+__throw_\w+|abort$|_ZSt21__glibcxx_assert_failPKciS0_S0_$")
 # A number of type double in the text of a refused output (%g): every C library for microcontrollers can write it.
-TEXT = {"chimera/runtime/safety.cc": {"snprintf"}}
+TEXT = {"chimera/runtime/job/safety.cc": {"snprintf"}}
 
 
 def is_known(name, symbol):

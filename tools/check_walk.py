@@ -28,7 +28,10 @@ def named(cell):
 
 
 def exists(root, path):
-    return any((root / folder / (path + ending)).is_file() for folder in ("chimera", ".") for ending in (".h", ".cc"))
+    """In the folder that is named, or in one of its rooms."""
+    floor, _, name = path.rpartition("/")
+    return any(any((root / folder).glob(f"{floor}{room}/{name}{ending}"))
+               for folder in ("chimera", ".") for room in ("", "/*") for ending in (".h", ".cc"))
 
 
 def check(root):
@@ -63,6 +66,7 @@ PLANTED = (
     (_walk(3, "| a | 3 | `task/` port, registry; `apps/x/main` | text |"), None),
     (_walk(2, "| a | 2 | `task/` port, registry; `apps/x/main` | |"),
      f"{WALK}: section 8, a: 3 files are named, 2 are said"),
+    (_walk(2, "| a | 2 | `task/` port, taken | text |") | {"chimera/task/life/taken.h": ""}, None),
     (_walk(2, "| a | 2 | `task/` port, gone | |"), f"{WALK}: section 8, a: no file task/gone.h or task/gone.cc"),
     (_walk(4, "| a | 2 | `task/` port, registry | |\n| b | 1 | `apps/x/main` | |"),
      f"{WALK}: section 8: the sentence must say '3 files with their headers'"),

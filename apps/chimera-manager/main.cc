@@ -11,8 +11,8 @@
 #include <new>
 #include <string_view>
 
-#include "chimera/manager/analyst.h"
-#include "chimera/manager/question.h"
+#include "chimera/manager/answer/analyst.h"
+#include "chimera/manager/answer/question.h"
 #include "chimera/manager/run.h"
 #include "chimera/platform/process.h"
 

@@ -12,7 +12,7 @@
 #include "chimera/keeper/keeper.h"
 #include "chimera/load/descriptor.h"
 #include "chimera/load/sealed_objects.h"
-#include "chimera/manager/bundle.h"
+#include "chimera/manager/state/bundle.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/platform/shared_memory.h"
 #include "chimera/platform/socket_place.h"

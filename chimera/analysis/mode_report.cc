@@ -8,8 +8,8 @@
 
 #include "chimera/runtime/hosted/asked_set.h"
 #include "chimera/runtime/hosted/heap_memory.h"
-#include "chimera/runtime/switch/constant_choice.h"
-#include "chimera/runtime/switch/switch_plan.h"
+#include "chimera/runtime/plan/constant_choice.h"
+#include "chimera/runtime/plan/switch_plan.h"
 
 namespace chimera {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The configurations of a description as nodes, also with a standby in the place of its primary, and the switches
 // and takeovers between them as edges. An edge has the tasks that ask for the switch, whether all deadlines are met
-// during it (runtime/switch/switch_schedule.h), and whether a constant may change (runtime/switch/constant_choice.h).
+// during it (runtime/plan/switch_schedule.h), and whether a constant may change (runtime/plan/constant_choice.h).
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "chimera/catalogue/library.h"
-#include "chimera/runtime/switch/switch_schedule.h"
+#include "chimera/runtime/plan/switch_schedule.h"
 #include "chimera/verify/configuration.h"
 
 namespace chimera {
@@ -33,7 +33,7 @@ struct ModeConstant {
   std::vector<std::size_t> users;     ///< tasks that stay
 };
 
-/// A resource that changes hands: runtime/switch/rivals.h.
+/// A resource that changes hands: runtime/plan/rivals.h.
 struct ModeResource {
   std::string text;
   std::size_t before = 0, after = 0;  ///< task that has it, in Configuration::tasks()

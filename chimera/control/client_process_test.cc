@@ -21,9 +21,9 @@ struct ClientTest : DoorTest {
     done = false;
     server = std::thread([this] {
       while (!done) {
-        pollfd one{door->descriptor(), POLLIN, 0};
+        pollfd one{server->descriptor(), POLLIN, 0};
         ::poll(&one, 1, 5);
-        door->serve(now = now + milliseconds(5));
+        server->serve(now = now + milliseconds(5));
       }
     });
   }
@@ -160,7 +160,7 @@ struct HalfDeafServer {
 };
 
 TEST_F(ClientTest, SendsAnActOnceAndAQuestionAgainWhenTheConnectionIsLost) {
-  door.reset();
+  server.reset();
   for (const MethodRule& rule : methods()) {
     HalfDeafServer half_deaf(listening);
     RpcResponse answer;
@@ -346,7 +346,7 @@ TEST_F(FindTest, AmongSeveralOneMustBeNamed) {
 
 TEST_F(FindTest, ASocketThatNobodyListensAtIsNone) {
   place("subject");
-  door.reset();
+  server.reset();
   ::close(listening);
   EXPECT_EQ(said(""), "no subsystem runs; start one with `chimera run FILE`");
 }

@@ -26,14 +26,14 @@ RpcResponse no_role() {
 
 Result<std::unique_ptr<ControlServer>> ControlServer::open(int listening, ControlBackend& backend, uid_t owner,
                                                            const RoleGroups& groups) {
-  std::unique_ptr<ControlServer> door(new ControlServer(backend, owner, groups));
-  door->listening_ = OwnedDescriptor(listening);
+  std::unique_ptr<ControlServer> server(new ControlServer(backend, owner, groups));
+  server->listening_ = OwnedDescriptor(listening);
   const Message what("the control socket cannot be watched");
   auto watched = DescriptorSet::open(what);
   if (!watched) return watched.error();
-  door->watched_ = *std::move(watched);
-  if (listening >= 0 && !door->watched_.add(listening, kToRead, kListening)) return system_error(what, "epoll");
-  return door;
+  server->watched_ = *std::move(watched);
+  if (listening >= 0 && !server->watched_.add(listening, kToRead, kListening)) return system_error(what, "epoll");
+  return server;
 }
 
 void ControlServer::serve(Nanoseconds now) {

@@ -100,7 +100,7 @@ class ManagerState {
  public:
   ManagerState() {
     const int listening = ::socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    door_ = *ControlServer::open(listening, model_, 1000, {});
+    server_ = *ControlServer::open(listening, model_, 1000, {});
     for (std::size_t p = 0; p < kPeers; ++p) open(p);
   }
   ~ManagerState() {
@@ -149,7 +149,7 @@ class ManagerState {
     require(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, pair) == 0, "a pair of sockets");
     peers_[p] = Peer{};
     peers_[p].fd = pair[0];
-    door_->enter(OwnedDescriptor(pair[1]), {static_cast<uid_t>(p), kRoles[p]}, now_);
+    server_->enter(OwnedDescriptor(pair[1]), {static_cast<uid_t>(p), kRoles[p]}, now_);
   }
   void reopen(std::size_t p) {
     ::close(peers_[p].fd);
@@ -187,10 +187,10 @@ class ManagerState {
     now_ = now_ + step;
     int turns = 0;
     do {
-      door_->serve(now_);
+      server_->serve(now_);
       for (Peer& peer : peers_) listen(peer);
-    } while (door_->next_due() <= now_ && ++turns < 1000);
-    require(turns < 1000, "the door comes to rest");
+    } while (server_->next_due() <= now_ && ++turns < 1000);
+    require(turns < 1000, "the server comes to rest");
   }
   void listen(Peer& peer) {
     char bytes[4096];
@@ -208,7 +208,7 @@ class ManagerState {
   }
 
   Model model_;
-  std::unique_ptr<ControlServer> door_;
+  std::unique_ptr<ControlServer> server_;
   std::array<Peer, kPeers> peers_;
   Nanoseconds now_ = seconds(1);
   std::uint64_t requests_ = 0;

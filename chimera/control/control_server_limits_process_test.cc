@@ -19,7 +19,7 @@ TEST_F(DoorLimits, ClosesAfterALineThatIsTooDeep) {
   EXPECT_EQ(ask(fd, request("set", R"({"values":)" + deep + "}")),
             error("null", -32001, "nested deeper than 32 levels"));
   EXPECT_TRUE(is_closed(fd));
-  EXPECT_EQ(door->connections(), 0u);
+  EXPECT_EQ(server->connections(), 0u);
   ::close(fd);
 }
 
@@ -97,10 +97,10 @@ TEST_F(DoorLimits, AFloodOfOnePeerDoesNotKeepAnotherWaiting) {
   for (int i = 0; i < 20000; ++i) flood += "?\n";
   say(loud, flood);
   say(other, request("hello"));
-  door->serve(now = now + milliseconds(1));  // accepts
-  door->serve(now);
+  server->serve(now = now + milliseconds(1));  // accepts
+  server->serve(now);
   EXPECT_NE(take(other).find("\"result\""), std::string::npos);
-  EXPECT_LE(door->next_due(), now) << "there is more to do";
+  EXPECT_LE(server->next_due(), now) << "there is more to do";
   std::size_t answered = 0;
   for (int i = 0; i < 1000 && answered < 20000; ++i, answered += count(take(loud), "\"error\"")) serve();
   EXPECT_EQ(answered, 20000u);
@@ -126,10 +126,10 @@ TEST_F(DoorLimits, ASlowReaderSkipsToTheLatestAndAStuckOneIsDropped) {
   ask(fd, request("subscribe", R"({"to":"values","period_ms":20})"));
   for (int i = 0; i < 2000; ++i) serve();
   EXPECT_LT(backend.pulls, 10) << "what the peer does not take is not made";
-  EXPECT_EQ(door->connections(), 2u);
+  EXPECT_EQ(server->connections(), 2u);
   EXPECT_NE(ask(other, request("hello")).find("\"result\""), std::string::npos) << "others do not notice";
-  for (int i = 0; i < 400 && door->connections() == 2; ++i) serve(milliseconds(10));
-  EXPECT_EQ(door->connections(), 1u);
+  for (int i = 0; i < 400 && server->connections() == 2; ++i) serve(milliseconds(10));
+  EXPECT_EQ(server->connections(), 1u);
   EXPECT_GE(now, seconds(6)) << "not before 5 s without a byte";
   EXPECT_EQ(backend.closed.size(), 1u);
   ::close(fd);
@@ -142,10 +142,10 @@ TEST_F(DoorLimits, AnIdleDoorIsDueWhenThePatienceWithAPeerEnds) {
   ask(fd, "");
   say(fd, request("hello"));
   serve();
-  EXPECT_GT(door->next_due(), now);
-  EXPECT_LE(door->next_due(), now + kPatience);
-  door->serve(now = door->next_due());
-  EXPECT_EQ(door->connections(), 0u);
+  EXPECT_GT(server->next_due(), now);
+  EXPECT_LE(server->next_due(), now + kPatience);
+  server->serve(now = server->next_due());
+  EXPECT_EQ(server->connections(), 0u);
   ::close(fd);
 }
 
@@ -175,12 +175,12 @@ TEST_F(DoorLimits, WithoutADescriptorLeftItWaitsAndThenGoesOn) {
   ::setrlimit(RLIMIT_NOFILE, &none);
   serve();
   ::setrlimit(RLIMIT_NOFILE, &before);
-  EXPECT_EQ(door->connections(), 0u);
-  EXPECT_EQ(door->next_due(), now + milliseconds(100));
-  pollfd one{door->descriptor(), POLLIN, 0};
+  EXPECT_EQ(server->connections(), 0u);
+  EXPECT_EQ(server->next_due(), now + milliseconds(100));
+  pollfd one{server->descriptor(), POLLIN, 0};
   EXPECT_EQ(::poll(&one, 1, 0), 0) << "the waiting connection does not wake the owner all the time";
   serve(milliseconds(100));
-  EXPECT_EQ(door->connections(), 1u);
+  EXPECT_EQ(server->connections(), 1u);
   ::close(fd);
 }
 

@@ -2,8 +2,8 @@
 // Tests which connections get a place when places are short, and which are closed, with a stepped clock.
 #include <algorithm>
 
-#include "chimera/control/testing/control_server_rig.h"
 #include "chimera/control/request.h"
+#include "chimera/control/testing/control_server_rig.h"
 
 namespace chimera::control {
 namespace {
@@ -13,7 +13,7 @@ constexpr const char* kOff = R"({"signal":"off","tasks":["a"]})";
 struct DoorPlaces : DoorTest {
   void SetUp() override {
     DoorTest::SetUp();
-    door->report_closings_to([this](const std::string& text) { told.push_back(text); });
+    server->report_closings_to([this](const std::string& text) { told.push_back(text); });
   }
   void TearDown() override {
     for (const int fd : fds) ::close(fd);
@@ -25,7 +25,7 @@ struct DoorPlaces : DoorTest {
   int as(uid_t user, Role role) {
     int pair[2];
     EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, pair), 0);
-    door->enter(OwnedDescriptor(pair[0]), {user, role, 4711}, now);
+    server->enter(OwnedDescriptor(pair[0]), {user, role, 4711}, now);
     return fds.emplace_back(pair[1]);
   }
   static std::string closed(const std::string& why) { return error("null", -32008, ("closed: " + why).c_str()); }
@@ -44,7 +44,7 @@ TEST_F(DoorPlaces, OfOnesOwnTheLongestIdleGivesWay) {
   }
   EXPECT_NE(ask(fds[0], request("hello")).find("\"result\""), std::string::npos) << "so it is not the longest";
   EXPECT_NE(ask(more(), request("hello")).find("\"result\""), std::string::npos);
-  EXPECT_EQ(door->connections(), 16u);
+  EXPECT_EQ(server->connections(), 16u);
   EXPECT_EQ(take(fds[1]), closed("idle for 14 s; its place was needed"));
   EXPECT_TRUE(is_closed(fds[1]));
   EXPECT_EQ(told, std::vector<std::string>{mine("idle for 14 s; its place was needed")});
@@ -112,18 +112,18 @@ TEST_F(DoorPlaces, TwelveOfAUserMaySubscribe) {
 TEST_F(DoorPlaces, FourUsersWhoMayLookLeavePlacesForWhoMayDoMore) {
   for (uid_t user = 61001; user <= 61004; ++user)
     for (int i = 0; i < 16; ++i) as(user, Role::kObserve);
-  EXPECT_EQ(door->connections(), 32u);
+  EXPECT_EQ(server->connections(), 32u);
   EXPECT_EQ(take(fds[0]), closed("idle for 0 ns; its place was needed"));
   EXPECT_EQ(told.size(), 32u);
   const int owner = as(::getuid(), Role::kConfigure);
   EXPECT_NE(ask(owner, request("hello")).find("\"result\""), std::string::npos);
-  EXPECT_EQ(door->connections(), 33u) << "a place was kept";
+  EXPECT_EQ(server->connections(), 33u) << "a place was kept";
 }
 
 TEST_F(DoorPlaces, AHigherRoleTakesThePlaceOfALowerOneThatOnlyListens) {
   const std::string subscribe = request("subscribe", R"({"to":"events"})");
   for (uid_t user = 1; user <= 40; ++user) ask(as(61000 + user, Role::kOperate), subscribe);
-  EXPECT_EQ(door->connections(), 40u);
+  EXPECT_EQ(server->connections(), 40u);
   EXPECT_NE(take(as(7, Role::kOperate)).find("the 40 of the roles up to operate are all in use"), std::string::npos);
   EXPECT_NE(take(as(8, Role::kObserve)).find("the 40 of the roles up to operate are all in use"), std::string::npos);
   for (uid_t user = 1; user <= 8; ++user) ask(as(62000 + user, Role::kConfigure), subscribe);
@@ -150,15 +150,15 @@ TEST_F(DoorPlaces, ALineThatDoesNotEndWithinFiveSecondsIsClosedInAnyCase) {
   EXPECT_NE(ask(good, text.substr(9)).find("\"result\""), std::string::npos);
   say(good, text + "{");
   serve();
-  EXPECT_EQ(door->next_due(), begun + seconds(5));
+  EXPECT_EQ(server->next_due(), begun + seconds(5));
   serve(begun + seconds(5) - now);
   EXPECT_EQ(take(slow), closed("the client sent a line without its end for 5 s"));
   EXPECT_TRUE(is_closed(slow));
   EXPECT_EQ(told, std::vector<std::string>{mine("the client sent a line without its end for 5 s")});
   serve(seconds(3));
-  EXPECT_EQ(door->connections(), 1u) << "its second line began later";
+  EXPECT_EQ(server->connections(), 1u) << "its second line began later";
   serve(seconds(2));
-  EXPECT_EQ(door->connections(), 0u);
+  EXPECT_EQ(server->connections(), 0u);
 }
 
 TEST_F(DoorPlaces, AHalfLineIsNoFaultWhileNobodyReadsIt) {
@@ -172,7 +172,7 @@ TEST_F(DoorPlaces, AHalfLineIsNoFaultWhileNobodyReadsIt) {
     char bytes[30'000];
     EXPECT_GT(::recv(fd, bytes, sizeof bytes, MSG_DONTWAIT), 0);
   }
-  EXPECT_EQ(door->connections(), 1u);
+  EXPECT_EQ(server->connections(), 1u);
   for (int i = 0; i < 200; ++i, serve()) take(fd);
   EXPECT_NE(ask(fd, request("hello").substr(20)).find("\"jsonrpc\""), std::string::npos);
 }

@@ -110,15 +110,15 @@ TEST_F(DoorTest, AnAnswerMayComeLaterAndOnlyOnce) {
   ASSERT_EQ(backend.later.size(), 1u);
   backend.later[0](RpcResponse::error(kRefused, "not now"));
   backend.later[0](RpcResponse::error(kRefused, "still not"));
-  EXPECT_LE(door->next_due(), now) << "an answer given between two turns is sent at once";
+  EXPECT_LE(server->next_due(), now) << "an answer given between two turns is sent at once";
   serve();
   EXPECT_EQ(take(fd), error("9", -32000, "not now"));
   EXPECT_EQ(ask(fd, off), "");
   ::close(fd);
   serve();
-  EXPECT_EQ(door->connections(), 0u);
+  EXPECT_EQ(server->connections(), 0u);
   backend.later[1](RpcResponse::good(Json::object()));  // the connection is gone: harmless
-  door.reset();
+  server.reset();
   backend.later[1](RpcResponse::good(Json::object()));
   backend.later.clear();
 }
@@ -134,14 +134,14 @@ TEST_F(DoorTest, APeerThatSaysNothingMoreIsStillAnswered) {
   say(fd, request("signal", R"({"signal":"off","tasks":["a"]})"));
   ::shutdown(fd, SHUT_WR);
   serve();
-  EXPECT_EQ(door->connections(), 1u);
-  EXPECT_EQ(door->next_due(), kNever) << "it is waited for, not asked again and again";
+  EXPECT_EQ(server->connections(), 1u);
+  EXPECT_EQ(server->next_due(), kNever) << "it is waited for, not asked again and again";
   backend.later.at(0)(RpcResponse::good(Json::object()));
   serve();
   EXPECT_EQ(take(fd), R"({"id":1,"jsonrpc":"2.0","result":{}})"
                       "\n");
   EXPECT_TRUE(is_closed(fd));
-  EXPECT_EQ(door->connections(), 0u);
+  EXPECT_EQ(server->connections(), 0u);
   ::close(fd);
 }
 
@@ -153,7 +153,7 @@ TEST_F(DoorTest, WhatAPeerAskedForBeforeItWentIsCarriedOut) {
   ::close(fd);
   serve();
   EXPECT_GE(backend.calls, 32);
-  EXPECT_EQ(door->connections(), 0u);
+  EXPECT_EQ(server->connections(), 0u);
 }
 
 TEST_F(DoorTest, ActsComeBeforeTheQuestionsOfOthersAndATurnEnds) {
@@ -162,12 +162,12 @@ TEST_F(DoorTest, ActsComeBeforeTheQuestionsOfOthersAndATurnEnds) {
   backend.busy_us = 2000;
   for (int i = 0; i < 30; ++i) say(loud, request("status"));
   say(quiet, request("flag", R"({"up":true})"));
-  door->serve(now = now + milliseconds(1));
+  server->serve(now = now + milliseconds(1));
   ASSERT_FALSE(backend.called.empty());
   EXPECT_EQ(backend.called[0], "flag");
   EXPECT_LE(backend.called.size(), 4u) << "of 30 questions that take 2 ms each two or three are a turn";
   EXPECT_NE(take(quiet).find("\"result\""), std::string::npos) << "answered in the same turn";
-  EXPECT_LE(door->next_due(), now) << "there is more to do";
+  EXPECT_LE(server->next_due(), now) << "there is more to do";
   serve();
   EXPECT_EQ(backend.called.size(), 31u);
   ::close(loud);
@@ -210,7 +210,7 @@ TEST_F(DoorTest, SubscriptionsComeWithTheirPeriodAndEndWithTheConnection) {
   ::close(fd);
   serve();
   EXPECT_EQ(backend.closed, backend.opened);
-  EXPECT_EQ(door->next_due(), kNever);
+  EXPECT_EQ(server->next_due(), kNever);
 }
 
 TEST_F(DoorTest, TheFirstNotificationComesWithTheAnswerNotAfterAPeriod) {
@@ -293,7 +293,7 @@ TEST_F(StrangerTest, IsToldThatItHasNoRightAndNothingElse) {
                  R"("jsonrpc":"2.0"})"
                  "\n");
   EXPECT_EQ(backend.calls, 0);
-  EXPECT_EQ(door->connections(), 0u);
+  EXPECT_EQ(server->connections(), 0u);
 }
 
 TEST_F(StrangerTest, OfAGroupWithARoleHasThatRoleAndNoMore) {

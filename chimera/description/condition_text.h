@@ -8,7 +8,7 @@
 
 #include "chimera/description/node.h"
 #include "chimera/description/report.h"
-#include "chimera/runtime/switch/safe_condition.h"
+#include "chimera/runtime/safe_condition.h"
 
 namespace chimera {
 

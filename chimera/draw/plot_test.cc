@@ -62,7 +62,7 @@ TEST(Plot, OverFrequencyEveryDecadeIsAsWide) {
   EXPECT_EQ(first_path(picture), "M78,89.25 L508,183 L938,276.75");  // a straight line falls 20 dB a decade
 }
 
-TEST(Plot, OnePanelForEachUnitOverTheSameTime) {
+TEST(Plot, OnePanelForEachRtpuOverTheSameTime) {
   const Plot plot = plot_of({wave("q[0]", "rad", 50), wave("tau", "N.m", 50), wave("q[1]", "rad", 50)});
   const std::string picture = svg(plot);
   EXPECT_EQ(count(picture, "<clipPath"), 2u);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chimera/base/time.h"
-#include "chimera/runtime/tap_record.h"
+#include "chimera/runtime/record/tap_record.h"
 
 namespace chimera::draw {
 

@@ -23,7 +23,7 @@ TEST(Timeline, ShowsOneLetterPerUnit) {
   EXPECT_EQ(drawn.letters, "AA.BBBB..");
 }
 
-TEST(Timeline, TheLongestOfAUnitWins) {
+TEST(Timeline, TheLongestOfAnRtpuWins) {
   const std::vector<TapRecord> records{run(0, 0, 4), run(1, 4, 6), run(0, 10, 5), run(1, 15, 5)};
   EXPECT_EQ(timeline(records, kTasks, {}, milliseconds(10), milliseconds(20)).letters, "BA");
 }

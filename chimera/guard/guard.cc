@@ -30,7 +30,7 @@ Result<void> Guard::prepare(std::span<const SilenceLimit> limits) {
     if (!layout) return layout.error();
     layouts_.push_back(*layout);
   }
-  units_ = std::vector<Unit>(spec_.rtpus.size());
+  rtpus_ = std::vector<Rtpu>(spec_.rtpus.size());
   for (const SilenceLimit& limit : limits) {
     if (limit.task.index >= spec_.tasks.size() || limit.periods == 0)
       return Error{ErrorCode::kBadInput, {"a limit of silence for a task that there is not"}, {}};
@@ -52,13 +52,13 @@ void Guard::tell(GuardMessage message) noexcept {
 
 bool Guard::is_needed() const noexcept {
   return keeper_.is_open() ||
-         std::ranges::any_of(units_, [](const Unit& unit) { return unit.process.fd >= 0 || unit.is_writing; });
+         std::ranges::any_of(rtpus_, [](const Rtpu& rtpu) { return rtpu.process.fd >= 0 || rtpu.is_writing; });
 }
 
 bool Guard::step(Nanoseconds at_most) noexcept {
   wait(at_most);
   writes_.advance(clock_.now());
-  for (std::uint32_t index = 0; index < units_.size(); ++index) finish(index);
+  for (std::uint32_t index = 0; index < rtpus_.size(); ++index) finish(index);
   if (!silences_.empty()) look_for_silence();
   return is_needed();
 }
@@ -67,16 +67,16 @@ bool Guard::step(Nanoseconds at_most) noexcept {
 void Guard::wait(Nanoseconds at_most) noexcept {
   std::array<Watched, 1 + 2 * kMaxRtpus> watched{};
   watched[0].descriptor = keeper_.descriptor();
-  for (std::uint32_t index = 0; index < units_.size(); ++index) {
-    watched[1 + 2 * index].descriptor = units_[index].process.fd;
-    watched[2 + 2 * index].descriptor = units_[index].line.descriptor();
+  for (std::uint32_t index = 0; index < rtpus_.size(); ++index) {
+    watched[1 + 2 * index].descriptor = rtpus_[index].process.fd;
+    watched[2 + 2 * index].descriptor = rtpus_[index].line.descriptor();
   }
   Nanoseconds due = writes_.due();
   for (const Silence& silence : silences_) due = std::min(due, silence.due());
   const Nanoseconds until_due = due == kNever ? kNever : due - clock_.now();
   if (await_ready(watched, std::min(until_due, at_most)) <= 0) return;
-  for (std::uint32_t index = 0; index < units_.size(); ++index) {
-    if (watched[2 + 2 * index].is_ready) listen_to_unit(index);
+  for (std::uint32_t index = 0; index < rtpus_.size(); ++index) {
+    if (watched[2 + 2 * index].is_ready) listen_to_rtpu(index);
     if (watched[1 + 2 * index].is_ready) bury(index);
   }
   if (watched[0].is_ready) listen_to_keeper();
@@ -97,32 +97,32 @@ void Guard::listen_to_keeper() noexcept {
 
 // The keeper starts an rtpu only after the death of its predecessor, even if the guard has not seen that death yet.
 void Guard::take(const GuardMessage& message, OwnedDescriptor passed) noexcept {
-  if (message.index >= units_.size() || passed.fd < 0) return;
-  Unit& unit = units_[message.index];
-  if (message.kind == Kind::kUnit) {
-    if (unit.process.fd >= 0) bury(message.index);
+  if (message.index >= rtpus_.size() || passed.fd < 0) return;
+  Rtpu& rtpu = rtpus_[message.index];
+  if (message.kind == Kind::kRtpu) {
+    if (rtpu.process.fd >= 0) bury(message.index);
     finish(message.index, true);  // from here on the devices are the successor's
-    unit.process = std::move(passed);
-    unit.incarnation = message.incarnation;
-  } else if (message.kind == Kind::kLine && message.incarnation == unit.incarnation) {
-    unit.line = Channel(passed.release());
+    rtpu.process = std::move(passed);
+    rtpu.incarnation = message.incarnation;
+  } else if (message.kind == Kind::kLine && message.incarnation == rtpu.incarnation) {
+    rtpu.line = Channel(passed.release());
   }
 }
 
 // Reads the messages of an rtpu. They can be read after its death, too.
-void Guard::listen_to_unit(std::uint32_t index) noexcept {
-  Unit& unit = units_[index];
+void Guard::listen_to_rtpu(std::uint32_t index) noexcept {
+  Rtpu& rtpu = rtpus_[index];
   GuardMessage message;
-  for (int passed = -1; unit.line.is_open();) {
-    const Channel::Got got = unit.line.receive(bytes_of(message), passed);
+  for (int passed = -1; rtpu.line.is_open();) {
+    const Channel::Got got = rtpu.line.receive(bytes_of(message), passed);
     OwnedDescriptor owned(passed);
     if (got == Channel::Got::kNothing) return;
     if (got == Channel::Got::kClosed) {
-      unit.line = Channel();
+      rtpu.line = Channel();
     } else if (message.kind == Kind::kSegment && owned.fd >= 0) {
       auto opened = PeerSegment::open(owned.fd, layouts_[index], static_cast<std::uint32_t>(spec_.tasks.size()), index,
-                                      unit.incarnation);
-      if (opened) unit.segment = *std::move(opened);
+                                      rtpu.incarnation);
+      if (opened) rtpu.segment = *std::move(opened);
     } else if (message.kind == Kind::kFrame && message.task < spec_.tasks.size() &&
                spec_.tasks[message.task].rtpu.index == index) {
       writes_.keep(message.task, message.frame, std::move(owned), message.pause);
@@ -132,23 +132,23 @@ void Guard::listen_to_unit(std::uint32_t index) noexcept {
 
 // The process is proved dead: its memory does not change any more.
 void Guard::bury(std::uint32_t index) noexcept {
-  Unit& unit = units_[index];
-  listen_to_unit(index);
-  unit.process = OwnedDescriptor();
-  unit.line = Channel();
-  unit.died = clock_.now();
-  unit.is_writing = true;
-  if (unit.segment.is_there() && unit.segment.incarnation() == unit.incarnation)
+  Rtpu& rtpu = rtpus_[index];
+  listen_to_rtpu(index);
+  rtpu.process = OwnedDescriptor();
+  rtpu.line = Channel();
+  rtpu.died = clock_.now();
+  rtpu.is_writing = true;
+  if (rtpu.segment.is_there() && rtpu.segment.incarnation() == rtpu.incarnation)
     for (std::uint32_t task = 0; task < spec_.tasks.size(); ++task)
-      if (spec_.tasks[task].rtpu.index == index) writes_.begin(TaskId(task), unit.segment.block(), unit.died);
-  unit.segment = PeerSegment();
+      if (spec_.tasks[task].rtpu.index == index) writes_.begin(TaskId(task), rtpu.segment.block(), rtpu.died);
+  rtpu.segment = PeerSegment();
   writes_.advance(clock_.now());
   finish(index);
 }
 
 void Guard::finish(std::uint32_t index, bool is_at_once) noexcept {
-  Unit& unit = units_[index];
-  if (!unit.is_writing) return;
+  Rtpu& rtpu = rtpus_[index];
+  if (!rtpu.is_writing) return;
   WrittenFrames written;
   bool is_over = true;
   for (std::uint32_t task = 0; task < spec_.tasks.size(); ++task)
@@ -156,23 +156,23 @@ void Guard::finish(std::uint32_t index, bool is_at_once) noexcept {
   if (!is_over && !is_at_once) return;
   for (std::uint32_t task = 0; task < spec_.tasks.size(); ++task)
     if (spec_.tasks[task].rtpu.index == index) writes_.finish(TaskId(task), written);
-  unit.is_writing = false;
+  rtpu.is_writing = false;
   tell({.kind = Kind::kWritten,
         .index = index,
-        .incarnation = unit.incarnation,
+        .incarnation = rtpu.incarnation,
         .good = written.good,
         .bad = written.bad,
-        .died = unit.died,
+        .died = rtpu.died,
         .at = written.at});
 }
 
 bool Guard::is_there(std::uint32_t index) const noexcept {
-  return units_[index].process.fd >= 0 && units_[index].segment.is_there();
+  return rtpus_[index].process.fd >= 0 && rtpus_[index].segment.is_there();
 }
 
 TaskStatus Guard::status(TaskId task) const noexcept {
   const std::uint32_t index = spec_.tasks[task.index].rtpu.index;
-  return is_there(index) ? units_[index].segment.block().status(task) : TaskStatus{};
+  return is_there(index) ? rtpus_[index].segment.block().status(task) : TaskStatus{};
 }
 
 // Ends the rtpu of a silent primary. SIGKILL alone proves nothing: frames are written, and a standby takes over, only
@@ -182,19 +182,19 @@ void Guard::look_for_silence() noexcept {
   for (Silence& silence : silences_) {
     if (silence.due() > now) continue;
     const std::uint32_t index = spec_.tasks[silence.task().index].rtpu.index;
-    const Unit& unit = units_[index];
+    const Rtpu& rtpu = rtpus_[index];
     const TaskStatus shown = status(silence.task());
     chimera_slot slot{};
     if (is_there(index)) {
-      const GroupReader group = unit.segment.group(layouts_[index].outputs(silence.task(), shown.incarnation));
+      const GroupReader group = rtpu.segment.group(layouts_[index].outputs(silence.task(), shown.incarnation));
       if (!group.try_read_part(slot, 0, {})) slot = {};
     }
     const bool has_successor = !silence.standby().is_valid() || status(silence.standby()).state == State::kOff;
     if (!silence.look(shown.state == State::kOn && has_successor, slot.sequence, now)) continue;
-    (void)signal_process(unit.process.fd, SIGKILL);
+    (void)signal_process(rtpu.process.fd, SIGKILL);
     tell({.kind = Kind::kSilent,
           .index = index,
-          .incarnation = unit.incarnation,
+          .incarnation = rtpu.incarnation,
           .task = silence.task().index,
           .good = silence.standby().is_valid() ? 1u : 0u});
   }

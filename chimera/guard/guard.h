@@ -16,7 +16,7 @@
 #include "chimera/runtime/hosted/application_image.h"
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/hosted/peer_segment.h"
-#include "chimera/runtime/silence.h"
+#include "chimera/runtime/job/silence.h"
 
 namespace chimera {
 
@@ -45,7 +45,7 @@ class Guard {
   bool step(Nanoseconds at_most = kNever) noexcept;
 
  private:
-  struct Unit {
+  struct Rtpu {
     OwnedDescriptor process;  // readable when the rtpu is dead; -1: none lives
     Channel line;
     PeerSegment segment;
@@ -58,7 +58,7 @@ class Guard {
   void wait(Nanoseconds at_most) noexcept;
   void listen_to_keeper() noexcept;
   void take(const GuardMessage& message, OwnedDescriptor passed) noexcept;
-  void listen_to_unit(std::uint32_t index) noexcept;
+  void listen_to_rtpu(std::uint32_t index) noexcept;
   void bury(std::uint32_t index) noexcept;
   void finish(std::uint32_t index, bool is_at_once = false) noexcept;
   void look_for_silence() noexcept;
@@ -72,7 +72,7 @@ class Guard {
   LinuxClock clock_;
   HeapMemory memory_;  // memory of the layouts
   std::vector<PeerLayout> layouts_;
-  std::vector<Unit> units_;
+  std::vector<Rtpu> rtpus_;
   SafeWrites writes_;
   std::vector<Silence> silences_;
 };

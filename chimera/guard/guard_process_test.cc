@@ -48,15 +48,15 @@ struct Device {
 
 /// One incarnation of the rtpu: an idle process, memory as an rtpu makes it, and the rtpu's end of its line.
 struct Life {
-  Life(const ApplicationSpec& spec, std::uint32_t unit, std::uint32_t incarnation, int line)
-      : link(line, unit, incarnation) {
-    const PeerLayout layout = *PeerLayout::of(spec, unit, heap);
+  Life(const ApplicationSpec& spec, std::uint32_t rtpu, std::uint32_t incarnation, int line)
+      : link(line, rtpu, incarnation) {
+    const PeerLayout layout = *PeerLayout::of(spec, rtpu, heap);
     const auto tasks = static_cast<std::uint32_t>(spec.tasks.size());
-    memory = *MemoryRegion::create("unit", peer_segment_bytes(layout.table(), tasks));
+    memory = *MemoryRegion::create("rtpu", peer_segment_bytes(layout.table(), tasks));
     const auto table = SegmentOwner::format(memory.writable(), layout.table());
-    block = BlockOwner(memory.writable().data() + block_offset(layout.table()), unit, incarnation, tasks, 3);
+    block = BlockOwner(memory.writable().data() + block_offset(layout.table()), rtpu, incarnation, tasks, 3);
     for (std::size_t t = 0; t < spec.tasks.size(); ++t) {
-      if (spec.tasks[t].rtpu != RtpuId(std::size_t{unit})) continue;
+      if (spec.tasks[t].rtpu != RtpuId(std::size_t{rtpu})) continue;
       outputs.push_back(table->writer(SegmentView::planned(layout.table(), layout.outputs(TaskId(t), 0), 0)));
     }
     const char* const words[] = {"sleep", "60"};
@@ -108,17 +108,17 @@ struct GuardTest : ::testing::Test {
     guard = *Guard::create(std::move(ends->second), *image, limits);
   }
   /// The next incarnation of the rtpu. The guard knows it only from the keeper: the rtpu has sent no message yet.
-  std::unique_ptr<Life> begin(std::uint32_t unit = 0) {
+  std::unique_ptr<Life> begin(std::uint32_t rtpu = 0) {
     auto ends = Channel::pair();
     const int line = ::fcntl(ends->second.descriptor(), F_DUPFD_CLOEXEC, 0);
-    auto life = std::make_unique<Life>(image->spec(), unit, ++incarnation, line);
-    tell(GuardMessage::Kind::kUnit, unit, life->process.pidfd());
-    tell(GuardMessage::Kind::kLine, unit, ends->first.descriptor());
+    auto life = std::make_unique<Life>(image->spec(), rtpu, ++incarnation, line);
+    tell(GuardMessage::Kind::kRtpu, rtpu, life->process.pidfd());
+    tell(GuardMessage::Kind::kLine, rtpu, ends->first.descriptor());
     life->link.show(life->memory.descriptor(), life->block);
     return life;
   }
-  void tell(GuardMessage::Kind kind, std::uint32_t unit, int passed) {
-    const GuardMessage message{.kind = kind, .index = unit, .incarnation = incarnation};
+  void tell(GuardMessage::Kind kind, std::uint32_t rtpu, int passed) {
+    const GuardMessage message{.kind = kind, .index = rtpu, .incarnation = incarnation};
     ASSERT_TRUE(keeper.send(bytes_of(message), passed));
   }
   bool step() { return guard->step(milliseconds(1)); }
@@ -147,7 +147,7 @@ struct GuardTest : ::testing::Test {
   GuardMessage last;
 };
 
-TEST_F(GuardTest, WritesTheFramesOfAUnitThatIsDeadAndNotBefore) {
+TEST_F(GuardTest, WritesTheFramesOfAnRtpuThatIsDeadAndNotBefore) {
   start();
   const Device one, other;
   const auto life = begin();
@@ -166,7 +166,7 @@ TEST_F(GuardTest, WritesTheFramesOfAUnitThatIsDeadAndNotBefore) {
   EXPECT_GT(last.died, Nanoseconds{});
 }
 
-TEST_F(GuardTest, WhatAUnitSaidBeforeItDiedCountsThoughNobodyHadListened) {
+TEST_F(GuardTest, WhatAnRtpuSaidBeforeItDiedCountsThoughNobodyHadListened) {
   start();
   const Device device;
   const auto life = begin();
@@ -252,7 +252,7 @@ TEST_F(GuardTest, TheLineRestsBefore) {
   EXPECT_GE(last.at - last.died, milliseconds(30));
 }
 
-TEST_F(GuardTest, EndsTheUnitOfATaskThatIsSilentForTooLong) {
+TEST_F(GuardTest, EndsTheRtpuOfATaskThatIsSilentForTooLong) {
   start({{TaskId(std::size_t{1}), 20}});
   const Device device;
   const auto life = begin();
@@ -272,7 +272,7 @@ TEST_F(GuardTest, EndsTheUnitOfATaskThatIsSilentForTooLong) {
   EXPECT_EQ(device.heard(), "stop");
 }
 
-TEST_F(GuardTest, EndsTheUnitOfAPrimaryWhoseOutputsAreTooOldWhileAStandbyCanTakeOver) {
+TEST_F(GuardTest, EndsTheRtpuOfAPrimaryWhoseOutputsAreTooOldWhileAStandbyCanTakeOver) {
   make_image({{TaskId(std::size_t{1}), TaskId(std::size_t{2}), milliseconds(40), false}});
   start();
   const auto primary = begin(0), standby = begin(1);

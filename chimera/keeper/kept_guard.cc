@@ -33,8 +33,8 @@ Channel KeptGuard::make_line() {
 
 void KeptGuard::watch(std::uint32_t index, std::uint32_t incarnation, int pidfd) {
   if (!new_line_.is_open()) return;
-  const auto kUnit = GuardMessage::Kind::kUnit, kLine = GuardMessage::Kind::kLine;
-  send({.kind = kUnit, .index = index, .incarnation = incarnation}, pidfd);
+  const auto kRtpu = GuardMessage::Kind::kRtpu, kLine = GuardMessage::Kind::kLine;
+  send({.kind = kRtpu, .index = index, .incarnation = incarnation}, pidfd);
   send({.kind = kLine, .index = index, .incarnation = incarnation}, new_line_.descriptor());
   new_line_ = Channel();
 }

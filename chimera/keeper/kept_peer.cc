@@ -55,7 +55,7 @@ Result<void> KeptPeer::start(const PeerStart& start, Nanoseconds now) {
   if (!ends) return refuse(ends.error());
   const std::string numbers[] = {std::to_string(last_.index), std::to_string(incarnation),
                                  std::to_string(own_process_id())};
-  const std::string line = std::to_string(kUnitGuardDescriptor);
+  const std::string line = std::to_string(kRtpuGuardDescriptor);
   std::vector<const char*> words = {start.program.c_str(), "--peer",   numbers[0].c_str(), "--incarnation",
                                     numbers[1].c_str(),    "--parent", numbers[2].c_str()};
   if (start.has_guard) words.insert(words.end(), {"--guard", line.c_str()});

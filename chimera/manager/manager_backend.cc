@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "chimera/control/switch_reason.h"
-#include "chimera/manager/cause.h"
-#include "chimera/manager/command_text.h"
-#include "chimera/manager/operator_acts.h"
-#include "chimera/manager/status_json.h"
+#include "chimera/control/receipt/switch_reason.h"
+#include "chimera/manager/act/operator_acts.h"
+#include "chimera/manager/answer/status_json.h"
+#include "chimera/manager/state/cause.h"
+#include "chimera/manager/state/command_text.h"
 #include "chimera/runtime/hosted/asked_set.h"
 #include "chimera/text/json.h"
 #include "chimera/text/json_text.h"
@@ -27,23 +27,23 @@ constexpr const char* kSignals[] = {signal_name(Signal::kSpawn), signal_name(Sig
 
 /// The slow method in which the rtpu hangs, and what a person can do; "" if none is known. For a hang in `cycle`, the
 /// data of the error names the method.
-std::string under_way(const ManagerState& world, RtpuId rtpu) {
-  const RtpuRecord& record = world.rtpus[rtpu.index];
-  const PeerSegment& segment = world.peers[rtpu];
+std::string under_way(const ManagerState& state, RtpuId rtpu) {
+  const RtpuRecord& record = state.rtpus[rtpu.index];
+  const PeerSegment& segment = state.peers[rtpu];
   const bool serves = segment.is_there() && segment.block().head().serving.load(std::memory_order_relaxed) != 0;
   if (!serves || !record.is_alive || record.hang.empty()) return "";
   return ": " + record.hang + "; it goes on: `chimera status` shows when it has ended, `kill -KILL " +
-         std::to_string(record.pid) + "` ends the process of " + world.name(rtpu) +
+         std::to_string(record.pid) + "` ends the process of " + state.name(rtpu) +
          ", and the tasks that were ON come back";
 }
 
 /// Error -32006 with the method that the rtpu runs.
-RpcResponse no_answer(const ManagerState& world, RtpuId rtpu, const std::string& text) {
-  const PeerSegment& segment = world.peers[rtpu];
-  const std::string running = segment.is_there() ? running_text(world.spec(), segment.block().head().running) : "";
-  const std::string why = under_way(world, rtpu);
+RpcResponse no_answer(const ManagerState& state, RtpuId rtpu, const std::string& text) {
+  const PeerSegment& segment = state.peers[rtpu];
+  const std::string running = segment.is_there() ? running_text(state.spec(), segment.block().head().running) : "";
+  const std::string why = under_way(state, rtpu);
   return RpcResponse::error(control::kNoAnswer, text + why,
-                       {{"rtpu", world.name(rtpu)}, {"running", running.empty() ? Json() : Json(running)}});
+                       {{"rtpu", state.name(rtpu)}, {"running", running.empty() ? Json() : Json(running)}});
 }
 
 std::variant<TaskBits, RpcResponse> named_set(const ApplicationSpec& spec, const std::string& name) {
@@ -57,32 +57,32 @@ std::variant<TaskBits, RpcResponse> named_set(const ApplicationSpec& spec, const
 }
 
 /// The tasks that `switch` requests: a configuration, or the tasks that are ON plus `on` minus `off`.
-std::variant<TaskBits, RpcResponse> wanted_tasks(const ManagerState& world, const Json& parameters) {
+std::variant<TaskBits, RpcResponse> wanted_tasks(const ManagerState& state, const Json& parameters) {
   const bool is_named = parameters.contains("configuration");
   const bool is_listed = parameters.contains("on") || parameters.contains("off");
   if (is_named == is_listed)
     return RpcResponse::error(control::kBadParameters, "either 'configuration', or 'on' and 'off'",
                               {{"where", is_named ? "configuration" : "on"}});
-  if (is_named) return named_set(world.spec(), parameters.at("configuration").as_string());
+  if (is_named) return named_set(state.spec(), parameters.at("configuration").as_string());
   TaskLists lists;
   for (const char* const key : {"on", "off"}) {
     if (!parameters.contains(key)) continue;
-    auto found = tasks_named(world, control::texts(parameters, key));
+    auto found = tasks_named(state, control::texts(parameters, key));
     if (auto* refused = std::get_if<RpcResponse>(&found)) return std::move(*refused);
     (key == std::string_view("on") ? lists.plus : lists.minus) = bits_of(std::get<0>(found));
   }
-  AskedSet asked = asked_set(world.spec(), world.tasks_on(), lists);
+  AskedSet asked = asked_set(state.spec(), state.tasks_on(), lists);
   if (asked) return asked.tasks;
   return RpcResponse::refused("set", asked.why, "", asked.remedy);
 }
 
 }  // namespace
 
-RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAnswer& answer) {
+RpcResponse signal_answer(const ManagerState& state, const subsystem::CommandAnswer& answer) {
   if (answer.is_accepted()) {
     Json tasks = Json::array();
     for (const subsystem::TaskOutcome& outcome : answer.outcomes) {
-      tasks.push_back({{"task", world.name(outcome.task)},
+      tasks.push_back({{"task", state.name(outcome.task)},
                        {"before", state_name(outcome.before)},
                        {"after", state_name(outcome.after)}});
       if (outcome.is_already) tasks.elements().back()["already"] = true;
@@ -91,35 +91,35 @@ RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAns
   }
   const auto& [kind, reason, remedy] = answer.refusal;
   if (kind == RefusalKind::kNoAnswer && answer.at.is_valid())
-    return no_answer(world, world.spec().tasks[answer.at.index].rtpu, answer.refusal.text());
+    return no_answer(state, state.spec().tasks[answer.at.index].rtpu, answer.refusal.text());
   return RpcResponse::refused(subsystem::refusal_kind_name(kind), answer.refusal.text(),
-                              answer.at.is_valid() ? world.name(answer.at) : "", remedy);
+                              answer.at.is_valid() ? state.name(answer.at) : "", remedy);
 }
 
-RpcResponse switch_answer(const ManagerState& world, const SwitchOutcome& outcome) {
+RpcResponse switch_answer(const ManagerState& state, const SwitchOutcome& outcome) {
   const SwitchReceipt& receipt = outcome.receipt;
   const bool is_named = receipt.after != kNoSet;
-  const Json to = is_named ? Json(std::string(world.spec().sets[receipt.after].name)) : Json();
+  const Json to = is_named ? Json(std::string(state.spec().sets[receipt.after].name)) : Json();
   if (receipt.end == SwitchEnd::kNothingToDo) return RpcResponse::good({{"to", to}, {"end", "nothing-to-do"}});
   if (receipt.end != SwitchEnd::kRefused)
     return RpcResponse::ready(std::make_shared<const std::string>(outcome.json));
-  const std::string what = "switch to " + control::set_text(receipt.after, world.spec()) + " is refused: " +
-                           control::reason_text(receipt, world.spec());
+  const std::string what = "switch to " + control::set_text(receipt.after, state.spec()) + " is refused: " +
+                           control::reason_text(receipt, state.spec());
   return RpcResponse::refused(control::reason_word(receipt.why), what,
-                              receipt.task.is_valid() ? world.name(receipt.task) : "", outcome.remedy);
+                              receipt.task.is_valid() ? state.name(receipt.task) : "", outcome.remedy);
 }
 
-Json drill_json(const ManagerState& world, const DrillOutcome& outcome) {
+Json drill_json(const ManagerState& state, const DrillOutcome& outcome) {
   Json tasks = Json::array();
   for (const DrillPart& part : outcome.tasks) {
     const bool is_safe = part.verdict == DrillVerdict::kSafe;
-    tasks.push_back({{"task", world.name(part.task)},
+    tasks.push_back({{"task", state.name(part.task)},
                      {"verdict", verdict_word(part.verdict)},
                      {"after_ns", is_safe ? Json(part.after.count) : Json()}});
   }
   Json killed;
   if (const DrillKill& kill = outcome.killed; kill.rtpu.is_valid())
-    killed = {{"rtpu", world.name(kill.rtpu)},
+    killed = {{"rtpu", state.name(kill.rtpu)},
               {"is_told", kill.is_told},
               {"written", kill.good},
               {"lost", kill.bad},
@@ -130,22 +130,22 @@ Json drill_json(const ManagerState& world, const DrillOutcome& outcome) {
           {"killed", std::move(killed)}};
 }
 
-Json plan_json(const ManagerState& world, const ForeseenSwitch& foreseen) {
+Json plan_json(const ManagerState& state, const ForeseenSwitch& foreseen) {
   const SwitchReceipt& receipt = foreseen.receipt;
-  const ApplicationSpec& spec = world.spec();
+  const ApplicationSpec& spec = state.spec();
   const auto names = [&](std::span<const TaskId> tasks) {
     Json list = Json::array();
-    for (const TaskId task : tasks) list.push_back(world.name(task));
+    for (const TaskId task : tasks) list.push_back(state.name(task));
     return list;
   };
   Json variables = Json::array();
   for (const Handover& handover : foreseen.plan.handovers)
     variables.push_back({{"variable", spec.variables[handover.variable.index].name},
-                         {"from", handover.from.task.is_valid() ? Json(world.name(handover.from.task)) : Json()},
-                         {"to", world.name(handover.to.task)}});
+                         {"from", handover.from.task.is_valid() ? Json(state.name(handover.from.task)) : Json()},
+                         {"to", state.name(handover.to.task)}});
   Json late_off;
   if (foreseen.late_off.is_valid())
-    late_off = {{"task", world.name(foreseen.late_off)}, {"needs_ns", foreseen.needed.count}};
+    late_off = {{"task", state.name(foreseen.late_off)}, {"needs_ns", foreseen.needed.count}};
   const bool is_refused = receipt.end == SwitchEnd::kRefused;
   return {{"from", receipt.before == kNoSet ? Json() : Json(spec.sets[receipt.before].name)},
           {"to", receipt.after == kNoSet ? Json() : Json(spec.sets[receipt.after].name)},
@@ -206,7 +206,7 @@ void ManagerBackend::analyse(Question::Kind kind, const Request& request) {
   Question question{kind, text_at(request.parameters, "file", "text"), request.parameters.at("text").as_string()};
   if (questions_ != nullptr)
     return questions_->ask(std::move(question), request.caller.connection, request.reply, now());
-  request.reply(RpcResponse::ready(std::make_shared<const std::string>(answer_of(question, world().bundle.library))));
+  request.reply(RpcResponse::ready(std::make_shared<const std::string>(answer_of(question, state().bundle.library))));
 }
 
 void ManagerBackend::signal(const Request& request) {
@@ -217,54 +217,54 @@ void ManagerBackend::signal(const Request& request) {
     return request.reply(RpcResponse::unknown(
         "no signal '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near));
   }
-  auto tasks = tasks_named(world(), control::texts(request.parameters, "tasks"));
+  auto tasks = tasks_named(state(), control::texts(request.parameters, "tasks"));
   if (const auto* refused = std::get_if<RpcResponse>(&tasks)) return request.reply(*refused);
-  if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
+  if (state().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
   const auto wanted = static_cast<Signal>(at - std::begin(kSignals));
-  if (wanted == Signal::kOn && driver_.switches().is_under_way())
-    return request.reply(RpcResponse::refused("under-way", driver_.switches().under_way() + ", is under way", "",
+  if (wanted == Signal::kOn && loop_.switches().is_under_way())
+    return request.reply(RpcResponse::refused("under-way", loop_.switches().under_way() + ", is under way", "",
                                               "ask again when it is over"));
-  driver_.command(wanted, std::get<0>(std::move(tasks)),
+  loop_.command(wanted, std::get<0>(std::move(tasks)),
                   [this, reply = request.reply](const subsystem::CommandAnswer& answer) {
-                    reply(signal_answer(world(), answer));
+                    reply(signal_answer(state(), answer));
                   });
 }
 
 void ManagerBackend::ring(const Request& request) {
-  const auto named = tasks_named(world(), control::texts(request.parameters, "tasks"));
+  const auto named = tasks_named(state(), control::texts(request.parameters, "tasks"));
   if (const auto* refused = std::get_if<RpcResponse>(&named)) return request.reply(*refused);
   const auto& tasks = std::get<0>(named);
-  if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
-  const std::string words = command_text(world().spec(), Signal::kWakeup, tasks);
+  if (state().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
+  const std::string words = command_text(state().spec(), Signal::kWakeup, tasks);
   const auto refuse = [&](const RpcResponse& answer, TaskId task) {
-    world().tell("command", task, RtpuId{}, words + ": refused: " + answer.message, now());
+    state().tell("command", task, RtpuId{}, words + ": refused: " + answer.message, now());
     request.reply(answer);
   };
   for (const TaskId task : tasks)
-    if (const RpcResponse judged = judge_ring(world(), task); !judged.is_good()) return refuse(judged, task);
-  if (const RtpuId full = driver_.ring(tasks); full.is_valid())
-    return refuse(no_answer(world(), full, "no answer from rtpu " + world().name(full)), TaskId{});
-  world().tell("command", TaskId{}, RtpuId{}, words + ": done", now());
+    if (const RpcResponse judged = judge_ring(state(), task); !judged.is_good()) return refuse(judged, task);
+  if (const RtpuId full = loop_.ring(tasks); full.is_valid())
+    return refuse(no_answer(state(), full, "no answer from rtpu " + state().name(full)), TaskId{});
+  state().tell("command", TaskId{}, RtpuId{}, words + ": done", now());
   Json names = Json::array();
-  for (const TaskId task : tasks) names.push_back(world().name(task));
+  for (const TaskId task : tasks) names.push_back(state().name(task));
   request.reply(RpcResponse::good({{"tasks", std::move(names)}}));
 }
 
 void ManagerBackend::set(const Request& request) {
-  request.reply(set_values(world(), request.parameters.at("values")));
+  request.reply(set_values(state(), request.parameters.at("values")));
 }
 
 void ManagerBackend::flag(const Request& request) {
-  request.reply(set_flag(world(), request.parameters.at("up").as_bool()));
+  request.reply(set_flag(state(), request.parameters.at("up").as_bool()));
 }
 
 void ManagerBackend::receipts(const Request& request) {
-  request.reply(receipts_answer(driver_.receipts(), control::number(request.parameters, "last", 20)));
+  request.reply(receipts_answer(loop_.receipts(), control::number(request.parameters, "last", 20)));
 }
 
 /// The requested set of tasks. None: the answer with the refusal has been sent.
 std::optional<TaskBits> ManagerBackend::wanted(const Request& request) const {
-  auto found = wanted_tasks(world(), request.parameters);
+  auto found = wanted_tasks(state(), request.parameters);
   if (const auto* refused = std::get_if<RpcResponse>(&found)) {
     request.reply(*refused);
     return std::nullopt;
@@ -275,15 +275,15 @@ std::optional<TaskBits> ManagerBackend::wanted(const Request& request) const {
 void ManagerBackend::plan(const Request& request) {
   const auto to = wanted(request);
   if (!to) return;
-  request.reply(RpcResponse::good(plan_json(world(), driver_.switches().foresee(*to))));
+  request.reply(RpcResponse::good(plan_json(state(), loop_.switches().foresee(*to))));
 }
 
 void ManagerBackend::cancel(const Request& request) {
-  SwitchCoordinator& switches = driver_.switches();
+  SwitchCoordinator& switches = loop_.switches();
   if (!switches.is_under_way())
     return request.reply(RpcResponse::refused("no-switch", "no switch is under way", ""));
   const auto answer = [this, reply = request.reply](const SwitchOutcome& outcome) {
-    reply(switch_answer(world(), outcome));
+    reply(switch_answer(state(), outcome));
   };
   if (!switches.cancel({request.caller.role, request.caller.user}, answer))
     request.reply(RpcResponse::refused(
@@ -293,13 +293,13 @@ void ManagerBackend::cancel(const Request& request) {
 void ManagerBackend::switch_to(const Request& request) {
   const auto to = wanted(request);
   if (!to) return;
-  if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
+  if (state().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
   const std::uint64_t wait_ms = control::number(request.parameters, "wait_ms", 10'000);
   const Nanoseconds wait = milliseconds(static_cast<std::int64_t>(wait_ms));
-  const SwitchRequest asked{set_of(world().spec(), *to), SwitchCause::kScript, {}};
-  driver_.switches().ask(asked, *to, {request.caller.role, request.caller.user}, wait, now(),
+  const SwitchRequest asked{set_of(state().spec(), *to), SwitchCause::kScript, {}};
+  loop_.switches().ask(asked, *to, {request.caller.role, request.caller.user}, wait, now(),
                          [this, reply = request.reply](const SwitchOutcome& outcome) {
-                           reply(switch_answer(world(), outcome));
+                           reply(switch_answer(state(), outcome));
                          });
 }
 
@@ -307,15 +307,15 @@ void ManagerBackend::drill(const Request& request) {
   const auto refuse = [&](const char* kind, const std::string& why, const char* remedy) {
     request.reply(RpcResponse::refused(kind, "the drill is refused: " + why, "", remedy));
   };
-  if (world().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
-  if (driver_.drill().is_under_way())
+  if (state().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
+  if (loop_.drill().is_under_way())
     return refuse("under-way", "another one is under way", "ask again when it is over");
-  if (driver_.switches().is_under_way())
-    return refuse("under-way", driver_.switches().under_way() + ", is under way", "ask again when it is over");
-  if (!world().logic.is_settled())
+  if (loop_.switches().is_under_way())
+    return refuse("under-way", loop_.switches().under_way() + ", is under way", "ask again when it is over");
+  if (!state().logic.is_settled())
     return refuse("under-way", "tasks are being brought up",
                   "`chimera status` shows which; ask again when they are ON");
-  if (const Json flag = flag_json(world()); truth_at(flag, "up"))
+  if (const Json flag = flag_json(state()); truth_at(flag, "up"))
     return refuse("flag-up", "the flag is up already, so it would measure nothing", "`chimera status` says by whom");
   const std::uint64_t wait_ms = control::number(request.parameters, "wait_ms", 10'000);
   const Nanoseconds wait = milliseconds(static_cast<std::int64_t>(wait_ms));
@@ -323,7 +323,7 @@ void ManagerBackend::drill(const Request& request) {
   if (request.parameters.contains("kill")) {
     const std::string& name = request.parameters.at("kill").as_string();
     std::vector<std::string> names;
-    for (const RtpuSpec& rtpu : world().spec().rtpus) names.emplace_back(rtpu.name);
+    for (const RtpuSpec& rtpu : state().spec().rtpus) names.emplace_back(rtpu.name);
     const auto at = std::ranges::find(names, name);
     const std::string near = nearest(name, names);
     if (at == names.end())
@@ -331,15 +331,15 @@ void ManagerBackend::drill(const Request& request) {
           "no rtpu '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near));
     to_kill = RtpuId(static_cast<std::size_t>(at - names.begin()));
   }
-  driver_.drill().begin(wait, to_kill, now(), [this, reply = request.reply](const DrillOutcome& outcome) {
-    reply(RpcResponse::good(drill_json(world(), outcome)));
+  loop_.drill().begin(wait, to_kill, now(), [this, reply = request.reply](const DrillOutcome& outcome) {
+    reply(RpcResponse::good(drill_json(state(), outcome)));
   });
 }
 
-void ManagerBackend::save(const Request& request) { request.reply(saved_values(world())); }
+void ManagerBackend::save(const Request& request) { request.reply(saved_values(state())); }
 
 void ManagerBackend::end(const Request& request) {
-  driver_.end(static_cast<std::int32_t>(std::min<std::uint64_t>(control::number(request.parameters, "code", 0), 255)));
+  loop_.end(static_cast<std::int32_t>(std::min<std::uint64_t>(control::number(request.parameters, "code", 0), 255)));
   request.reply(RpcResponse::good(Json::object()));
 }
 

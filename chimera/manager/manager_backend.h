@@ -8,25 +8,25 @@
 #include <string>
 
 #include "chimera/control/control_backend.h"
+#include "chimera/manager/answer/questions.h"
 #include "chimera/manager/manager_loop.h"
-#include "chimera/manager/manager_state.h"
-#include "chimera/manager/questions.h"
 #include "chimera/manager/read_methods.h"
+#include "chimera/manager/state/manager_state.h"
 #include "chimera/manager/subscription_feeds.h"
 #include "chimera/text/json.h"
 
 namespace chimera::manager {
 
 /// The states of the tasks before and after, or the refusal with its kind, place and remedy. Context: setup.
-control::RpcResponse signal_answer(const ManagerState& world, const subsystem::CommandAnswer& answer);
+control::RpcResponse signal_answer(const ManagerState& state, const subsystem::CommandAnswer& answer);
 
 /// The receipt of a switch, or the reason why it did not begin. Context: setup.
-control::RpcResponse switch_answer(const ManagerState& world, const SwitchOutcome& outcome);
+control::RpcResponse switch_answer(const ManagerState& state, const SwitchOutcome& outcome);
 
 /// The results of a drill, by task. Context: setup.
-Json drill_json(const ManagerState& world, const DrillOutcome& outcome);
+Json drill_json(const ManagerState& state, const DrillOutcome& outcome);
 /// The plan of a switch now, or the reason why it would be refused. Context: setup.
-Json plan_json(const ManagerState& world, const ForeseenSwitch& foreseen);
+Json plan_json(const ManagerState& state, const ForeseenSwitch& foreseen);
 
 /// The last `n` receipts, and the state of their file. Context: setup.
 control::RpcResponse receipts_answer(const ReceiptArchive& archive, std::size_t n);
@@ -34,9 +34,9 @@ control::RpcResponse receipts_answer(const ReceiptArchive& archive, std::size_t 
 /// Context: setup.
 class ManagerBackend final : public control::ControlBackend {
  public:
-  /// `driver` and `questions` outlive it. If `questions` is null, analyses are made in the call.
-  explicit ManagerBackend(ManagerLoop& driver, Questions* questions = nullptr)
-      : driver_(driver), questions_(questions), reads_(driver.world()), feeds_(driver.world()) {}
+  /// `loop` and `questions` outlive it. If `questions` is null, analyses are made in the call.
+  explicit ManagerBackend(ManagerLoop& loop, Questions* questions = nullptr)
+      : loop_(loop), questions_(questions), reads_(loop.state()), feeds_(loop.state()) {}
 
   void call(const control::MethodRule& method, const Json& parameters, const control::Caller& caller,
             control::Reply reply) override;
@@ -77,11 +77,11 @@ class ManagerBackend final : public control::ControlBackend {
   void end(const Request& request);
   void unknown(const Request& request);
 
-  ManagerState& world() const noexcept { return driver_.world(); }
+  ManagerState& state() const noexcept { return loop_.state(); }
   std::optional<TaskBits> wanted(const Request& request) const;
   void analyse(Question::Kind kind, const Request& request);
 
-  ManagerLoop& driver_;
+  ManagerLoop& loop_;
   Questions* questions_;
   ReadMethods reads_;
   SubscriptionFeeds feeds_;

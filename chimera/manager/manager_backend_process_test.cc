@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <optional>
 
-#include "chimera/manager/large_readings.h"
-#include "chimera/manager/operator_acts.h"
+#include "chimera/manager/act/operator_acts.h"
+#include "chimera/manager/answer/large_readings.h"
+#include "chimera/manager/answer/value_json.h"
 #include "chimera/manager/testing/fake_subsystem.h"
-#include "chimera/manager/value_json.h"
 #include "chimera/runtime/task_word.h"
 #include "chimera/text/json.h"
 
@@ -26,13 +26,13 @@ class ManagerBackendTest : public ::testing::Test {
   explicit ManagerBackendTest(const std::string& text = kFakeText) : fake_(text) {}
   void SetUp() override {
     fake_.start_manager();
-    ASSERT_TRUE(fake_.until([&] { return fake_.driver().is_ready(); }));
-    backend_ = std::make_unique<ManagerBackend>(fake_.driver());
+    ASSERT_TRUE(fake_.until([&] { return fake_.loop().is_ready(); }));
+    backend_ = std::make_unique<ManagerBackend>(fake_.loop());
     ASSERT_TRUE(fake_.until([&] { return fake_.n_rtpus() == 0 || (!fake_.told("started").empty() && all_cycle()); }));
   }
   std::uint64_t cycles(std::string_view task) {
     const TaskId id = fake_.task(task);
-    return world().peers.of(id).block().profile(id).cycles;
+    return state().peers.of(id).block().profile(id).cycles;
   }
   bool all_cycle() {
     return std::ranges::all_of(fake_.spec().tasks, [this](const TaskSpec& task) { return cycles(task.name) >= 3; });
@@ -56,13 +56,13 @@ class ManagerBackendTest : public ::testing::Test {
   }
   /// "CODE MESSAGE DATA" of the answer to a signal that was refused because of the task `law`.
   std::string answer_to(RefusalKind kind, const char* reason, const char* remedy) {
-    return text_of(signal_answer(world(), {1, {kind, reason, remedy}, fake_.task("law"), {}}));
+    return text_of(signal_answer(state(), {1, {kind, reason, remedy}, fake_.task("law"), {}}));
   }
   static std::string text_of(const control::RpcResponse& answer) {
     if (answer.is_good()) return "accepted " + answer.result->dump();
     return std::to_string(answer.code) + " " + answer.message + (answer.data ? " " + answer.data->dump() : "");
   }
-  ManagerState& world() { return fake_.driver().world(); }
+  ManagerState& state() { return fake_.loop().state(); }
 
   FakeSubsystem fake_;
   std::unique_ptr<ManagerBackend> backend_;
@@ -99,7 +99,7 @@ TEST_F(ManagerBackendTest, ADrillBeginsWithTheFlagDown) {
 
 TEST_F(ManagerBackendTest, NoDrillWhileASwitchIsUnderWay) {
   const Asker ann{control::Role::kOperate, 4'000'000'001u};
-  fake_.driver().switches().ask({1, SwitchCause::kScript, {}}, ann, seconds(10), now(),
+  fake_.loop().switches().ask({1, SwitchCause::kScript, {}}, ann, seconds(10), now(),
                                 [](const SwitchOutcome&) {});
   EXPECT_EQ(refusal("drill", Json::object()),
             "-32000 the drill is refused: switch 1 to 'rest', asked for by operate:4000000001, is under way "
@@ -163,19 +163,19 @@ TEST_F(ManagerBackendTest, DescribeTellsWhatVerificationKnows) {
 }
 
 TEST_F(ManagerBackendTest, AVariableThatIsNamedTwiceIsReadOnce) {
-  const auto named = variables_named(world(), {"kp", "x", "kp"});
-  EXPECT_EQ(std::get<0>(named), (std::vector{*world().readings->find("kp"), *world().readings->find("x")}));
+  const auto named = variables_named(state(), {"kp", "x", "kp"});
+  EXPECT_EQ(std::get<0>(named), (std::vector{*state().readings->find("kp"), *state().readings->find("x")}));
 }
 
 TEST_F(ManagerBackendTest, ReadingsInPiecesAreTheSameAsAtOnce) {
   fake_.rtpu(0).die();  // so that no task writes during the test
   fake_.rtpu(1).die();
-  const std::vector<VariableId> variables = std::get<0>(variables_named(world(), {}));
-  LargeReadings pieces(world(), variables, R"({"values":)", "}");
+  const std::vector<VariableId> variables = std::get<0>(variables_named(state(), {}));
+  LargeReadings pieces(state(), variables, R"({"values":)", "}");
   std::string text;
   while (pieces.append_to(text)) {
   }
-  Json made = Json::parse(text)["values"], whole = readings_json(world(), variables, now());
+  Json made = Json::parse(text)["values"], whole = readings_json(state(), variables, now());
   ASSERT_GT(made.size(), 3u);
   for (Json* one : {&made, &whole})
     for (const auto& [name, value] : one->items()) (*one)[name]["age_ns"] = nullptr;
@@ -183,7 +183,7 @@ TEST_F(ManagerBackendTest, ReadingsInPiecesAreTheSameAsAtOnce) {
 }
 
 TEST_F(ManagerBackendTest, NoReadingsInPiecesAreAnEmptyObject) {
-  LargeReadings pieces(world(), {}, R"({"values":)", "}");
+  LargeReadings pieces(state(), {}, R"({"values":)", "}");
   std::string text;
   while (pieces.append_to(text)) {
   }
@@ -251,7 +251,7 @@ TEST_F(ManagerBackendTest, SetPublishesAndSaveWritesItBackInTheWordsOfADescripti
 TEST_F(ManagerBackendTest, TheOperatorsFlagStaysUntilItIsLowered) {
   EXPECT_EQ(good("flag", {{"up", true}}), (Json{{"up", true}, {"by", {"operator"}}}));
   EXPECT_EQ(good("status")["flag"], (Json{{"up", true}, {"by", {"operator"}}}));
-  EXPECT_EQ(world().own.block().head().flag, 4u);
+  EXPECT_EQ(state().own.block().head().flag, 4u);
   EXPECT_EQ(good("flag", {{"up", false}}), (Json{{"up", false}, {"by", Json::array()}}));
   EXPECT_EQ(good("status")["flag"]["up"], false);
   EXPECT_EQ(fake_.told("flag"), "the operator raised the flag\nthe operator lowered the flag\n");
@@ -279,7 +279,7 @@ TEST_F(ManagerBackendTest, WhyFindsTheProducerThatIsOff) {
 
 TEST_F(ManagerBackendTest, WhySeesADeadRtpu) {
   fake_.kill_rtpu(0, SIGKILL);
-  ASSERT_TRUE(fake_.until([&] { return !world().rtpus[0].is_alive; }));
+  ASSERT_TRUE(fake_.until([&] { return !state().rtpus[0].is_alive; }));
   const std::string verdict = good("why", {{"variable", "x"}})["verdict"].as_string();
   EXPECT_TRUE(verdict.starts_with("x: the rtpu servo of its producer sensor is dead: ")) << verdict;
 }
@@ -311,17 +311,17 @@ TEST_F(ManagerBackendTest, SubscribersOfEventsMissNone) {
     EXPECT_EQ((*news)["lost"], 0);
     for (const Json& event : (*news)["events"]) EXPECT_EQ(event["number"], next++);
   }
-  EXPECT_EQ(next, world().log.last() + 1);
+  EXPECT_EQ(next, state().log.last() + 1);
   backend_->close(7);
 }
 
 TEST_F(ManagerBackendTest, SubscribersOfEventsThatAreGoneAreToldHowMany) {
   ASSERT_TRUE(backend_->open(7, {{"to", "events"}, {"since", 1}}).is_good());
-  for (std::size_t i = 0; i < kEventsKept + 5; ++i) world().tell("command", TaskId{}, RtpuId{}, "x", now());
+  for (std::size_t i = 0; i < kEventsKept + 5; ++i) state().tell("command", TaskId{}, RtpuId{}, "x", now());
   const auto news = backend_->pull(7);
   ASSERT_NE(news, nullptr);
-  EXPECT_EQ((*news)["lost"], world().log.first() - 1);
-  EXPECT_EQ((*news)["events"][0]["number"], world().log.first());
+  EXPECT_EQ((*news)["lost"], state().log.first() - 1);
+  EXPECT_EQ((*news)["events"][0]["number"], state().log.first());
 }
 
 TEST_F(ManagerBackendTest, SubscriptionsOfStateGiveTheLatest) {
@@ -340,7 +340,7 @@ TEST_F(ManagerBackendTest, SubscriptionsOfTheTapGiveRows) {
   EXPECT_EQ((*news)["first"], 0);
   EXPECT_GT((*news)["rows"].size(), 0u);
   backend_->close(1);
-  EXPECT_FALSE(world().own.block().view().is_tapped(fake_.task("sensor")));
+  EXPECT_FALSE(state().own.block().view().is_tapped(fake_.task("sensor")));
 }
 
 TEST_F(ManagerBackendTest, SubscriptionsOfTheTapMayBeginWithTheOldestRecord) {
@@ -389,7 +389,7 @@ TEST_F(ManagerBackendTest, AnswersARefusedSignalWithItsKindItsPlaceAndItsRemedyW
             R"(-32000 the smallest legal set is: empty {"kind":"fault","where":"law"})");
 }
 
-TEST_F(ManagerBackendTest, AnswersForAUnitThatIsSilentWithItsName) {
+TEST_F(ManagerBackendTest, AnswersForAnRtpuThatIsSilentWithItsName) {
   EXPECT_EQ(answer_to(RefusalKind::kNoAnswer, "silence", ""),
             R"(-32006 silence {"rtpu":"spare","running":null})");
 }
@@ -397,7 +397,7 @@ TEST_F(ManagerBackendTest, AnswersForAUnitThatIsSilentWithItsName) {
 TEST_F(ManagerBackendTest, AnswersASignalWithTheStatesOfEachTask) {
   const subsystem::CommandAnswer done{1, {}, TaskId{}, {{fake_.task("law"), State::kOn, State::kOff, false},
                                                         {fake_.task("filter"), State::kOff, State::kOff, true}}};
-  const control::RpcResponse answer = signal_answer(world(), done);
+  const control::RpcResponse answer = signal_answer(state(), done);
   ASSERT_TRUE(answer.is_good());
   EXPECT_EQ((*answer.result)["tasks"],
             Json::array({Json{{"task", "law"}, {"before", "ON"}, {"after", "OFF"}},
@@ -409,7 +409,7 @@ class ServedTest : public ManagerBackendTest {
   ServedTest() : ManagerBackendTest(kServedText) {}
 };
 
-TEST_F(ServedTest, RingsReachTheUnitAsOftenAsTheTaskIsNamed) {
+TEST_F(ServedTest, RingsReachTheRtpuAsOftenAsTheTaskIsNamed) {
   EXPECT_EQ(good("ring", {{"tasks", {"lamp"}}}), (Json{{"tasks", {"lamp"}}}));
   EXPECT_EQ(good("ring", {{"tasks", {"lamp", "lamp"}}})["tasks"].size(), 2u);
   ASSERT_TRUE(fake_.until([&] { return fake_.rtpu(0).rings == 3; }));
@@ -449,7 +449,7 @@ TEST_F(ServedTest, ARingThatNobodyWouldAnswerIsRefusedAndRingsNothing) {
   EXPECT_EQ(refusal("ring", {{"tasks", {"lamp"}}}), "-32007 the subsystem is ending");
 }
 
-TEST_F(ServedTest, MoreRingsThanAUnitTakesAreRefusedAsAWhole) {
+TEST_F(ServedTest, MoreRingsThanAnRtpuTakesAreRefusedAsAWhole) {
   fake_.rtpu(0).is_deaf = true;
   const Json many = {{"tasks", std::vector<std::string>(kPosts, "lamp")}};
   (void)good("ring", {{"tasks", {"lamp"}}});

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "chimera/control/state_folder.h"
-#include "chimera/manager/guard_news.h"
+#include "chimera/manager/watch/guard_news.h"
 #include "chimera/platform/descriptor.h"
 #include "chimera/platform/wake.h"
 
@@ -69,11 +69,11 @@ Result<std::unique_ptr<ManagerLoop>> ManagerLoop::start(const Inherited& inherit
                                                         std::int32_t keeper_pid) {
   auto mapped = std::make_unique<Mapped>();
   if (const auto opened = mapped->open(inherited); !opened) return opened.error();
-  std::unique_ptr<ManagerLoop> driver(new ManagerLoop(std::move(mapped)));
-  const auto complete = driver->take_inventory(incarnation, keeper_pid);
+  std::unique_ptr<ManagerLoop> loop(new ManagerLoop(std::move(mapped)));
+  const auto complete = loop->take_inventory(incarnation, keeper_pid);
   if (!complete) return complete.error();
   if (!*complete) return std::unique_ptr<ManagerLoop>();
-  return driver;
+  return loop;
 }
 
 /// Reads all messages of the keeper before `complete`. Only after them it is known if there is a predecessor.
@@ -104,23 +104,23 @@ Result<bool> ManagerLoop::take_inventory(std::uint32_t incarnation, std::int32_t
   if (!own) return own.error();
   KeeperMessage made;
   if (!mapped_->channel.send(bytes_of(made), own->descriptor())) return false;
-  world_ = std::make_unique<ManagerState>(*std::move(mapped_->bundle), *std::move(peers), *std::move(own),
+  state_ = std::make_unique<ManagerState>(*std::move(mapped_->bundle), *std::move(peers), *std::move(own),
                                           mapped_->decision_page(), mapped_->keeper_page());
-  world_->keeper_pid = keeper_pid;
-  fleet_ = std::make_unique<RtpuLinks>(*world_);
-  watch_ = std::make_unique<UnitWatch>(*world_);
-  health_ = std::make_unique<UnitHealth>(*world_);
-  auto bell = BellWatch::start(Doorbell(mapped_->decision_page().bells[world_->own.peer()].word));
+  state_->keeper_pid = keeper_pid;
+  rtpu_links_ = std::make_unique<RtpuLinks>(*state_);
+  watch_ = std::make_unique<RtpuWatch>(*state_);
+  health_ = std::make_unique<RtpuHealth>(*state_);
+  auto bell = BellWatch::start(Doorbell(mapped_->decision_page().bells[state_->own.peer()].word));
   if (!bell) return bell.error();
   bell_ = *std::move(bell);
-  steps_ = std::make_unique<StepRunner>(*world_, *fleet_, mapped_->channel);
-  auto receipts = ReceiptArchive::start(*world_, control::state_folder_of(std::string(world_->spec().name)));
+  steps_ = std::make_unique<StepRunner>(*state_, *rtpu_links_, mapped_->channel);
+  auto receipts = ReceiptArchive::start(*state_, control::state_folder_of(std::string(state_->spec().name)));
   if (!receipts) return receipts.error();
   receipts_ = *std::move(receipts);
-  switches_ = std::make_unique<SwitchCoordinator>(*world_, *receipts_);
-  wishes_ = std::make_unique<SwitchWishes>(*world_, *switches_);
-  takeovers_ = std::make_unique<TakeoverReceipts>(*world_, *receipts_);
-  drill_ = std::make_unique<Drill>(*world_, [this](RtpuId rtpu) { end_unit(rtpu); });
+  switches_ = std::make_unique<SwitchCoordinator>(*state_, *receipts_);
+  wishes_ = std::make_unique<SwitchWishes>(*state_, *switches_);
+  takeovers_ = std::make_unique<TakeoverReceipts>(*state_, *receipts_);
+  drill_ = std::make_unique<Drill>(*state_, [this](RtpuId rtpu) { end_rtpu(rtpu); });
   begun_ = counters_due_ = now();
   say_hello();
   steps_->begin();
@@ -130,12 +130,12 @@ Result<bool> ManagerLoop::take_inventory(std::uint32_t incarnation, std::int32_t
 
 /// Logs the first event of every manager. The events of its predecessors are lost, and only their numbers go on.
 void ManagerLoop::say_hello() {
-  const std::uint64_t gone = world_->log.last();
+  const std::uint64_t gone = state_->log.last();
   std::string text = "manager started";
-  if (world_->own.incarnation() > 1)
-    text += " again, incarnation " + std::to_string(world_->own.incarnation()) +
+  if (state_->own.incarnation() > 1)
+    text += " again, incarnation " + std::to_string(state_->own.incarnation()) +
             (gone == 0 ? "" : "; events 1 to " + std::to_string(gone) + " are lost");
-  world_->tell("manager-started", TaskId{}, RtpuId{}, text, now());
+  state_->tell("manager-started", TaskId{}, RtpuId{}, text, now());
 }
 
 bool ManagerLoop::take_messages() {
@@ -156,20 +156,20 @@ bool ManagerLoop::take_messages() {
 void ManagerLoop::take(const KeeperMessage& message, int passed) {
   using Kind = KeeperMessage::Kind;
   Events events;
-  if (message.kind == Kind::kPeer && passed >= 0 && message.index < world_->peers.n_rtpus()) {
+  if (message.kind == Kind::kPeer && passed >= 0 && message.index < state_->peers.n_rtpus()) {
     if (is_ready_) takeovers_->look(now());  // reads the words of the incarnation before, which are unmapped next
-    fleet_->mapped(message, std::exchange(passed, -1));
+    rtpu_links_->mapped(message, std::exchange(passed, -1));
   } else if (message.kind == Kind::kStarted) {
-    fleet_->started(message);
+    rtpu_links_->started(message);
   } else if (message.kind == Kind::kEnded) {
-    fleet_->ended(message, events);
+    rtpu_links_->ended(message, events);
   } else if (message.kind == Kind::kFinish) {
     is_finished_ = true;
   } else if (message.kind == Kind::kHung) {
     watch_->told(message, now());
   } else {
     drill_->take(message);
-    tell_of_guard(*world_, message, now());
+    tell_of_guard(*state_, message, now());
   }
   const OwnedDescriptor unused(passed);
   steps_->step(events);
@@ -177,10 +177,10 @@ void ManagerLoop::take(const KeeperMessage& message, int passed) {
 
 void ManagerLoop::look() {
   Events events;
-  fleet_->look(events);
+  rtpu_links_->look(events);
   health_->look(now());  // before a task of a new rtpu is ON
   steps_->step(events);
-  if (!is_ready_ && (fleet_->all_up() || now() - begun_ > kPatience)) become_ready();
+  if (!is_ready_ && (rtpu_links_->all_up() || now() - begun_ > kPatience)) become_ready();
 }
 
 void ManagerLoop::become_ready() {
@@ -188,7 +188,7 @@ void ManagerLoop::become_ready() {
   steps_->step(subsystem::InventoryComplete{});
 }
 
-RtpuId ManagerLoop::ring(std::span<const TaskId> tasks) { return fleet_->ring(tasks, now()); }
+RtpuId ManagerLoop::ring(std::span<const TaskId> tasks) { return rtpu_links_->ring(tasks, now()); }
 
 void ManagerLoop::end(std::int32_t code) { end_wish_ = code; }
 
@@ -206,28 +206,28 @@ int ManagerLoop::bundle() const noexcept { return mapped_->bundle_bytes.descript
 int ManagerLoop::take_listening() noexcept { return std::exchange(mapped_->listening, -1); }
 
 void ManagerLoop::look_at_keeper() {
-  face_watch_.look(*world_, now());
-  if (is_ending_ || !world_->is_ending()) return;
+  face_watch_.look(*state_, now());
+  if (is_ending_ || !state_->is_ending()) return;
   is_ending_ = true;
-  world_->tell("ending", TaskId{}, RtpuId{}, "the subsystem is ending", now());
+  state_->tell("ending", TaskId{}, RtpuId{}, "the subsystem is ending", now());
 }
 
 /// Answers each beat of the keeper with one beat, so that the keeper's channel never fills.
 void ManagerLoop::watch() {
   KeeperMessage message;
   message.kind = KeeperMessage::Kind::kBeat;
-  message.index = world_->own.peer();
-  const std::uint64_t beats = world_->keeper.beats.load(std::memory_order_acquire);
+  message.index = state_->own.peer();
+  const std::uint64_t beats = state_->keeper.beats.load(std::memory_order_acquire);
   if (beats != keeper_beats_ && mapped_->channel.send(bytes_of(message))) keeper_beats_ = beats;
   if (now() < watch_->due()) return;
-  for (const RtpuId rtpu : watch_->look(now())) end_unit(rtpu);
+  for (const RtpuId rtpu : watch_->look(now())) end_rtpu(rtpu);
 }
 
-void ManagerLoop::end_unit(RtpuId rtpu) {
+void ManagerLoop::end_rtpu(RtpuId rtpu) {
   KeeperMessage message;
   message.kind = KeeperMessage::Kind::kEndChild;
   message.index = rtpu.index;
-  message.incarnation = world_->rtpus[rtpu.index].incarnation;
+  message.incarnation = state_->rtpus[rtpu.index].incarnation;
   [[maybe_unused]] const bool sent = mapped_->channel.send(bytes_of(message));  // not sent: the keeper hangs
 }
 
@@ -235,7 +235,7 @@ Nanoseconds ManagerLoop::next_due() const noexcept {
   Nanoseconds due = std::min(
       {steps_->next_due(), receipts_->next_due(), drill_->next_due(), counters_due_, watch_->due()});
   if (is_ready_) due = std::min(due, switches_->next_due());
-  if (!is_ready_ || !fleet_->all_up()) due = std::min(due, now() + kLookEvery);
+  if (!is_ready_ || !rtpu_links_->all_up()) due = std::min(due, now() + kLookEvery);
   return due;
 }
 
@@ -255,7 +255,7 @@ bool ManagerLoop::step(Nanoseconds at_most, int also, int or_else) {
   look();
   watch();
   if (now() >= counters_due_) {
-    fleet_->look_at_counters(now());
+    rtpu_links_->look_at_counters(now());
     counters_due_ = now() + kCountersEvery;
   }
   steps_->look(now());

@@ -5,18 +5,18 @@
 
 #include <memory>
 
-#include "chimera/manager/bell_watch.h"
-#include "chimera/manager/drill.h"
-#include "chimera/manager/face_watch.h"
-#include "chimera/manager/manager_state.h"
-#include "chimera/manager/receipt_archive.h"
-#include "chimera/manager/rtpu_links.h"
-#include "chimera/manager/step_runner.h"
-#include "chimera/manager/switch_coordinator.h"
-#include "chimera/manager/switch_wishes.h"
-#include "chimera/manager/takeover_receipts.h"
-#include "chimera/manager/unit_health.h"
-#include "chimera/manager/unit_watch.h"
+#include "chimera/manager/act/drill.h"
+#include "chimera/manager/act/rtpu_links.h"
+#include "chimera/manager/act/step_runner.h"
+#include "chimera/manager/state/manager_state.h"
+#include "chimera/manager/switch/receipt_archive.h"
+#include "chimera/manager/switch/switch_coordinator.h"
+#include "chimera/manager/switch/switch_wishes.h"
+#include "chimera/manager/switch/takeover_receipts.h"
+#include "chimera/manager/watch/bell_watch.h"
+#include "chimera/manager/watch/face_watch.h"
+#include "chimera/manager/watch/rtpu_health.h"
+#include "chimera/manager/watch/rtpu_watch.h"
 #include "chimera/platform/local_socket.h"
 #include "chimera/platform/shared_memory.h"
 #include "chimera/runtime/hosted/application_image.h"
@@ -63,7 +63,7 @@ class ManagerLoop {
   /// Descriptor of the bundle, for other processes; ManagerLoop keeps it.
   int bundle() const noexcept;
 
-  ManagerState& world() noexcept { return *world_; }
+  ManagerState& state() noexcept { return *state_; }
   SwitchCoordinator& switches() noexcept { return *switches_; }
   const ReceiptArchive& receipts() const noexcept { return *receipts_; }
   Drill& drill() noexcept { return *drill_; }
@@ -82,22 +82,22 @@ class ManagerLoop {
   void pass_end_on();
   void look_at_keeper();
   void watch();
-  void end_unit(RtpuId rtpu);
+  void end_rtpu(RtpuId rtpu);
   Nanoseconds next_due() const noexcept;
   void wait(Nanoseconds until, int also, int or_else);
 
   std::unique_ptr<Mapped> mapped_;
-  std::unique_ptr<ManagerState> world_;
-  std::unique_ptr<RtpuLinks> fleet_;
+  std::unique_ptr<ManagerState> state_;
+  std::unique_ptr<RtpuLinks> rtpu_links_;
   std::unique_ptr<StepRunner> steps_;
   std::unique_ptr<ReceiptArchive> receipts_;
   std::unique_ptr<SwitchCoordinator> switches_;
   std::unique_ptr<SwitchWishes> wishes_;
   std::unique_ptr<TakeoverReceipts> takeovers_;
   std::unique_ptr<Drill> drill_;
-  std::unique_ptr<UnitWatch> watch_;
+  std::unique_ptr<RtpuWatch> watch_;
   std::uint64_t keeper_beats_ = 0;  // number of the keeper's last answered beat
-  std::unique_ptr<UnitHealth> health_;
+  std::unique_ptr<RtpuHealth> health_;
   std::unique_ptr<BellWatch> bell_;
   Nanoseconds begun_;
   Nanoseconds counters_due_;

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "chimera/manager/status_json.h"
+#include "chimera/manager/answer/status_json.h"
+#include "chimera/manager/answer/value_json.h"
 #include "chimera/manager/testing/fake_subsystem.h"
-#include "chimera/manager/value_json.h"
 #include "chimera/runtime/task_word.h"
 #include "chimera/text/json.h"
 
@@ -19,7 +19,7 @@ TEST(ManagerLoop, BringsTheStartSetUp) {
   EXPECT_TRUE(fake.until([&] { return !fake.told("started").empty(); }));
   EXPECT_EQ(fake.told("manager-started"), "manager started\n");
   EXPECT_EQ(fake.told("started"), "sensor filter law are ON\n");
-  EXPECT_NE(fake.driver().world().own.block().memory().started_at, 0);
+  EXPECT_NE(fake.loop().state().own.block().memory().started_at, 0);
   EXPECT_NE(fake.told("state").find("law: OFF -> ON\n"), std::string::npos) << fake.told("state");
 }
 
@@ -28,7 +28,7 @@ TEST(ManagerLoop, CarriesOutACommandAndSaysWhatBecameOfIt) {
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
   std::optional<subsystem::CommandAnswer> got;
-  fake.driver().command(Signal::kOff, {fake.task("law")},
+  fake.loop().command(Signal::kOff, {fake.task("law")},
                         [&](const subsystem::CommandAnswer& answer) { got = answer; });
   ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
   EXPECT_TRUE(got->is_accepted()) << got->refusal.text();
@@ -43,11 +43,11 @@ TEST(ManagerLoop, ARefusedCommandChangesNothing) {
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
   std::optional<subsystem::CommandAnswer> got;
-  fake.driver().command(Signal::kClear, {fake.task("law")},
+  fake.loop().command(Signal::kClear, {fake.task("law")},
                         [&](const subsystem::CommandAnswer& answer) { got = answer; });
   ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
   EXPECT_FALSE(got->is_accepted());
-  EXPECT_EQ(fake.driver().world().state(fake.task("law")), State::kOn);
+  EXPECT_EQ(fake.loop().state().state(fake.task("law")), State::kOn);
 }
 
 TEST(ManagerLoop, ADeadRtpuIsToldWithItsLastWordsAndStartedAgainWithWhatWasOn) {
@@ -60,8 +60,8 @@ TEST(ManagerLoop, ADeadRtpuIsToldWithItsLastWordsAndStartedAgainWithWhatWasOn) {
   EXPECT_EQ(fake.told("rtpu-ended"), "servo ended by signal 11 (SIGSEGV) in filter.cycle\n");
   EXPECT_TRUE(fake.until_on("filter"));
   EXPECT_EQ(fake.rtpu(0).incarnation(), 2u);
-  EXPECT_EQ(fake.driver().world().rtpus[0].restarts, 1u);
-  EXPECT_EQ(fake.driver().world().rtpus[0].last_end, "ended by signal 11 (SIGSEGV) in filter.cycle");
+  EXPECT_EQ(fake.loop().state().rtpus[0].restarts, 1u);
+  EXPECT_EQ(fake.loop().state().rtpus[0].last_end, "ended by signal 11 (SIGSEGV) in filter.cycle");
 }
 
 TEST(ManagerLoop, AManagerKilledAtAnyTimeIsFollowedByOneThatGoesOn) {
@@ -70,21 +70,21 @@ TEST(ManagerLoop, AManagerKilledAtAnyTimeIsFollowedByOneThatGoesOn) {
   ASSERT_TRUE(fake.until_on("law"));
   ASSERT_TRUE(fake.until([&] { return !fake.told("started").empty(); }));  // otherwise its successor logs it
   const double tuned[] = {7, 8};
-  fake.driver().world().own.publish_operator(0, std::as_bytes(std::span(tuned)), now());
-  const std::uint64_t last = fake.driver().world().log.last();
+  fake.loop().state().own.publish_operator(0, std::as_bytes(std::span(tuned)), now());
+  const std::uint64_t last = fake.loop().state().log.last();
   fake.kill_manager();
   fake.start_manager();
-  ASSERT_TRUE(fake.until([&] { return fake.driver().is_ready(); }));
-  ManagerState& world = fake.driver().world();
-  EXPECT_EQ(world.log.first(), last + 1);
+  ASSERT_TRUE(fake.until([&] { return fake.loop().is_ready(); }));
+  ManagerState& state = fake.loop().state();
+  EXPECT_EQ(state.log.first(), last + 1);
   EXPECT_EQ(fake.told("manager-started"),
             "manager started again, incarnation 2; events 1 to " + std::to_string(last) + " are lost\n");
   EXPECT_EQ(fake.told("started"), "");
-  const VariableReading kp = world.readings->read(*world.readings->find("kp"));
+  const VariableReading kp = state.readings->read(*state.readings->find("kp"));
   EXPECT_EQ(numbers(kp.form, kp.value), (std::vector<double>{7, 8}));
-  EXPECT_EQ(world.state(fake.task("law")), State::kOn);
+  EXPECT_EQ(state.state(fake.task("law")), State::kOn);
   std::optional<subsystem::CommandAnswer> got;
-  fake.driver().command(Signal::kOff, {fake.task("law")},
+  fake.loop().command(Signal::kOff, {fake.task("law")},
                         [&](const subsystem::CommandAnswer& answer) { got = answer; });
   ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
   EXPECT_TRUE(got->is_accepted()) << got->refusal.text();
@@ -97,7 +97,7 @@ TEST(ManagerLoop, WhatHappenedWhileThereWasNoManagerIsToldByTheNext) {
   fake.kill_manager();
   fake.rtpu(0).fail(fake.task("filter"), "joint 3 at its limit");
   fake.start_manager();
-  ASSERT_TRUE(fake.until([&] { return fake.driver().is_ready(); }));
+  ASSERT_TRUE(fake.until([&] { return fake.loop().is_ready(); }));
   EXPECT_EQ(fake.told("fault"), "filter: cycle: joint 3 at its limit\n");
   EXPECT_EQ(fake.told("state"), "filter: ON -> ERROR\n");
 }
@@ -109,12 +109,12 @@ TEST(ManagerLoop, AnRtpuThatDiedWhileThereWasNoManagerIsDealtWithByTheNext) {
   fake.kill_manager();
   fake.kill_rtpu(1, SIGKILL);
   fake.start_manager();
-  ASSERT_TRUE(fake.until([&] { return fake.driver().world().rtpus[1].restarts == 1; }));
+  ASSERT_TRUE(fake.until([&] { return fake.loop().state().rtpus[1].restarts == 1; }));
   EXPECT_EQ(fake.told("rtpu-ended"), "spare ended by signal 9 (SIGKILL)\n");
   EXPECT_TRUE(fake.until_on("law"));
 }
 
-TEST(ManagerLoop, WhatWasOnComesBackWhateverItsUnitLeftInItsMemory) {
+TEST(ManagerLoop, WhatWasOnComesBackWhateverItsRtpuLeftInItsMemory) {
   for (const std::uint64_t word : {std::uint64_t{0xdeadbeef}, UINT64_MAX, std::uint64_t{1}}) {
     FakeSubsystem fake;
     fake.start_manager();
@@ -122,15 +122,15 @@ TEST(ManagerLoop, WhatWasOnComesBackWhateverItsUnitLeftInItsMemory) {
     fake.rtpu(1).die_overwritten(word, 8);
     for (int i = 0; i < 3; ++i) ASSERT_TRUE(fake.step());  // it polls before it reads messages
     const Nanoseconds at = now();
-    EXPECT_EQ(status_json(fake.driver().world(), at)["tasks"][2]["task"], "law");
-    EXPECT_EQ(profile_json(fake.driver().world(), at)["tasks"].size(), 3u);
+    EXPECT_EQ(status_json(fake.loop().state(), at)["tasks"][2]["task"], "law");
+    EXPECT_EQ(profile_json(fake.loop().state(), at)["tasks"].size(), 3u);
     fake.kill_rtpu(1, SIGSEGV);
-    ASSERT_TRUE(fake.until([&] { return fake.driver().world().rtpus[1].restarts == 1; }));
+    ASSERT_TRUE(fake.until([&] { return fake.loop().state().rtpus[1].restarts == 1; }));
     EXPECT_TRUE(fake.until_on("law")) << word;
   }
 }
 
-TEST(ManagerLoop, WhatWasOnInAUnitWhoseMemoryCannotBeReadIsKnownToTheNextManager) {
+TEST(ManagerLoop, WhatWasOnInAnRtpuWhoseMemoryCannotBeReadIsKnownToTheNextManager) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -138,7 +138,7 @@ TEST(ManagerLoop, WhatWasOnInAUnitWhoseMemoryCannotBeReadIsKnownToTheNextManager
   fake.rtpu(1).die_overwritten(0xdeadbeef);
   fake.kill_rtpu(1, SIGSEGV);
   fake.start_manager();
-  ASSERT_TRUE(fake.until([&] { return fake.driver().world().rtpus[1].restarts == 1; }));
+  ASSERT_TRUE(fake.until([&] { return fake.loop().state().rtpus[1].restarts == 1; }));
   EXPECT_EQ(fake.told("fault"),
             "its memory cannot be read, something in it has overwritten it (not a state variable table: the first 8 "
             "bytes are not CHIMTBL1)\n");
@@ -146,19 +146,19 @@ TEST(ManagerLoop, WhatWasOnInAUnitWhoseMemoryCannotBeReadIsKnownToTheNextManager
   fake.kill_manager();  // tasks that were ON are goals now, and this memory is gone
   bool is_off = false;
   fake.start_manager();
-  ASSERT_TRUE(fake.until([&] { return fake.driver().world().rtpus[1].is_up; }));
-  fake.driver().command(Signal::kOff, {fake.task("law")}, [&](const auto& answer) { is_off = answer.is_accepted(); });
+  ASSERT_TRUE(fake.until([&] { return fake.loop().state().rtpus[1].is_up; }));
+  fake.loop().command(Signal::kOff, {fake.task("law")}, [&](const auto& answer) { is_off = answer.is_accepted(); });
   ASSERT_TRUE(fake.until([&] { return is_off; }));
   fake.kill_manager();
   fake.rtpu(1).die_overwritten(0xdeadbeef);
   fake.kill_rtpu(1, SIGSEGV);
   fake.start_manager();
-  ASSERT_TRUE(fake.until([&] { return fake.driver().world().state(fake.task("law")) == State::kOff; }));
+  ASSERT_TRUE(fake.until([&] { return fake.loop().state().state(fake.task("law")) == State::kOff; }));
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(fake.step());
-  EXPECT_EQ(fake.driver().world().state(fake.task("law")), State::kOff) << "as it was";
+  EXPECT_EQ(fake.loop().state().state(fake.task("law")), State::kOff) << "as it was";
 }
 
-TEST(ManagerLoop, AUnitThatLivesAndCannotBeReadIsToldWithWhatHelps) {
+TEST(ManagerLoop, AnRtpuThatLivesAndCannotBeReadIsToldWithWhatHelps) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -170,7 +170,7 @@ TEST(ManagerLoop, AUnitThatLivesAndCannotBeReadIsToldWithWhatHelps) {
             "its memory cannot be read, something in it has overwritten it (not a state variable table: the first 8 "
             "bytes are not CHIMTBL1): it can be told nothing until it is started again, as it is when killed\n");
   fake.kill_rtpu(1, SIGKILL);
-  EXPECT_TRUE(fake.until([&] { return fake.driver().world().rtpus[1].restarts == 1; }));
+  EXPECT_TRUE(fake.until([&] { return fake.loop().state().rtpus[1].restarts == 1; }));
   EXPECT_TRUE(fake.until_on("law"));
 }
 
@@ -181,7 +181,7 @@ TEST(ManagerLoop, TellsTheFaultOfATaskInItsWords) {
   fake.rtpu(0).fail(fake.task("filter"), "joint 3 at its limit");
   ASSERT_TRUE(fake.until([&] { return !fake.told("fault").empty(); }));
   EXPECT_EQ(fake.told("fault"), "filter: cycle: joint 3 at its limit\n");
-  EXPECT_TRUE(fake.until([&] { return fake.driver().world().state(fake.task("filter")) == State::kError; }));
+  EXPECT_TRUE(fake.until([&] { return fake.loop().state().state(fake.task("filter")) == State::kError; }));
 }
 
 TEST(ManagerLoop, TellsTheNoteOfATaskInItsWords) {
@@ -224,7 +224,7 @@ TEST(ManagerLoop, ADeafRtpuFailsTheCommandInTime) {
   ASSERT_TRUE(fake.until_on("law"));
   fake.rtpu(1).is_deaf = true;
   std::optional<subsystem::CommandAnswer> got;
-  fake.driver().command(Signal::kOff, {fake.task("law")},
+  fake.loop().command(Signal::kOff, {fake.task("law")},
                         [&](const subsystem::CommandAnswer& answer) { got = answer; });
   ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
   EXPECT_FALSE(got->is_accepted());
@@ -234,15 +234,15 @@ TEST(ManagerLoop, ADeafRtpuFailsTheCommandInTime) {
 TEST(ManagerLoop, WithoutTasksItIsReadyAtOnce) {
   FakeSubsystem fake("");
   fake.start_manager();
-  EXPECT_TRUE(fake.until([&] { return fake.driver().is_ready(); }));
-  EXPECT_FALSE(fake.driver().world().configuration.has_value());
+  EXPECT_TRUE(fake.until([&] { return fake.loop().is_ready(); }));
+  EXPECT_FALSE(fake.loop().state().configuration.has_value());
 }
 
 TEST(ManagerLoop, EndsWhenTheKeeperIsGoneAndAsksItToEnd) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
-  fake.driver().end(3);
+  fake.loop().end(3);
   ASSERT_TRUE(fake.until([&] { return fake.end_asked.has_value(); }));
   EXPECT_EQ(*fake.end_asked, 3);
 }

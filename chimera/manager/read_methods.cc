@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "chimera/manager/large_readings.h"
-#include "chimera/manager/operator_acts.h"
-#include "chimera/manager/status_json.h"
+#include "chimera/manager/act/operator_acts.h"
+#include "chimera/manager/answer/large_readings.h"
+#include "chimera/manager/answer/status_json.h"
+#include "chimera/manager/answer/value_json.h"
 #include "chimera/manager/subscription_feeds.h"
-#include "chimera/manager/value_json.h"
 #include "chimera/platform/process_state.h"
 #include "chimera/text/json.h"
 
@@ -32,13 +32,13 @@ std::optional<RpcResponse> ReadMethods::answer(MethodId method, const Json& para
     case MethodId::kHello:
       return hello(role);
     case MethodId::kStatus:
-      return RpcResponse::good(status_json(world_, now()));
+      return RpcResponse::good(status_json(state_, now()));
     case MethodId::kDescribe:
       return made_once(description_, describe_json);
     case MethodId::kGet:
       return get(parameters);
     case MethodId::kProfile:
-      return RpcResponse::good(profile_json(world_, now()));
+      return RpcResponse::good(profile_json(state_, now()));
     case MethodId::kEvents:
       return events(parameters);
     case MethodId::kWhy:
@@ -52,41 +52,41 @@ std::optional<RpcResponse> ReadMethods::answer(MethodId method, const Json& para
 
 /// Makes an answer once: the bundle does not change while the manager lives.
 RpcResponse ReadMethods::made_once(std::shared_ptr<const std::string>& text, Json (*make)(const ManagerState&)) const {
-  if (text == nullptr) text = std::make_shared<const std::string>(make(world_).dump());
+  if (text == nullptr) text = std::make_shared<const std::string>(make(state_).dump());
   return RpcResponse::ready(text);
 }
 
 RpcResponse ReadMethods::hello(control::Role role) const {
   return RpcResponse::good({{"protocol", 1},
-                            {"program", world_.bundle.program},
-                            {"subsystem", world_.spec().name},
+                            {"program", state_.bundle.program},
+                            {"subsystem", state_.spec().name},
                             {"role", control::role_name(role)},
-                            {"file", world_.bundle.file},
-                            {"keeper_pid", world_.keeper_pid},
+                            {"file", state_.bundle.file},
+                            {"keeper_pid", state_.keeper_pid},
                             {"session", own_session()},  // session and folder are inherited from the keeper
                             {"folder", working_folder()},
-                            {"manager", {{"pid", own_process_id()}, {"starts", world_.own.incarnation()}}}});
+                            {"manager", {{"pid", own_process_id()}, {"starts", state_.own.incarnation()}}}});
 }
 
 RpcResponse ReadMethods::get(const Json& parameters) const {
-  const auto variables = variables_named(world_, control::texts(parameters, "variables"));
+  const auto variables = variables_named(state_, control::texts(parameters, "variables"));
   if (const auto* refused = std::get_if<RpcResponse>(&variables)) return *refused;
   const auto& named = std::get<0>(variables);
-  if (bytes_of(world_, named) <= kLargeReadings)
-    return RpcResponse::good({{"values", readings_json(world_, named, now())}});
-  return RpcResponse::in_pieces(std::make_shared<LargeReadings>(world_, named, R"({"values":)", "}"));
+  if (bytes_of(state_, named) <= kLargeReadings)
+    return RpcResponse::good({{"values", readings_json(state_, named, now())}});
+  return RpcResponse::in_pieces(std::make_shared<LargeReadings>(state_, named, R"({"values":)", "}"));
 }
 
 RpcResponse ReadMethods::events(const Json& parameters) const {
   const std::uint64_t asked = control::number(parameters, "limit", kEventsAtOnce);
   const std::uint64_t limit = std::min<std::uint64_t>(asked, kEventsAtOnce);
-  return RpcResponse::good(events_json(world_, control::number(parameters, "since", 0), limit));
+  return RpcResponse::good(events_json(state_, control::number(parameters, "since", 0), limit));
 }
 
 RpcResponse ReadMethods::why(const Json& parameters) const {
-  const auto variables = variables_named(world_, {parameters.at("variable").as_string()});
+  const auto variables = variables_named(state_, {parameters.at("variable").as_string()});
   if (const auto* refused = std::get_if<RpcResponse>(&variables)) return *refused;
-  return RpcResponse::good(why_json(world_, std::get<0>(variables)[0], now()));
+  return RpcResponse::good(why_json(state_, std::get<0>(variables)[0], now()));
 }
 
 }  // namespace chimera::manager

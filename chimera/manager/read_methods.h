@@ -7,7 +7,7 @@
 #include <string>
 
 #include "chimera/control/control_backend.h"
-#include "chimera/manager/manager_state.h"
+#include "chimera/manager/state/manager_state.h"
 #include "chimera/text/json.h"
 
 namespace chimera::manager {
@@ -15,8 +15,8 @@ namespace chimera::manager {
 /// Context: setup; may block for the time of a copy.
 class ReadMethods {
  public:
-  /// `world` outlives it.
-  explicit ReadMethods(const ManagerState& world) : world_(world) {}
+  /// `state` outlives it.
+  explicit ReadMethods(const ManagerState& state) : state_(state) {}
 
   /// The answer to a call; the row of its method has checked its parameters. None if the method is not one of these.
   std::optional<control::RpcResponse> answer(control::MethodId method, const Json& parameters, control::Role role);
@@ -28,7 +28,7 @@ class ReadMethods {
   control::RpcResponse why(const Json& parameters) const;
   control::RpcResponse made_once(std::shared_ptr<const std::string>& text, Json (*make)(const ManagerState&)) const;
 
-  const ManagerState& world_;
+  const ManagerState& state_;
   std::shared_ptr<const std::string> library_, description_;  // answers that never change, made at the first request
 };
 

@@ -17,7 +17,7 @@ class ReadMethodsTest : public ::testing::Test, public LoneState {
   std::optional<RpcResponse> ask(MethodId method, const Json& parameters = Json::object()) {
     return reads_.answer(method, parameters, control::Role::kObserve);
   }
-  ReadMethods reads_{world()};
+  ReadMethods reads_{state()};
 };
 
 TEST_F(ReadMethodsTest, AnswersWhatChangesNothingAndNothingElse) {
@@ -52,7 +52,7 @@ TEST_F(ReadMethodsTest, AnUnknownVariableIsRefusedWithTheNearest) {
 }
 
 TEST_F(ReadMethodsTest, EventsBeginWhereTheyAreAskedForAndEndAtTheLimit) {
-  for (const char* text : {"one", "two", "three"}) world().tell("command", TaskId{}, RtpuId{}, text, seconds(1));
+  for (const char* text : {"one", "two", "three"}) state().tell("command", TaskId{}, RtpuId{}, text, seconds(1));
   const auto texts = [&](const Json& parameters) {
     std::string all;
     const Json result = *ask(MethodId::kEvents, parameters)->result;

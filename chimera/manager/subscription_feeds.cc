@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "chimera/control/methods.h"
-#include "chimera/manager/large_readings.h"
-#include "chimera/manager/operator_acts.h"
-#include "chimera/manager/status_json.h"
-#include "chimera/manager/value_json.h"
+#include "chimera/manager/act/operator_acts.h"
+#include "chimera/manager/answer/large_readings.h"
+#include "chimera/manager/answer/status_json.h"
+#include "chimera/manager/answer/value_json.h"
 #include "chimera/text/json.h"
 
 namespace chimera::manager {
@@ -25,15 +25,15 @@ RpcResponse SubscriptionFeeds::open(std::uint64_t subscription, const Json& para
   using To = Feed::To;
   const std::string to = parameters.at("to").as_string();
   const auto names = control::texts(parameters, "variables");
-  auto variables = variables_named(world_, names);
+  auto variables = variables_named(state_, names);
   if (const auto* refused = std::get_if<RpcResponse>(&variables)) return *refused;
   Feed made;
   made.to = to == "status" ? To::kStatus : to == "events" ? To::kEvents : to == "values" ? To::kValues : To::kTap;
-  if (made.to == To::kEvents) made.next = control::number(parameters, "since", world_.log.last() + 1);
+  if (made.to == To::kEvents) made.next = control::number(parameters, "since", state_.log.last() + 1);
   if (made.to == To::kValues) made.variables = std::get<0>(std::move(variables));
   else if (made.to == To::kTap)
     made.tap = std::make_unique<TapFeed>(
-        world_, names.empty() ? std::vector<VariableId>() : std::get<0>(std::move(variables)),
+        state_, names.empty() ? std::vector<VariableId>() : std::get<0>(std::move(variables)),
         control::number(parameters, "since", 1) == 0);
   feeds_[subscription] = std::move(made);
   return RpcResponse{};
@@ -41,10 +41,10 @@ RpcResponse SubscriptionFeeds::open(std::uint64_t subscription, const Json& para
 
 std::shared_ptr<control::Pieces> SubscriptionFeeds::pull_pieces(std::uint64_t subscription) {
   const Feed& feed = feeds_.at(subscription);
-  if (feed.to != Feed::To::kValues || bytes_of(world_, feed.variables) <= kLargeReadings) return nullptr;
+  if (feed.to != Feed::To::kValues || bytes_of(state_, feed.variables) <= kLargeReadings) return nullptr;
   const std::string begin = R"({"at_ns":)" + std::to_string(now().count) + R"(,"subscription":)" +
                             std::to_string(subscription) + R"(,"values":)";
-  return std::make_shared<LargeReadings>(world_, feed.variables, begin, "}");
+  return std::make_shared<LargeReadings>(state_, feed.variables, begin, "}");
 }
 
 std::shared_ptr<const Json> SubscriptionFeeds::pull(std::uint64_t subscription) {
@@ -52,9 +52,9 @@ std::shared_ptr<const Json> SubscriptionFeeds::pull(std::uint64_t subscription) 
   const Nanoseconds at = now();
   switch (feed.to) {
     case Feed::To::kStatus:
-      return shared(status_json(world_, at));
+      return shared(status_json(state_, at));
     case Feed::To::kValues:
-      return shared({{"at_ns", at.count}, {"values", readings_json(world_, feed.variables, at)}});
+      return shared({{"at_ns", at.count}, {"values", readings_json(state_, feed.variables, at)}});
     case Feed::To::kEvents:
       return pull_events(feed);
     case Feed::To::kTap:
@@ -64,10 +64,10 @@ std::shared_ptr<const Json> SubscriptionFeeds::pull(std::uint64_t subscription) 
 }
 
 std::shared_ptr<const Json> SubscriptionFeeds::pull_events(Feed& feed) const {
-  const EventLog& log = world_.log;
+  const EventLog& log = state_.log;
   const std::uint64_t from = std::max<std::uint64_t>(feed.next, 1);
   if (from > log.last()) return nullptr;
-  Json found = events_json(world_, from, kEventsAtOnce);
+  Json found = events_json(state_, from, kEventsAtOnce);
   const std::uint64_t lost = log.first() > from ? log.first() - from : 0;
   feed.next = std::max(from, log.first()) + found["events"].size();
   return shared({{"events", std::move(found["events"])}, {"lost", lost}});

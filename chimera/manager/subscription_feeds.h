@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "chimera/control/rpc_response.h"
-#include "chimera/manager/tap_feed.h"
+#include "chimera/manager/answer/tap_feed.h"
 
 namespace chimera::manager {
 
@@ -19,8 +19,8 @@ inline constexpr std::size_t kEventsAtOnce = 1000;
 /// Context: setup. The functions are those of control::ControlBackend with these names.
 class SubscriptionFeeds {
  public:
-  /// `world` outlives it.
-  explicit SubscriptionFeeds(ManagerState& world) : world_(world) {}
+  /// `state` outlives it.
+  explicit SubscriptionFeeds(ManagerState& state) : state_(state) {}
 
   control::RpcResponse open(std::uint64_t subscription, const Json& parameters);
   void close(std::uint64_t subscription) { feeds_.erase(subscription); }
@@ -39,7 +39,7 @@ class SubscriptionFeeds {
   std::shared_ptr<const Json> pull_events(Feed& feed) const;
   std::shared_ptr<const Json> pull_tap(Feed& feed) const;
 
-  ManagerState& world_;
+  ManagerState& state_;
   std::map<std::uint64_t, Feed> feeds_;
 };
 

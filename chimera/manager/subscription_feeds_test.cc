@@ -22,13 +22,13 @@ class SubscriptionFeedsTest : public ::testing::Test, public LoneState {
   }
   void tell(int count) {
     for (int i = 0; i < count; ++i) {
-      const std::string number = std::to_string(world().log.last() + 1);
-      world().tell("signal", TaskId{}, RtpuId{}, "event " + number, now());
+      const std::string number = std::to_string(state().log.last() + 1);
+      state().tell("signal", TaskId{}, RtpuId{}, "event " + number, now());
     }
   }
-  bool is_tapped(const char* name) { return world().own.block().view().is_tapped(task(name)); }
+  bool is_tapped(const char* name) { return state().own.block().view().is_tapped(task(name)); }
 
-  SubscriptionFeeds feeds_{world()};
+  SubscriptionFeeds feeds_{state()};
 };
 
 TEST_F(SubscriptionFeedsTest, EventsComeFromTheOpeningOnWithoutSince) {
@@ -82,7 +82,7 @@ TEST_F(SubscriptionFeedsTest, EachSubscriptionHasItsOwnPlaceInTheLog) {
 TEST_F(SubscriptionFeedsTest, StatusIsWhatItIsNow) {
   open(1, {{"to", "status"}});
   EXPECT_EQ(pull(1)["tasks"][2]["state"], "NOT-CREATED");
-  world().rtpus[1].restarts = 2;
+  state().rtpus[1].restarts = 2;
   EXPECT_EQ(pull(1)["rtpus"][1]["restarts"], 2) << "it always has something to say";
 }
 

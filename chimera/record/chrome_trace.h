@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/runtime/tap_record.h"
+#include "chimera/runtime/record/tap_record.h"
 
 namespace chimera {
 

@@ -71,7 +71,7 @@ RunOptions CyclingThread::options() {
   options.tap = &tap_;
   options.rtpu = static_cast<std::uint8_t>(place_.me);
   options.guest = &place_.edge;
-  options.stop = &place_.edge.unit_end().is_over();
+  options.stop = &place_.edge.rtpu_end().is_over();
   options.writer = &place_.writer;
   options.switch_peers = &place_.switching;
   return options;

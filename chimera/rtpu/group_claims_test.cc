@@ -17,7 +17,7 @@ struct GroupClaimsTest : ::testing::Test {
   GroupClaims first{decision, keeper, 0, 1}, second{decision, keeper, 1, 5};
 };
 
-TEST_F(GroupClaimsTest, OneUnitAtATimeHasAGroup) {
+TEST_F(GroupClaimsTest, OneRtpuAtATimeHasAGroup) {
   EXPECT_TRUE(first.take(0));
   EXPECT_TRUE(first.take(0)) << "its own";
   EXPECT_FALSE(second.take(0));

@@ -14,11 +14,11 @@ namespace chimera {
 /// Descriptors of the guard at its start.
 inline constexpr int kGuardChannelDescriptor = 3, kGuardImageDescriptor = 4;
 /// Descriptor of an rtpu: its end of the channel to the guard; it follows those of keeper_message.h.
-inline constexpr int kUnitGuardDescriptor = 8;
+inline constexpr int kRtpuGuardDescriptor = 8;
 
 struct GuardMessage {
   enum class Kind : std::uint32_t {
-    kUnit,     ///< keeper -> guard, with a pidfd: rtpu `index` lives in `incarnation`; a kLine follows
+    kRtpu,     ///< keeper -> guard, with a pidfd: rtpu `index` lives in `incarnation`; a kLine follows
     kLine,     ///< keeper -> guard, with the guard's end of the channel to that rtpu
     kSegment,  ///< rtpu -> guard, with its memory
     kFrame,    ///< rtpu -> guard, with a descriptor: frame `frame` of `task` goes there; without one: it goes nowhere
@@ -28,7 +28,7 @@ struct GuardMessage {
                ///< standby takes over
   };
 
-  Kind kind = Kind::kUnit;
+  Kind kind = Kind::kRtpu;
   std::uint32_t index = 0;
   std::uint32_t incarnation = 0;
   std::uint32_t task = 0;

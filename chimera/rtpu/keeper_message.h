@@ -19,7 +19,7 @@ enum : int {
   kKeeperPageDescriptor = 6,
   kObjectsDescriptor = 7,    ///< rtpus only: load/sealed_objects.h
   kListeningDescriptor = 7,  ///< manager only: the subsystem's socket
-  kBundleDescriptor = 8,     ///< manager only: description, descriptors and units, as read at the start
+  kBundleDescriptor = 8,     ///< manager only: description, descriptors and rtpus, as read at the start
 };
 
 struct KeeperMessage {

@@ -9,8 +9,8 @@
 #include "chimera/platform/wake.h"
 #include "chimera/rtpu/group_claims.h"
 #include "chimera/rtpu/peers.h"
-#include "chimera/runtime/peer_view.h"
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/life/task_set.h"
+#include "chimera/runtime/state/peer_view.h"
 
 namespace chimera {
 

@@ -218,7 +218,7 @@ int Rtpu::run() {
       end(true);
     }
     // Now all tasks are killed except the one whose job hangs.
-    if (is_giving_up_ && edge_->unit_end().is_over()) return kMethodHangs;
+    if (is_giving_up_ && edge_->rtpu_end().is_over()) return kMethodHangs;
   }
   cycling_->join();
   service_->stop();
@@ -300,7 +300,7 @@ void Rtpu::end(bool is_alone) {
   if (!is_ending_) hang_watch_->begin_end(wall_.now());
   is_ending_ = true;
   ends_alone_ = is_alone;
-  edge_->unit_end().tell(is_alone);
+  edge_->rtpu_end().tell(is_alone);
   Doorbell(bell()).ring();
 }
 
@@ -327,7 +327,7 @@ bool Rtpu::is_without_keeper() {
 }
 
 // Ends the processes that components left behind. The keeper does this as long as it lives.
-void end_children_of_this_unit() {
+void end_children_of_this_rtpu() {
   if (const char* mine = std::getenv(kOriginVariable); mine != nullptr) (void)end_all_from(mine, seconds(1));
 }
 
@@ -340,7 +340,7 @@ int run_rtpu(const RtpuStart& start) {
     return kCouldNotStart;
   }
   const int code = rtpu.run();
-  if (rtpu.is_without_keeper()) end_children_of_this_unit();
+  if (rtpu.is_without_keeper()) end_children_of_this_rtpu();
   // A process other than the keeper sent SIGTERM. The keeper then sees this signal as the cause of the death.
   if (code == kTerminated) end_by_signal(SIGTERM);
   if (code == kMethodHangs) std::_Exit(kMethodHangs);  // threads still run component code, so no destructor may run

@@ -23,11 +23,11 @@
 #include "chimera/platform/wake.h"
 #include "chimera/rtpu/hanging_jobs.h"
 #include "chimera/rtpu/peer_links.h"
+#include "chimera/rtpu/rtpu_end.h"
 #include "chimera/rtpu/supervised_signals.h"
-#include "chimera/rtpu/unit_end.h"
 #include "chimera/rtpu/waiting_signals.h"
-#include "chimera/runtime/boundary_listener.h"
 #include "chimera/runtime/executive/counter_clock.h"
+#include "chimera/runtime/life/boundary_listener.h"
 #include "chimera/runtime/service.h"
 
 namespace chimera {
@@ -54,7 +54,7 @@ class RtpuControl final : public BoundaryListener {
   void show_profiles() noexcept;
 
   // For the main thread.
-  UnitEnd& unit_end() noexcept { return end_; }
+  RtpuEnd& rtpu_end() noexcept { return end_; }
   const SupervisedSignals& supervised() const noexcept { return supervised_; }
   HangingJobs& hanging() noexcept { return hanging_; }
 
@@ -77,7 +77,7 @@ class RtpuControl final : public BoundaryListener {
   Service& service_;
   SupervisedSignals supervised_;
   HangingJobs hanging_;
-  UnitEnd end_;
+  RtpuEnd end_;
   std::uint32_t seen_changes_;
   WaitingSignals waiting_;
   std::vector<Post> commands_;  // by task: the signal whose init or kill runs

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "chimera/rtpu/testing/test_units.h"
+#include "chimera/rtpu/testing/test_rtpus.h"
 
 namespace {
 
@@ -31,7 +31,7 @@ namespace {
 
 using testing::component;
 using testing::TestApplication;
-using testing::Units;
+using testing::TestRtpus;
 
 struct Giver {
   Out<double> given{"given", "1", initial = 0.0};
@@ -61,47 +61,47 @@ class EdgeNoHeap : public ::testing::Test {
     app_.add("giver", component<Giver>("giver")).rtpu = RtpuId(0u);
     app_.add("taker", component<Taker>("taker")).rtpu = RtpuId(1u);
     app_.make({kGiver, kTaker}, false);
-    units_ = std::make_unique<Units>(app_);
-    units_->posts.reserve(10'000);
-    units_->run(milliseconds(1));
-    units_->bring_up({kGiver, kTaker});
+    rtpus_ = std::make_unique<TestRtpus>(app_);
+    rtpus_->posts.reserve(10'000);
+    rtpus_->run(milliseconds(1));
+    rtpus_->bring_up({kGiver, kTaker});
   }
   /// Allocations while all rtpus run for `time`.
   std::size_t run(Nanoseconds time) {
     n_allocations = 0;
     is_counting = true;
-    units_->run(time);
+    rtpus_->run(time);
     is_counting = false;
     return n_allocations;
   }
-  State taker() const { return units_->units[1]->state(kTaker); }
+  State taker() const { return rtpus_->rtpus[1]->state(kTaker); }
 
   TestApplication app_;
-  std::unique_ptr<Units> units_;
+  std::unique_ptr<TestRtpus> rtpus_;
 };
 
 TEST_F(EdgeNoHeap, SignalsChangesAndFaultsAllocateNothing) {
   EXPECT_EQ(run(milliseconds(50)), 0u);
-  EXPECT_EQ(units_->units[0]->tasks->tasks()[kGiver.index].faults.count, 1u);
+  EXPECT_EQ(rtpus_->rtpus[0]->tasks->tasks()[kGiver.index].faults.count, 1u);
   for (int i = 0; i < 10; ++i) {
-    units_->send(i % 2 == 0 ? Signal::kOff : Signal::kOn, {kTaker}, static_cast<std::uint64_t>(i) + 1);
+    rtpus_->send(i % 2 == 0 ? Signal::kOff : Signal::kOn, {kTaker}, static_cast<std::uint64_t>(i) + 1);
     EXPECT_EQ(run(milliseconds(2)), 0u);
     EXPECT_EQ(taker(), i % 2 == 0 ? State::kOff : State::kOn);
   }
-  units_->manager->block.set_tapped(kGiver, true);
-  units_->change();
+  rtpus_->manager->block.set_tapped(kGiver, true);
+  rtpus_->change();
   EXPECT_EQ(run(milliseconds(2)), 0u);
-  EXPECT_TRUE(units_->units[0]->tasks->tasks()[kGiver.index].is_tapped);
+  EXPECT_TRUE(rtpus_->rtpus[0]->tasks->tasks()[kGiver.index].is_tapped);
 }
 
-TEST_F(EdgeNoHeap, AnotherUnitAndAnotherManagerAreAdoptedWithoutAllocation) {
-  units_->die(0);
+TEST_F(EdgeNoHeap, AnotherRtpuAndAnotherManagerAreAdoptedWithoutAllocation) {
+  rtpus_->die(0);
   EXPECT_EQ(run(milliseconds(2)), 0u);
-  units_->start(0, 2);
+  rtpus_->start(0, 2);
   EXPECT_EQ(run(milliseconds(2)), 0u);
-  units_->start_manager(2);
+  rtpus_->start_manager(2);
   EXPECT_EQ(run(milliseconds(2)), 0u);
-  EXPECT_EQ(units_->units[1]->peers->at(0)->block().head().incarnation, 2u);
+  EXPECT_EQ(rtpus_->rtpus[1]->peers->at(0)->block().head().incarnation, 2u);
 }
 
 TEST_F(EdgeNoHeap, AComponentThatAllocatesIsSeen) {

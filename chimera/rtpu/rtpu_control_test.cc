@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "chimera/rtpu/testing/test_units.h"
+#include "chimera/rtpu/testing/test_rtpus.h"
 #include "chimera/runtime/hosted/heap_memory.h"
 
 namespace chimera {
@@ -13,7 +13,7 @@ namespace {
 
 using testing::component;
 using testing::TestApplication;
-using testing::Units;
+using testing::TestRtpus;
 
 struct Source {
   Out<double> x{"x", "1", initial = 0.0};
@@ -72,12 +72,12 @@ struct EdgeTest : ::testing::Test {
     app.add("spare", component<Source>("source")).rtpu = RtpuId(1u);
     app.link(3, 1, "spare_scale");
     app.make({kSource, kFollower, kKiller}, false);
-    units = std::make_unique<Units>(app);
-    units->run(milliseconds(1));
+    rtpus = std::make_unique<TestRtpus>(app);
+    rtpus->run(milliseconds(1));
   }
-  void all_on() { units->bring_up({kSource, kFollower, kKiller}); }
-  testing::Unit& first() { return *units->units[0]; }
-  testing::Unit& second() { return *units->units[1]; }
+  void all_on() { rtpus->bring_up({kSource, kFollower, kKiller}); }
+  testing::TestRtpu& first() { return *rtpus->rtpus[0]; }
+  testing::TestRtpu& second() { return *rtpus->rtpus[1]; }
   /// The fault group of the follower, as other processes read it.
   FaultRecord shown_of_follower() {
     HeapMemory heap;
@@ -91,28 +91,28 @@ struct EdgeTest : ::testing::Test {
   }
 
   TestApplication app;
-  std::unique_ptr<Units> units;
+  std::unique_ptr<TestRtpus> rtpus;
 };
 
-TEST_F(EdgeTest, ValuesAndConstantsCrossFromUnitToUnit) {
+TEST_F(EdgeTest, ValuesAndConstantsCrossFromRtpuToRtpu) {
   Source::wanted = 3;
   all_on();
-  units->run(milliseconds(10));
+  rtpus->run(milliseconds(10));
   EXPECT_EQ(first().state(kSource), State::kOn);
   EXPECT_EQ(second().state(kFollower), State::kOn);
   EXPECT_GT(first().output(kSource), 8);
   EXPECT_NEAR(second().output(kFollower), 3 * first().output(kSource), 3.1);
-  EXPECT_FALSE(units->flag_is_up());
+  EXPECT_FALSE(rtpus->flag_is_up());
 }
 
 TEST_F(EdgeTest, EverySignalWithACommandIsReported) {
-  units->send(Signal::kSpawn, {kSource}, 11);
-  units->run(milliseconds(1));
-  units->send(Signal::kOn, {kSource}, 12);
-  units->run(milliseconds(1));
-  units->send(Signal::kOn, {kSource}, 13);
-  units->run(milliseconds(1));
-  const auto reports = units->take(PostKind::kReport);
+  rtpus->send(Signal::kSpawn, {kSource}, 11);
+  rtpus->run(milliseconds(1));
+  rtpus->send(Signal::kOn, {kSource}, 12);
+  rtpus->run(milliseconds(1));
+  rtpus->send(Signal::kOn, {kSource}, 13);
+  rtpus->run(milliseconds(1));
+  const auto reports = rtpus->take(PostKind::kReport);
   ASSERT_EQ(reports.size(), 3u);
   EXPECT_EQ(reports[0].command, 11u);
   EXPECT_EQ(reports[0].detail, 1u);
@@ -126,37 +126,37 @@ TEST_F(EdgeTest, EverySignalWithACommandIsReported) {
 TEST_F(EdgeTest, TheManagersWishDecidesWhatGoesToTheTap) {
   all_on();
   EXPECT_FALSE(first().tasks->tasks()[kSource.index].is_tapped);
-  units->manager->block.set_tapped(kSource, true);
-  units->manager->block.set_tapped(kFollower, true);
-  units->change();
-  units->run(milliseconds(1));
+  rtpus->manager->block.set_tapped(kSource, true);
+  rtpus->manager->block.set_tapped(kFollower, true);
+  rtpus->change();
+  rtpus->run(milliseconds(1));
   EXPECT_TRUE(first().tasks->tasks()[kSource.index].is_tapped);
   EXPECT_FALSE(first().tasks->tasks()[kFollower.index].is_tapped);  // a task of the other rtpu
   EXPECT_TRUE(second().tasks->tasks()[kFollower.index].is_tapped);
-  units->manager->block.set_tapped(kSource, false);
-  units->change();
-  units->run(milliseconds(1));
+  rtpus->manager->block.set_tapped(kSource, false);
+  rtpus->change();
+  rtpus->run(milliseconds(1));
   EXPECT_FALSE(first().tasks->tasks()[kSource.index].is_tapped);
 }
 
 TEST_F(EdgeTest, SignalsForATaskInServiceWaitTheirTurn) {
-  units->send(Signal::kSpawn, {kSource}, 1);
-  units->send(Signal::kOn, {kSource}, 2);
-  units->send(Signal::kOff, {kSource}, 3);
-  units->run(milliseconds(1));
-  const auto reports = units->take(PostKind::kReport);
+  rtpus->send(Signal::kSpawn, {kSource}, 1);
+  rtpus->send(Signal::kOn, {kSource}, 2);
+  rtpus->send(Signal::kOff, {kSource}, 3);
+  rtpus->run(milliseconds(1));
+  const auto reports = rtpus->take(PostKind::kReport);
   ASSERT_EQ(reports.size(), 3u);
   for (const Post& report : reports) EXPECT_EQ(report.detail, 1u) << report.command;
   EXPECT_EQ(first().state(kSource), State::kOff);
 }
 
 TEST_F(EdgeTest, AStepWithAnIllegalSignalChangesNothing) {
-  units->send(Signal::kSpawn, {kSource}, 1);
-  units->run(milliseconds(1));
-  units->take(PostKind::kReport);
-  units->send(Signal::kOn, {kSource, kKiller}, 2);
-  units->run(milliseconds(1));
-  const auto reports = units->take(PostKind::kReport);
+  rtpus->send(Signal::kSpawn, {kSource}, 1);
+  rtpus->run(milliseconds(1));
+  rtpus->take(PostKind::kReport);
+  rtpus->send(Signal::kOn, {kSource, kKiller}, 2);
+  rtpus->run(milliseconds(1));
+  const auto reports = rtpus->take(PostKind::kReport);
   ASSERT_EQ(reports.size(), 2u);
   EXPECT_EQ(static_cast<Refusal>(reports[0].why), Refusal::kNone);
   EXPECT_EQ(static_cast<Refusal>(reports[1].why), Refusal::kState);
@@ -165,93 +165,93 @@ TEST_F(EdgeTest, AStepWithAnIllegalSignalChangesNothing) {
 
 TEST_F(EdgeTest, TheFlagGoesUpEverywhereWhenAProducerLeaves) {
   all_on();
-  units->send(Signal::kOff, {kSource});
-  units->run(milliseconds(3));
-  EXPECT_TRUE(units->flag_is_up());
-  EXPECT_TRUE(Follower::illegal) << "the consumer in another unit was told";
-  units->send(Signal::kOn, {kSource});
-  units->run(milliseconds(3));
-  EXPECT_FALSE(units->flag_is_up());
+  rtpus->send(Signal::kOff, {kSource});
+  rtpus->run(milliseconds(3));
+  EXPECT_TRUE(rtpus->flag_is_up());
+  EXPECT_TRUE(Follower::illegal) << "the consumer in another rtpu was told";
+  rtpus->send(Signal::kOn, {kSource});
+  rtpus->run(milliseconds(3));
+  EXPECT_FALSE(rtpus->flag_is_up());
   EXPECT_FALSE(Follower::illegal);
 }
 
-TEST_F(EdgeTest, ATaskKillsATaskOfAnotherUnitWithoutAManager) {
+TEST_F(EdgeTest, ATaskKillsATaskOfAnotherRtpuWithoutAManager) {
   all_on();
-  units->keeper.alive[2] = 0;
+  rtpus->keeper.alive[2] = 0;
   Killer::now = true;
-  units->run(milliseconds(3));
+  rtpus->run(milliseconds(3));
   EXPECT_FALSE(Killer::now);
   EXPECT_EQ(second().state(kFollower), State::kNotCreated);
 }
 
 TEST_F(EdgeTest, OnFromATaskIsAskedOfTheManager) {
   all_on();
-  units->take(PostKind::kRequest);
+  rtpus->take(PostKind::kRequest);
   Killer::on = true;
-  units->run(milliseconds(3));
-  const auto requests = units->take(PostKind::kRequest);
+  rtpus->run(milliseconds(3));
+  const auto requests = rtpus->take(PostKind::kRequest);
   ASSERT_EQ(requests.size(), 1u);
   EXPECT_EQ(requests[0].task, kSpare);
   EXPECT_EQ(requests[0].from, kKiller);
 }
 
-TEST_F(EdgeTest, AConsumerFollowsAProducerThatTakesOverInAnotherUnit) {
+TEST_F(EdgeTest, AConsumerFollowsAProducerThatTakesOverInAnotherRtpu) {
   all_on();
   EXPECT_EQ(Source::inherited, kNever);
-  units->send(Signal::kSpawn, {kSpare});
-  units->run(milliseconds(10));
+  rtpus->send(Signal::kSpawn, {kSpare});
+  rtpus->run(milliseconds(10));
   const double before = first().output(kSource);
-  units->send(Signal::kOff, {kSource});
-  units->run(milliseconds(1));
-  units->send(Signal::kOn, {kSpare});
-  units->run(milliseconds(5));
-  EXPECT_FALSE(units->flag_is_up());
-  EXPECT_GT(second().output(kSpare), before) << "it began where its predecessor in the other unit stood";
+  rtpus->send(Signal::kOff, {kSource});
+  rtpus->run(milliseconds(1));
+  rtpus->send(Signal::kOn, {kSpare});
+  rtpus->run(milliseconds(5));
+  EXPECT_FALSE(rtpus->flag_is_up());
+  EXPECT_GT(second().output(kSpare), before) << "it began where its predecessor in the other rtpu stood";
   EXPECT_LT(second().output(kSpare), before + 7);
-  EXPECT_GE(Source::inherited, microseconds(500)) << "off in the other unit, 1 ms before";
+  EXPECT_GE(Source::inherited, microseconds(500)) << "off in the other rtpu, 1 ms before";
   EXPECT_LE(Source::inherited, milliseconds(2));
   EXPECT_NEAR(second().output(kFollower), second().output(kSpare), 1.1);
 }
 
-TEST_F(EdgeTest, ADeadUnitRaisesTheFlagAndItsSuccessorIsFollowed) {
+TEST_F(EdgeTest, ADeadRtpuRaisesTheFlagAndItsSuccessorIsFollowed) {
   all_on();
-  units->run(milliseconds(5));
+  rtpus->run(milliseconds(5));
   const double last = second().output(kFollower);
-  units->die(0);
-  units->run(milliseconds(2));
+  rtpus->die(0);
+  rtpus->run(milliseconds(2));
   EXPECT_TRUE(Follower::illegal);
   EXPECT_NEAR(second().output(kFollower), last, 1.1) << "the last good value stands";
-  units->start(0, 2);
-  units->run(milliseconds(2));
+  rtpus->start(0, 2);
+  rtpus->run(milliseconds(2));
   EXPECT_TRUE(Follower::illegal);
   EXPECT_NEAR(second().output(kFollower), last, 1.1) << "not the empty group of the new process";
-  units->bring_up({kSource, kKiller});
-  units->run(milliseconds(5));
+  rtpus->bring_up({kSource, kKiller});
+  rtpus->run(milliseconds(5));
   EXPECT_FALSE(Follower::illegal);
   EXPECT_NEAR(second().output(kFollower), first().output(kSource), 1.1);
   EXPECT_EQ(second().tasks->tasks()[kFollower.index].state, State::kOn);
 }
 
-TEST_F(EdgeTest, AChangedConstantReinitialisesItsUsersInOtherUnitsAndOnlyThen) {
+TEST_F(EdgeTest, AChangedConstantReinitialisesItsUsersInOtherRtpusAndOnlyThen) {
   all_on();
-  units->send(Signal::kReinit, {kSource}, 1);
-  units->run(milliseconds(2));
+  rtpus->send(Signal::kReinit, {kSource}, 1);
+  rtpus->run(milliseconds(2));
   EXPECT_EQ(Follower::reinits, 0) << "the same value";
   Source::wanted = 5;
-  units->send(Signal::kReinit, {kSource}, 2);
-  units->run(milliseconds(3));
+  rtpus->send(Signal::kReinit, {kSource}, 2);
+  rtpus->run(milliseconds(3));
   EXPECT_EQ(Follower::reinits, 1);
   EXPECT_NEAR(second().output(kFollower), 5 * first().output(kSource), 5.1);
 }
 
 TEST_F(EdgeTest, ANoteIsToldAtOnceAndTheTaskGoesOn) {
   all_on();
-  units->take(PostKind::kEvent);
+  rtpus->take(PostKind::kEvent);
   Follower::note_at = first().output(kSource) + 2;
-  units->run(milliseconds(5));
+  rtpus->run(milliseconds(5));
   Follower::note_at = -1;
   EXPECT_EQ(second().state(kFollower), State::kOn);
-  const auto events = units->take(PostKind::kEvent);
+  const auto events = rtpus->take(PostKind::kEvent);
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].happening, EventKind::kNote);
   EXPECT_EQ(events[0].task, kFollower);
@@ -260,12 +260,12 @@ TEST_F(EdgeTest, ANoteIsToldAtOnceAndTheTaskGoesOn) {
 
 TEST_F(EdgeTest, AFaultIsToldWithItsTextInTheFaultGroup) {
   all_on();
-  units->take(PostKind::kEvent);
+  rtpus->take(PostKind::kEvent);
   Follower::fail_at = first().output(kSource) + 2;
-  units->run(milliseconds(5));
+  rtpus->run(milliseconds(5));
   EXPECT_EQ(second().state(kFollower), State::kError);
-  EXPECT_TRUE(units->flag_is_up()) << "the killer reads y";
-  const auto events = units->take(PostKind::kEvent);
+  EXPECT_TRUE(rtpus->flag_is_up()) << "the killer reads y";
+  const auto events = rtpus->take(PostKind::kEvent);
   ASSERT_FALSE(events.empty());
   EXPECT_EQ(events[0].happening, EventKind::kFault);
   EXPECT_EQ(events[0].task, kFollower);
@@ -277,58 +277,58 @@ TEST_F(EdgeTest, AFaultIsToldWithItsTextInTheFaultGroup) {
 
 TEST_F(EdgeTest, AManagerThatIsReplacedIsServedAndItsPredecessorsSignalsAreNot) {
   all_on();
-  units->start_manager(2);
-  units->run(milliseconds(1));
-  units->send(Signal::kOff, {kKiller}, 77);
-  units->run(milliseconds(1));
+  rtpus->start_manager(2);
+  rtpus->run(milliseconds(1));
+  rtpus->send(Signal::kOff, {kKiller}, 77);
+  rtpus->run(milliseconds(1));
   EXPECT_EQ(first().state(kKiller), State::kOff);
-  const auto reports = units->take(PostKind::kReport);
+  const auto reports = rtpus->take(PostKind::kReport);
   ASSERT_EQ(reports.size(), 1u);
   EXPECT_EQ(reports[0].command, 77u);
 }
 
-TEST_F(EdgeTest, TheEndTurnsConsumersOffBeforeTheirProducersOverAllUnits) {
+TEST_F(EdgeTest, TheEndTurnsConsumersOffBeforeTheirProducersOverAllRtpus) {
   all_on();
-  first().edge->unit_end().tell(false);
-  units->change();
-  units->run(milliseconds(3));
+  first().edge->rtpu_end().tell(false);
+  rtpus->change();
+  rtpus->run(milliseconds(3));
   EXPECT_EQ(first().state(kKiller), State::kOff) << "nobody comes before it";
-  EXPECT_EQ(first().state(kSource), State::kOn) << "the follower in the other unit is still ON";
-  second().edge->unit_end().tell(false);
-  units->change();
-  units->run(milliseconds(10));
+  EXPECT_EQ(first().state(kSource), State::kOn) << "the follower in the other rtpu is still ON";
+  second().edge->rtpu_end().tell(false);
+  rtpus->change();
+  rtpus->run(milliseconds(10));
   EXPECT_EQ(second().state(kFollower), State::kNotCreated);
   EXPECT_EQ(first().state(kSource), State::kNotCreated);
-  EXPECT_TRUE(first().edge->unit_end().is_over());
-  EXPECT_TRUE(second().edge->unit_end().is_over());
+  EXPECT_TRUE(first().edge->rtpu_end().is_over());
+  EXPECT_TRUE(second().edge->rtpu_end().is_over());
 }
 
-TEST_F(EdgeTest, AnInitThatEndsWhileItsUnitEndsAloneIsNotReportedForItsSuccessorDoesItAgain) {
+TEST_F(EdgeTest, AnInitThatEndsWhileItsRtpuEndsAloneIsNotReportedForItsSuccessorDoesItAgain) {
   for (const bool is_alone : {true, false}) {
     SCOPED_TRACE(is_alone ? "alone" : "with everything");
-    units = std::make_unique<Units>(app);
-    units->run(milliseconds(1));
-    units->send(Signal::kSpawn, {kSource}, 11);
-    units->run(microseconds(100));
+    rtpus = std::make_unique<TestRtpus>(app);
+    rtpus->run(milliseconds(1));
+    rtpus->send(Signal::kSpawn, {kSource}, 11);
+    rtpus->run(microseconds(100));
     const auto in_init = std::exchange(first().service.asked, {});
     ASSERT_EQ(in_init.size(), 1u);
-    first().edge->unit_end().tell(is_alone);
-    units->change();
-    units->run(milliseconds(1));
+    first().edge->rtpu_end().tell(is_alone);
+    rtpus->change();
+    rtpus->run(milliseconds(1));
     first().service.asked = in_init;
-    units->run(milliseconds(3));
-    EXPECT_TRUE(first().edge->unit_end().is_over());
+    rtpus->run(milliseconds(3));
+    EXPECT_TRUE(first().edge->rtpu_end().is_over());
     EXPECT_EQ(first().state(kSource), State::kNotCreated);
-    EXPECT_EQ(units->take(PostKind::kReport).size(), is_alone ? 0u : 1u);
+    EXPECT_EQ(rtpus->take(PostKind::kReport).size(), is_alone ? 0u : 1u);
   }
 }
 
-TEST_F(EdgeTest, TheEndDoesNotWaitForEverForAnotherUnit) {
+TEST_F(EdgeTest, TheEndDoesNotWaitForEverForAnotherRtpu) {
   all_on();
-  first().edge->unit_end().tell(false);
-  units->change();
-  units->run(milliseconds(1100));
-  EXPECT_TRUE(first().edge->unit_end().is_over());
+  first().edge->rtpu_end().tell(false);
+  rtpus->change();
+  rtpus->run(milliseconds(1100));
+  EXPECT_TRUE(first().edge->rtpu_end().is_over());
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 #include "chimera/platform/wake.h"
 #include "chimera/rtpu/task_queue.h"
+#include "chimera/runtime/life/task_set.h"
 #include "chimera/runtime/service.h"
-#include "chimera/runtime/task_set.h"
 
 namespace chimera {
 

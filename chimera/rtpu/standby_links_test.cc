@@ -4,13 +4,13 @@
 
 #include <vector>
 
-#include "chimera/rtpu/testing/test_units.h"
+#include "chimera/rtpu/testing/test_rtpus.h"
 
 namespace chimera::standby_links_test {
 namespace {
 
 using testing::TestApplication;
-using testing::Units;
+using testing::TestRtpus;
 
 struct Primary {
   Out<double> u{"u", "1", initial = 0.0};
@@ -50,7 +50,7 @@ constexpr TaskId kPrimary{0u}, kUser{1u}, kSpare{2u}, kLast{3u};
 struct StandbyLinksTest : ::testing::Test {
   StandbyLinksTest() { begin(); }
   void begin() {
-    units.reset();
+    rtpus.reset();
     app = TestApplication();
     Primary::fails = Standby::fails = false;
     app.rtpus = {{"a", 0, Policy::kEdf}, {"b", 1, Policy::kEdf}, {"c", 2, Policy::kEdf}, {"d", 3, Policy::kEdf}};
@@ -60,50 +60,50 @@ struct StandbyLinksTest : ::testing::Test {
     app.add("last", testing::component<Standby>("standby")).rtpu = RtpuId(3u);
     app.make({kPrimary, kUser}, false);
     app.spec.standbys = pairs;
-    units = std::make_unique<Units>(app);
-    units->run(milliseconds(1));
-    for (std::uint32_t t = 0; t <= kLast.index; ++t) units->send(Signal::kSpawn, {TaskId(t)});
-    units->run(milliseconds(2));
-    units->send(Signal::kOn, {kPrimary});
-    units->run(milliseconds(1));
-    units->send(Signal::kOn, {kUser});
-    units->run(milliseconds(5));
+    rtpus = std::make_unique<TestRtpus>(app);
+    rtpus->run(milliseconds(1));
+    for (std::uint32_t t = 0; t <= kLast.index; ++t) rtpus->send(Signal::kSpawn, {TaskId(t)});
+    rtpus->run(milliseconds(2));
+    rtpus->send(Signal::kOn, {kPrimary});
+    rtpus->run(milliseconds(1));
+    rtpus->send(Signal::kOn, {kUser});
+    rtpus->run(milliseconds(5));
     User::illegal = 0;
   }
-  State state(TaskId task) const { return units->units[app.tasks[task.index].rtpu.index]->state(task); }
+  State state(TaskId task) const { return rtpus->rtpus[app.tasks[task.index].rtpu.index]->state(task); }
   /// The last published takeover of the task's rtpu; `is_alive`: read as from a live process.
   Takeover told_by(TaskId task, std::uint32_t number, bool is_alive = true) const {
     Takeover takeover;
-    const BlockView block = units->units[app.tasks[task.index].rtpu.index]->segment.block.view();
+    const BlockView block = rtpus->rtpus[app.tasks[task.index].rtpu.index]->segment.block.view();
     EXPECT_TRUE(block.takeovers().read(number, is_alive, takeover)) << number;
     return takeover;
   }
-  std::uint64_t claim() const { return units->decision.claims[0].load(); }
+  std::uint64_t claim() const { return rtpus->decision.claims[0].load(); }
 
   std::vector<StandbySpec> pairs{{kPrimary, kSpare}, {kPrimary, kLast}};
   TestApplication app;
-  std::unique_ptr<Units> units;
+  std::unique_ptr<TestRtpus> rtpus;
 };
 
 TEST_F(StandbyLinksTest, TakesOverFromATaskThatFails) {
   Primary::fails = true;
-  units->run(milliseconds(5));
+  rtpus->run(milliseconds(5));
   EXPECT_EQ(state(kPrimary), State::kError);
   EXPECT_EQ(state(kSpare), State::kOn);
   EXPECT_EQ(state(kLast), State::kOff);
   EXPECT_GT(Standby::inherited, 0);
-  EXPECT_GE(units->units[1]->output(kUser), 1000) << "the reader follows";
-  EXPECT_FALSE(units->flag_is_up());
+  EXPECT_GE(rtpus->rtpus[1]->output(kUser), 1000) << "the reader follows";
+  EXPECT_FALSE(rtpus->flag_is_up());
   EXPECT_EQ(User::illegal, 0);
   EXPECT_EQ(claim(), 0u);
 }
 
 TEST_F(StandbyLinksTest, TakesOverFromAProcessThatDiesWithTheManager) {
-  units->keeper.alive[4] = 0;
-  units->die(0);
-  units->run(milliseconds(5));
+  rtpus->keeper.alive[4] = 0;
+  rtpus->die(0);
+  rtpus->run(milliseconds(5));
   EXPECT_EQ(state(kSpare), State::kOn);
-  EXPECT_GE(units->units[1]->output(kUser), 1000);
+  EXPECT_GE(rtpus->rtpus[1]->output(kUser), 1000);
   EXPECT_EQ(User::illegal, 0);
   const Takeover takeover = told_by(kSpare, 1);
   EXPECT_EQ(takeover.from, kPrimary);
@@ -117,20 +117,20 @@ TEST_F(StandbyLinksTest, TakesOverFromAProcessThatDiesWithTheManager) {
 }
 
 TEST_F(StandbyLinksTest, TheNextOneTakesOverWhenTheFirstIsDeadOrCannot) {
-  units->die(2);
-  units->run(milliseconds(2));
-  units->die(0);
-  units->run(milliseconds(5));
+  rtpus->die(2);
+  rtpus->run(milliseconds(2));
+  rtpus->die(0);
+  rtpus->run(milliseconds(5));
   EXPECT_EQ(state(kLast), State::kOn);
   EXPECT_EQ(User::illegal, 0);
 }
 
-TEST_F(StandbyLinksTest, ATakeoverThatItsUnitDiesInIsToldAsFarAsItCame) {
-  units->run(microseconds(500));  // between two releases
-  units->die(0);
-  while (state(kSpare) != State::kOn) units->run(microseconds(10));
+TEST_F(StandbyLinksTest, ATakeoverThatItsRtpuDiesInIsToldAsFarAsItCame) {
+  rtpus->run(microseconds(500));  // between two releases
+  rtpus->die(0);
+  while (state(kSpare) != State::kOn) rtpus->run(microseconds(10));
   Takeover takeover;
-  EXPECT_FALSE(units->units[2]->segment.block.view().takeovers().read(1, true, takeover)) << "it is not over";
+  EXPECT_FALSE(rtpus->rtpus[2]->segment.block.view().takeovers().read(1, true, takeover)) << "it is not over";
   takeover = told_by(kSpare, 1, false);
   EXPECT_EQ(takeover.end, SwitchEnd::kDone);
   EXPECT_EQ(takeover.ended, kNever);
@@ -139,24 +139,24 @@ TEST_F(StandbyLinksTest, ATakeoverThatItsUnitDiesInIsToldAsFarAsItCame) {
 
 TEST_F(StandbyLinksTest, OneWhoseOnFailsMakesPlace) {
   Standby::fails = true;
-  units->die(0);
-  units->run(milliseconds(1));
+  rtpus->die(0);
+  rtpus->run(milliseconds(1));
   EXPECT_EQ(state(kSpare), State::kError);
   EXPECT_EQ(state(kLast), State::kError);
-  units->run(milliseconds(3));
-  EXPECT_TRUE(units->flag_is_up());
+  rtpus->run(milliseconds(3));
+  EXPECT_TRUE(rtpus->flag_is_up());
 }
 
-TEST_F(StandbyLinksTest, AnotherUnitWithTheClaimIsWaitedForUnlessItIsDead) {
-  units->decision.claims[0] = std::uint64_t{4} << 32 | 1;  // the rtpu of `last`
+TEST_F(StandbyLinksTest, AnotherRtpuWithTheClaimIsWaitedForUnlessItIsDead) {
+  rtpus->decision.claims[0] = std::uint64_t{4} << 32 | 1;  // the rtpu of `last`
   Primary::fails = true;
-  units->run(milliseconds(3));
+  rtpus->run(milliseconds(3));
   EXPECT_EQ(state(kSpare), State::kOff);
-  EXPECT_TRUE(units->flag_is_up()) << "a period is over";
-  units->die(3);
-  units->run(milliseconds(3));
+  EXPECT_TRUE(rtpus->flag_is_up()) << "a period is over";
+  rtpus->die(3);
+  rtpus->run(milliseconds(3));
   EXPECT_EQ(state(kSpare), State::kOn);
-  EXPECT_FALSE(units->flag_is_up());
+  EXPECT_FALSE(rtpus->flag_is_up());
 }
 
 TEST_F(StandbyLinksTest, AHotOneCyclesUnreadAndIsReadWithoutAnotherOn) {
@@ -165,28 +165,28 @@ TEST_F(StandbyLinksTest, AHotOneCyclesUnreadAndIsReadWithoutAnotherOn) {
   begin();
   EXPECT_EQ(Standby::ons, 1);
   EXPECT_EQ(state(kSpare), State::kOff);
-  const double before = units->units[2]->output(kSpare);
+  const double before = rtpus->rtpus[2]->output(kSpare);
   EXPECT_GE(before, 4000) << "it cycles";
-  EXPECT_LT(units->units[1]->output(kUser), 1000) << "unread";
-  EXPECT_FALSE(units->flag_is_up());
-  units->die(0);
-  units->run(milliseconds(3));
+  EXPECT_LT(rtpus->rtpus[1]->output(kUser), 1000) << "unread";
+  EXPECT_FALSE(rtpus->flag_is_up());
+  rtpus->die(0);
+  rtpus->run(milliseconds(3));
   EXPECT_EQ(state(kSpare), State::kOn);
   EXPECT_EQ(Standby::ons, 1);
-  EXPECT_GE(units->units[1]->output(kUser), before + 2000);
+  EXPECT_GE(rtpus->rtpus[1]->output(kUser), before + 2000);
   EXPECT_EQ(User::illegal, 0);
 }
 
 TEST_F(StandbyLinksTest, AProcessThatEndsWithTheRunIsNotReplaced) {
-  units->keeper.ending = 1;
-  units->die(0);
-  units->run(milliseconds(5));
+  rtpus->keeper.ending = 1;
+  rtpus->die(0);
+  rtpus->run(milliseconds(5));
   EXPECT_EQ(state(kSpare), State::kOff);
 }
 
-TEST_F(StandbyLinksTest, ASecondOnOfTheGroupIsRefusedByTheUnitItself) {
-  units->send(Signal::kOn, {kSpare});  // the manager does not know of the takeover
-  units->run(milliseconds(2));
+TEST_F(StandbyLinksTest, ASecondOnOfTheGroupIsRefusedByTheRtpuItself) {
+  rtpus->send(Signal::kOn, {kSpare});  // the manager does not know of the takeover
+  rtpus->run(milliseconds(2));
   EXPECT_EQ(state(kSpare), State::kOff);
   EXPECT_EQ(claim(), 0u);
 }
@@ -217,19 +217,19 @@ TEST(StandbyLinks, TakeoversOfTwoGroupsAreToldInTheOrderInWhichTheyCameToSomethi
   app.add("quick", testing::component<Standby>("standby")).rtpu = RtpuId(1u);
   app.make({kOther, kFirst}, false);
   app.spec.standbys = two;
-  Units units(app);
-  units.run(milliseconds(1));
-  for (const TaskId task : {kOther, kFirst, kSlow, kQuick}) units.send(Signal::kSpawn, {task});
-  units.run(milliseconds(2));
-  units.send(Signal::kOn, {kOther, kFirst});
-  units.run(milliseconds(3));
-  units.die(0);
-  units.run(milliseconds(2));
-  const TakeoverRing& ring = units.units[1]->segment.block.view().takeovers();
+  TestRtpus rtpus(app);
+  rtpus.run(milliseconds(1));
+  for (const TaskId task : {kOther, kFirst, kSlow, kQuick}) rtpus.send(Signal::kSpawn, {task});
+  rtpus.run(milliseconds(2));
+  rtpus.send(Signal::kOn, {kOther, kFirst});
+  rtpus.run(milliseconds(3));
+  rtpus.die(0);
+  rtpus.run(milliseconds(2));
+  const TakeoverRing& ring = rtpus.rtpus[1]->segment.block.view().takeovers();
   Takeover takeover;
   ASSERT_TRUE(ring.read(1, true, takeover)) << "the other one is waited for";
   EXPECT_EQ(takeover.standby.task, kQuick);
-  units.run(milliseconds(8));
+  rtpus.run(milliseconds(8));
   EXPECT_EQ(Slow::asked, 4);
   ASSERT_TRUE(ring.read(2, true, takeover));
   EXPECT_EQ(takeover.standby.task, kSlow);

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "chimera/rtpu/peer_links.h"
-#include "chimera/runtime/boundary_signals.h"
+#include "chimera/runtime/cycle/boundary_signals.h"
 
 namespace chimera {
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "chimera/rtpu/testing/test_units.h"
+#include "chimera/rtpu/testing/test_rtpus.h"
 
 namespace chimera {
 namespace {
@@ -27,21 +27,21 @@ TEST(SupervisedSignals, TellTheMethodForAsLongAsItIsUnderWay) {
   app.rtpus = {{"only", 0, Policy::kEdf}};
   app.add("seer", component<Seer>("seer")).rtpu = RtpuId(0u);
   app.make({seer}, false);
-  testing::Units units(app);
-  watched = &units.units[0]->edge->supervised();
-  units.run(milliseconds(1));
+  testing::TestRtpus rtpus(app);
+  watched = &rtpus.rtpus[0]->edge->supervised();
+  rtpus.run(milliseconds(1));
   const std::uint32_t before = watched->progress();
-  units.bring_up({seer});
-  units.run(milliseconds(20));
+  rtpus.bring_up({seer});
+  rtpus.run(milliseconds(20));
   EXPECT_EQ(Seer::seen_on, TaskWord(seer, Method::kOn).word());
   EXPECT_EQ(Seer::progress % 2, 1u) << "begun, not done with";
   EXPECT_EQ(Seer::seen_cycle, 0u) << "a job is no signal";
   EXPECT_EQ(watched->acting(), 0u);
-  units.send(Signal::kOff, {seer});
-  units.run(milliseconds(1));
+  rtpus.send(Signal::kOff, {seer});
+  rtpus.run(milliseconds(1));
   EXPECT_EQ(Seer::seen_off, TaskWord(seer, Method::kOff).word());
   EXPECT_EQ(watched->progress(), before + 6) << "spawn, on and off";
-  EXPECT_EQ(units.units[0]->state(seer), State::kOff) << "shown to the others";
+  EXPECT_EQ(rtpus.rtpus[0]->state(seer), State::kOff) << "shown to the others";
 }
 
 }  // namespace

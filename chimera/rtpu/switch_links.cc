@@ -6,8 +6,8 @@ namespace chimera {
 
 std::uint16_t SwitchLinks::living() const noexcept {
   std::uint32_t living = 1u << me_;
-  for (std::uint32_t unit = 0; unit < others_.manager(); ++unit)
-    if (unit != me_ && others_.at(unit) != nullptr) living |= 1u << unit;
+  for (std::uint32_t rtpu = 0; rtpu < others_.manager(); ++rtpu)
+    if (rtpu != me_ && others_.at(rtpu) != nullptr) living |= 1u << rtpu;
   return static_cast<std::uint16_t>(living);
 }
 
@@ -41,20 +41,20 @@ void SwitchLinks::tell_takeover(const Takeover& takeover) noexcept {
 
 // True if a manager has handled the request. This stays true after its death, because its successor takes the words
 // over.
-bool SwitchLinks::was_dealt_with(const BlockHead& head, std::uint32_t unit, std::uint16_t wish) const noexcept {
+bool SwitchLinks::was_dealt_with(const BlockHead& head, std::uint32_t rtpu, std::uint16_t wish) const noexcept {
   const PeerSegment* const manager = mapped_.at(others_.manager());
   if (manager == nullptr) return false;
-  const std::uint64_t dealt = manager->block().memory().wishes[unit].load(std::memory_order_relaxed);
+  const std::uint64_t dealt = manager->block().memory().wishes[rtpu].load(std::memory_order_relaxed);
   return dealt == wish_dealt_with(head.incarnation, wish);
 }
 
 bool SwitchLinks::is_wish_open() const noexcept {
-  for (std::uint32_t unit = 0; unit < others_.manager(); ++unit) {
-    const PeerSegment* const there = unit == me_ ? nullptr : others_.at(unit);
-    if (unit != me_ && there == nullptr) continue;
-    const BlockHead& head = unit == me_ ? others_.block().head() : there->block().head();
+  for (std::uint32_t rtpu = 0; rtpu < others_.manager(); ++rtpu) {
+    const PeerSegment* const there = rtpu == me_ ? nullptr : others_.at(rtpu);
+    if (rtpu != me_ && there == nullptr) continue;
+    const BlockHead& head = rtpu == me_ ? others_.block().head() : there->block().head();
     const SwitchWish last = head.wish.wish();
-    if (last.is_there() && !was_dealt_with(head, unit, last.number)) return true;
+    if (last.is_there() && !was_dealt_with(head, rtpu, last.number)) return true;
   }
   return false;
 }

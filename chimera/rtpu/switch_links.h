@@ -27,7 +27,7 @@ class SwitchLinks final : public SwitchPeers {
   bool is_wish_open() const noexcept override;
 
  private:
-  bool was_dealt_with(const BlockHead& head, std::uint32_t unit, std::uint16_t wish) const noexcept;
+  bool was_dealt_with(const BlockHead& head, std::uint32_t rtpu, std::uint16_t wish) const noexcept;
   TaskSet& tasks_;
   PeerLinks& others_;
   const MappedPeers& mapped_;

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/rtpu/testing/test_units.h"
+#include "chimera/rtpu/testing/test_rtpus.h"
 #include "chimera/runtime/testing/switch_scene.h"
 
 namespace chimera {
@@ -18,33 +18,33 @@ namespace {
 
 using namespace testing::switch_scene;
 using testing::TestApplication;
-using testing::Units;
+using testing::TestRtpus;
 
 struct SwitchLinksTest : ::testing::Test {
   SwitchLinksTest() { make(); }
   void make() {
     scene = {};
-    units.reset();
+    rtpus.reset();
     app = testing::switch_scene::application(limit, false);
-    units = std::make_unique<Units>(*app);
-    units->run(milliseconds(1));
+    rtpus = std::make_unique<TestRtpus>(*app);
+    rtpus->run(milliseconds(1));
     for (std::uint32_t t = 0; t <= kThree.index; ++t) {
-      units->send(Signal::kSpawn, {TaskId(t)});
-      units->run(milliseconds(1));
+      rtpus->send(Signal::kSpawn, {TaskId(t)});
+      rtpus->run(milliseconds(1));
     }
-    for (const TaskId task : kSets[kDirect]) units->send(Signal::kOn, {task});
-    units->run(milliseconds(10));
+    for (const TaskId task : kSets[kDirect]) rtpus->send(Signal::kOn, {task});
+    rtpus->run(milliseconds(10));
     scene.illegal = 0;
     scene.story.clear();
   }
-  State state(TaskId task) const { return units->units[app->tasks[task.index].rtpu.index]->state(task); }
+  State state(TaskId task) const { return rtpus->rtpus[app->tasks[task.index].rtpu.index]->state(task); }
   bool are_on(const std::vector<TaskId>& set) const {
     for (std::uint32_t t = 0; t <= kThree.index; ++t)
       if ((state(TaskId(t)) == State::kOn) != (std::ranges::find(set, TaskId(t)) != set.end())) return false;
     return true;
   }
   const TaskPart& part(std::uint32_t u, TaskId task) const {
-    const SwitchPart& all = units->part(u);
+    const SwitchPart& all = rtpus->part(u);
     const auto end = all.tasks.begin() + all.n_tasks;
     const auto found = std::find_if(all.tasks.begin(), end, [task](const TaskPart& p) { return p.task == task; });
     EXPECT_NE(found, end);
@@ -52,89 +52,89 @@ struct SwitchLinksTest : ::testing::Test {
   }
   std::uint64_t lost() const {
     std::uint64_t n = 0;
-    for (const auto& unit : units->units)
-      for (const Task& task : unit->tasks->tasks()) n += task.profile.dropped + task.profile.missed;
+    for (const auto& rtpu : rtpus->rtpus)
+      for (const Task& task : rtpu->tasks->tasks()) n += task.profile.dropped + task.profile.missed;
     return n;
   }
 
   double limit = 0;
   std::unique_ptr<TestApplication> app;
-  std::unique_ptr<Units> units;
+  std::unique_ptr<TestRtpus> rtpus;
 };
 
-TEST_F(SwitchLinksTest, TwoUnitsChangeAtOneInstant) {
-  const std::uint16_t number = units->switch_to(kObserved);
-  units->run(milliseconds(10));
-  ASSERT_TRUE(units->is_over(number));
-  EXPECT_EQ(units->part(0).number, number);
-  EXPECT_EQ(units->part(0).end, SwitchEnd::kDone);
-  EXPECT_EQ(units->part(1).end, SwitchEnd::kDone);
-  EXPECT_EQ(units->part(0).at, units->part(1).at);
+TEST_F(SwitchLinksTest, TwoRtpusChangeAtOneInstant) {
+  const std::uint16_t number = rtpus->switch_to(kObserved);
+  rtpus->run(milliseconds(10));
+  ASSERT_TRUE(rtpus->is_over(number));
+  EXPECT_EQ(rtpus->part(0).number, number);
+  EXPECT_EQ(rtpus->part(0).end, SwitchEnd::kDone);
+  EXPECT_EQ(rtpus->part(1).end, SwitchEnd::kDone);
+  EXPECT_EQ(rtpus->part(0).at, rtpus->part(1).at);
   EXPECT_TRUE(are_on(kSets[kObserved]));
   EXPECT_EQ(scene.story, (std::vector<std::string>{"on observer", "on two", "off one"}));
-  EXPECT_FALSE(units->flag_is_up());
+  EXPECT_FALSE(rtpus->flag_is_up());
   EXPECT_EQ(scene.illegal, 0);
   EXPECT_EQ(lost(), 0u);
-  EXPECT_EQ(units->part(0).n_tasks, 3u);  // plant, beacon, observer
-  EXPECT_EQ(units->part(1).n_tasks, 3u);  // reader, one, two
+  EXPECT_EQ(rtpus->part(0).n_tasks, 3u);  // plant, beacon, observer
+  EXPECT_EQ(rtpus->part(1).n_tasks, 3u);  // reader, one, two
   EXPECT_EQ(part(1, kOne).move, TaskMove::kLeaves);
   EXPECT_GE(part(1, kOne).off, Nanoseconds{});
-  EXPECT_EQ(units->part(1).n_variables, 1u);  // u; z goes to a task of the first rtpu
-  EXPECT_TRUE(units->part(1).variables[0].step_of_on.is_known);
+  EXPECT_EQ(rtpus->part(1).n_variables, 1u);  // u; z goes to a task of the first rtpu
+  EXPECT_TRUE(rtpus->part(1).variables[0].step_of_on.is_known);
 }
 
 TEST_F(SwitchLinksTest, ARequestIsAWordThatStaysUntilItIsDealtWith) {
-  const auto wish = [&] { return units->units[1]->segment.block.head().wish.wish(); };
+  const auto wish = [&] { return rtpus->rtpus[1]->segment.block.head().wish.wish(); };
   std::string wanted = "direct";
   scene.in_reader = [&](Cycle c) { EXPECT_TRUE(c.request(wanted.c_str())); };
-  units->run(milliseconds(5));
+  rtpus->run(milliseconds(5));
   EXPECT_FALSE(wish().is_there()) << "it is in force";
   wanted = "observed";
-  units->run(milliseconds(5));
+  rtpus->run(milliseconds(5));
   EXPECT_EQ(wish(), (SwitchWish{1, kObserved, static_cast<std::uint16_t>(kReader.index), SwitchCause::kRequest}));
-  EXPECT_NE(units->units[1]->segment.block.head().wish.read().at, Nanoseconds{});
+  EXPECT_NE(rtpus->rtpus[1]->segment.block.head().wish.read().at, Nanoseconds{});
   wanted = "direct";
-  units->run(milliseconds(5));
+  rtpus->run(milliseconds(5));
   EXPECT_EQ(wish().number, 2) << "it takes the wish back that nobody has dealt with";
   EXPECT_EQ(wish().set, kDirect);
-  units->manager->block.memory().wishes[1] = wish_dealt_with(1, 2);
-  units->run(milliseconds(5));
+  rtpus->manager->block.memory().wishes[1] = wish_dealt_with(1, 2);
+  rtpus->run(milliseconds(5));
   EXPECT_EQ(wish().number, 2);
   wanted = "observed";
-  units->run(milliseconds(1));
-  units->manager->block.memory().wishes[1] = wish_dealt_with(1, 3);
-  (void)units->switch_to(kObserved);
-  units->run(milliseconds(10));
+  rtpus->run(milliseconds(1));
+  rtpus->manager->block.memory().wishes[1] = wish_dealt_with(1, 3);
+  (void)rtpus->switch_to(kObserved);
+  rtpus->run(milliseconds(10));
   EXPECT_TRUE(are_on(kSets[kObserved]));
   EXPECT_EQ(wish().number, 3) << "what is under way, and in force later, is not asked for again";
 }
 
 TEST_F(SwitchLinksTest, TheSameRequestIsMadeAgainThoughTheManagerThatDealtWithTheLastOneIsDead) {
-  const auto number = [&] { return units->units[1]->segment.block.head().wish.wish().number; };
+  const auto number = [&] { return rtpus->rtpus[1]->segment.block.head().wish.wish().number; };
   std::string wanted = "observed";
   scene.in_reader = [&](Cycle c) {
     EXPECT_TRUE(wanted.empty() || c.request(wanted.c_str()));
   };
-  units->run(milliseconds(1));
+  rtpus->run(milliseconds(1));
   ASSERT_EQ(number(), 1);
   wanted = "";
-  units->manager->block.memory().wishes[1] = wish_dealt_with(1, 1);
-  (void)units->switch_to(kObserved);
-  units->run(milliseconds(10));
-  (void)units->switch_to(kDirect);
-  units->run(milliseconds(10));
+  rtpus->manager->block.memory().wishes[1] = wish_dealt_with(1, 1);
+  (void)rtpus->switch_to(kObserved);
+  rtpus->run(milliseconds(10));
+  (void)rtpus->switch_to(kDirect);
+  rtpus->run(milliseconds(10));
   ASSERT_TRUE(are_on(kSets[kDirect]));
-  units->die(units->n);
+  rtpus->die(rtpus->n);
   wanted = "observed";
-  units->run(milliseconds(5));
+  rtpus->run(milliseconds(5));
   EXPECT_EQ(number(), 1) << "not yet: 100 ms have not passed since the last";
-  units->run(kAskAgain);
+  rtpus->run(kAskAgain);
   EXPECT_EQ(number(), 2);
-  EXPECT_EQ(units->units[1]->segment.block.head().wish.wish().set, kObserved);
+  EXPECT_EQ(rtpus->rtpus[1]->segment.block.head().wish.wish().set, kObserved);
 }
 
 TEST_F(SwitchLinksTest, WhoStaysSeesNothingOfTenThousandSwitches) {
-  const Nanoseconds begin = units->now;
+  const Nanoseconds begin = rtpus->now;
   std::mt19937 random(5);
   std::vector<std::uint32_t> wanted;
   std::uint32_t at_present = kDirect;
@@ -142,142 +142,142 @@ TEST_F(SwitchLinksTest, WhoStaysSeesNothingOfTenThousandSwitches) {
     std::uint32_t next = random() % 2;
     if (next >= at_present) ++next;
     at_present = next;
-    const std::uint16_t number = units->switch_to(next, microseconds(300 + random() % 500));
-    units->run(microseconds(100 * (40 + random() % 20)));
-    ASSERT_TRUE(units->is_over(number)) << i;
+    const std::uint16_t number = rtpus->switch_to(next, microseconds(300 + random() % 500));
+    rtpus->run(microseconds(100 * (40 + random() % 20)));
+    ASSERT_TRUE(rtpus->is_over(number)) << i;
     for (const std::uint32_t u : {0u, 1u}) {
-      const SwitchPart& told = units->part(u);
+      const SwitchPart& told = rtpus->part(u);
       ASSERT_EQ(told.number, number);
       ASSERT_EQ(told.end, SwitchEnd::kDone) << i << " " << static_cast<int>(told.why);
       for (std::uint32_t t = 0; t < told.n_tasks; ++t) ASSERT_EQ(told.tasks[t].lost, 0u) << i;
     }
     ASSERT_TRUE(are_on(kSets[at_present])) << i;
-    ASSERT_FALSE(units->flag_is_up());
+    ASSERT_FALSE(rtpus->flag_is_up());
   }
   EXPECT_EQ(scene.illegal, 0);
   EXPECT_EQ(lost(), 0u);
-  const Nanoseconds passed = units->now - begin;
+  const Nanoseconds passed = rtpus->now - begin;
   const Log plant = scene.plant, beacon = scene.beacon, u = scene.u, reader = scene.reader;
   make();
-  units->run(passed);
+  rtpus->run(passed);
   EXPECT_TRUE(plant == scene.plant);
   EXPECT_TRUE(beacon == scene.beacon);
   EXPECT_TRUE(u == scene.u);
   EXPECT_TRUE(reader == scene.reader);
 }
 
-TEST_F(SwitchLinksTest, AnOnThatFailsInOneUnitUndoesWhatTheOtherHasArmed) {
+TEST_F(SwitchLinksTest, AnOnThatFailsInOneRtpuUndoesWhatTheOtherHasArmed) {
   scene.on_of_two_fails = true;
-  const std::uint16_t number = units->switch_to(kObserved);
-  units->run(milliseconds(10));
-  ASSERT_TRUE(units->is_over(number));
-  EXPECT_EQ(units->part(0).end, SwitchEnd::kAborted);
-  EXPECT_EQ(units->part(0).why, NoSwitch::kNone) << "the other unit aborted";
-  EXPECT_EQ(units->part(1).why, NoSwitch::kOnFailed);
-  EXPECT_EQ(units->part(1).task, kTwo);
-  EXPECT_STREQ(units->part(1).said, "no current");
+  const std::uint16_t number = rtpus->switch_to(kObserved);
+  rtpus->run(milliseconds(10));
+  ASSERT_TRUE(rtpus->is_over(number));
+  EXPECT_EQ(rtpus->part(0).end, SwitchEnd::kAborted);
+  EXPECT_EQ(rtpus->part(0).why, NoSwitch::kNone) << "the other rtpu aborted";
+  EXPECT_EQ(rtpus->part(1).why, NoSwitch::kOnFailed);
+  EXPECT_EQ(rtpus->part(1).task, kTwo);
+  EXPECT_STREQ(rtpus->part(1).said, "no current");
   EXPECT_EQ(scene.story, (std::vector<std::string>{"on observer", "on two", "off observer"}));
   EXPECT_TRUE(are_on(kSets[kDirect]));
   EXPECT_EQ(scene.illegal, 0);
 }
 
-TEST_F(SwitchLinksTest, AStepOfOnBeyondTheLimitIsSeenAcrossUnits) {
+TEST_F(SwitchLinksTest, AStepOfOnBeyondTheLimitIsSeenAcrossRtpus) {
   limit = 0.5;
   make();
   scene.on_of_two = 0.6;
-  const std::uint16_t number = units->switch_to(kObserved);
-  units->run(milliseconds(10));
-  ASSERT_TRUE(units->is_over(number));
-  EXPECT_EQ(units->part(1).why, NoSwitch::kStepTooLarge);
+  const std::uint16_t number = rtpus->switch_to(kObserved);
+  rtpus->run(milliseconds(10));
+  ASSERT_TRUE(rtpus->is_over(number));
+  EXPECT_EQ(rtpus->part(1).why, NoSwitch::kStepTooLarge);
   EXPECT_TRUE(are_on(kSets[kDirect]));
 }
 
 TEST_F(SwitchLinksTest, ASignalToAMemberAborts) {
-  const std::uint16_t number = units->switch_to(kObserved);
-  units->send(Signal::kOff, {kOne});
-  units->run(milliseconds(10));
-  ASSERT_TRUE(units->is_over(number));
-  EXPECT_EQ(units->part(1).end, SwitchEnd::kAborted);
+  const std::uint16_t number = rtpus->switch_to(kObserved);
+  rtpus->send(Signal::kOff, {kOne});
+  rtpus->run(milliseconds(10));
+  ASSERT_TRUE(rtpus->is_over(number));
+  EXPECT_EQ(rtpus->part(1).end, SwitchEnd::kAborted);
   EXPECT_EQ(state(kOne), State::kOff);
   EXPECT_EQ(state(kTwo), State::kOff);
   EXPECT_EQ(state(kObserver), State::kOff);
-  EXPECT_TRUE(units->flag_is_up());  // u has no producer
+  EXPECT_TRUE(rtpus->flag_is_up());  // u has no producer
 }
 
 TEST_F(SwitchLinksTest, TheDeathOfAMemberBeforeTheChangeAborts) {
-  const std::uint16_t number = units->switch_to(kBeside);
-  units->die(1);
-  units->run(milliseconds(10));
-  ASSERT_TRUE(units->is_over(number));
-  EXPECT_EQ(units->part(0).end, SwitchEnd::kAborted);
-  EXPECT_EQ(units->part(0).why, NoSwitch::kMemberDied);
+  const std::uint16_t number = rtpus->switch_to(kBeside);
+  rtpus->die(1);
+  rtpus->run(milliseconds(10));
+  ASSERT_TRUE(rtpus->is_over(number));
+  EXPECT_EQ(rtpus->part(0).end, SwitchEnd::kAborted);
+  EXPECT_EQ(rtpus->part(0).why, NoSwitch::kMemberDied);
   EXPECT_EQ(state(kThree), State::kOff);
-  EXPECT_TRUE(units->flag_is_up());
+  EXPECT_TRUE(rtpus->flag_is_up());
 }
 
 // The rtpu of the leaving producer dies after all have agreed: the others do not wait for it.
 TEST_F(SwitchLinksTest, TheDeathOfAMemberAfterTheCommitDoesNotHoldUpTheChange) {
-  const std::uint16_t number = units->switch_to(kBeside, milliseconds(5));
-  SwitchAgreement agreement(units->decision.switching, units->keeper.origin);
-  while (agreement.plan().phase != SwitchPhase::kCommitted) units->run(microseconds(100));
-  units->die(1);
-  units->run(milliseconds(10));
-  ASSERT_TRUE(units->is_over(number));
-  EXPECT_EQ(units->part(0).end, SwitchEnd::kDone);
+  const std::uint16_t number = rtpus->switch_to(kBeside, milliseconds(5));
+  SwitchAgreement agreement(rtpus->decision.switching, rtpus->keeper.origin);
+  while (agreement.plan().phase != SwitchPhase::kCommitted) rtpus->run(microseconds(100));
+  rtpus->die(1);
+  rtpus->run(milliseconds(10));
+  ASSERT_TRUE(rtpus->is_over(number));
+  EXPECT_EQ(rtpus->part(0).end, SwitchEnd::kDone);
   EXPECT_EQ(state(kThree), State::kOn);
   EXPECT_EQ(std::get<1>(scene.u.back()), 7);
 }
 
 TEST_F(SwitchLinksTest, ASuccessorAbortsWhatItsPredecessorTookPartIn) {
-  const std::uint16_t number = units->switch_to(kBeside);
-  units->start(1, 2);
-  units->change();
-  units->run(milliseconds(20));
-  ASSERT_TRUE(units->is_over(number));
-  EXPECT_EQ(units->part(0).end, SwitchEnd::kAborted);
-  EXPECT_EQ(units->part(1).end, SwitchEnd::kAborted);
+  const std::uint16_t number = rtpus->switch_to(kBeside);
+  rtpus->start(1, 2);
+  rtpus->change();
+  rtpus->run(milliseconds(20));
+  ASSERT_TRUE(rtpus->is_over(number));
+  EXPECT_EQ(rtpus->part(0).end, SwitchEnd::kAborted);
+  EXPECT_EQ(rtpus->part(1).end, SwitchEnd::kAborted);
   EXPECT_EQ(state(kThree), State::kOff);
 }
 
 TEST_F(SwitchLinksTest, AnOrderThatNobodyWroteIsAborted) {
-  const std::uint16_t number = units->switch_to(kObserved);
-  units->decision.switching.order[3] ^= 4096;
-  units->run(milliseconds(10));
-  ASSERT_TRUE(units->is_over(number));
-  EXPECT_EQ(units->part(0).why, NoSwitch::kDamaged);
+  const std::uint16_t number = rtpus->switch_to(kObserved);
+  rtpus->decision.switching.order[3] ^= 4096;
+  rtpus->run(milliseconds(10));
+  ASSERT_TRUE(rtpus->is_over(number));
+  EXPECT_EQ(rtpus->part(0).why, NoSwitch::kDamaged);
   EXPECT_TRUE(are_on(kSets[kDirect]));
   EXPECT_EQ(scene.illegal, 0);
 }
 
 // Between its own agreement and the commit an rtpu still aborts if a task of the switch fails.
 TEST_F(SwitchLinksTest, WhatComesAfterTheOwnAgreementStillAborts) {
-  (void)units->switch_to(kObserved, milliseconds(20));
-  testing::Unit* agreed = nullptr;  // steps the rtpus one by one, until one has agreed and the other has not
+  (void)rtpus->switch_to(kObserved, milliseconds(20));
+  testing::TestRtpu* agreed = nullptr;  // steps the rtpus one by one, until one has agreed and the other has not
   while (agreed == nullptr) {
-    units->now = units->now + microseconds(100);
-    for (const auto& unit : units->units) {
-      (void)unit->executive->run(units->now - units->keeper.origin);
-      const PlanWord plan = PlanWord::of(units->decision.switching.plan);
-      if (plan.phase == SwitchPhase::kProposed) agreed = unit.get();
+    rtpus->now = rtpus->now + microseconds(100);
+    for (const auto& rtpu : rtpus->rtpus) {
+      (void)rtpu->executive->run(rtpus->now - rtpus->keeper.origin);
+      const PlanWord plan = PlanWord::of(rtpus->decision.switching.plan);
+      if (plan.phase == SwitchPhase::kProposed) agreed = rtpu.get();
       ASSERT_NE(plan.phase, SwitchPhase::kAborted);
       if (agreed != nullptr) break;
     }
   }
   agreed->tasks->flag().raise(true);
-  units->change();  // a cycle boundary
-  units->now = units->now + microseconds(100);
-  (void)agreed->executive->run(units->now - units->keeper.origin);
-  EXPECT_EQ(PlanWord::of(units->decision.switching.plan).phase, SwitchPhase::kAborted);
-  units->run(milliseconds(30));
+  rtpus->change();  // a cycle boundary
+  rtpus->now = rtpus->now + microseconds(100);
+  (void)agreed->executive->run(rtpus->now - rtpus->keeper.origin);
+  EXPECT_EQ(PlanWord::of(rtpus->decision.switching.plan).phase, SwitchPhase::kAborted);
+  rtpus->run(milliseconds(30));
   EXPECT_EQ(agreed->segment.block.switch_part().why, NoSwitch::kFlagRaised);
   EXPECT_TRUE(are_on(kSets[kDirect]));
 }
 
 TEST_F(SwitchLinksTest, WithoutTimeToAgreeItIsAborted) {
-  const std::uint16_t number = units->switch_to(kObserved, Nanoseconds{});
-  units->run(milliseconds(10));
-  ASSERT_TRUE(units->is_over(number));
-  EXPECT_EQ(units->part(0).end, SwitchEnd::kAborted);
+  const std::uint16_t number = rtpus->switch_to(kObserved, Nanoseconds{});
+  rtpus->run(milliseconds(10));
+  ASSERT_TRUE(rtpus->is_over(number));
+  EXPECT_EQ(rtpus->part(0).end, SwitchEnd::kAborted);
   EXPECT_TRUE(are_on(kSets[kDirect]));
   EXPECT_EQ(lost(), 0u);
   EXPECT_EQ(scene.illegal, 0);

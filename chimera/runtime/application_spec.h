@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-#include "chimera/runtime/switch/safe_condition.h"
+#include "chimera/runtime/safe_condition.h"
 #include "chimera/schedule/policy.h"
 #include "chimera/task/task_spec.h"
 

@@ -12,7 +12,7 @@ enum class Refusal : std::uint8_t {
   kIllegalSet,  ///< the tasks that would be ON would have two producers of a variable, or none
   kFault,       ///< `on` or the constructor said no; the text is in the task's fault record
   kNotYet,      ///< `on` answered not yet: it is to be asked again; the task is OFF
-  kRival        ///< of spawn: another task that is created has its resource (runtime/switch/rivals.h)
+  kRival        ///< of spawn: another task that is created has its resource (runtime/plan/rivals.h)
 };
 inline constexpr Refusal kLastRefusal = Refusal::kRival;
 

@@ -77,7 +77,7 @@ TEST_F(SubsystemRivals, AStandbyThatHasTakenOverKeepsTheResource) {
   EXPECT_EQ(told.find("spawn pid"), std::string::npos) << told;
 }
 
-TEST_F(SubsystemRivals, OfTwoUnitsThatDieTheOneThatWasOnLastComesBackAlone) {
+TEST_F(SubsystemRivals, OfTwoRtpusThatDieTheOneThatWasOnLastComesBackAlone) {
   make_standby();
   start_without_reserve();
   die(kServo);

@@ -10,7 +10,7 @@
 
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/hosted/variables.h"
-#include "chimera/runtime/switch/rivals.h"
+#include "chimera/runtime/plan/rivals.h"
 #include "chimera/subsystem/observed_state.h"
 #include "chimera/subsystem/subsystem.h"
 

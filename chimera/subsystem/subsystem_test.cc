@@ -308,7 +308,7 @@ TEST_F(SubsystemTest, ClearOfOneTaskBringsBackWhatWasLostWithItButNotWhatWasKill
   EXPECT_EQ(subsystem->state(kReserve), State::kNotCreated);
 }
 
-TEST_F(SubsystemTest, AManagerThatMeetsAGivenUpUnitSaysHowItsTasksComeBack) {
+TEST_F(SubsystemTest, AManagerThatMeetsAGivenUpRtpuSaysHowItsTasksComeBack) {
   start();
   remembered.started = true;
   remembered.handled[kServo.index] = 4;

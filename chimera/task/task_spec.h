@@ -50,7 +50,7 @@ struct PortSpec {
   std::uint32_t max_bytes() const noexcept { return max_count() * element_bytes; }
 };
 
-/// The reactions to a missed deadline or an overrun; chimera/runtime/miss_policy.h describes each.
+/// The reactions to a missed deadline or an overrun; chimera/runtime/job/miss_policy.h describes each.
 enum class OnMiss : std::uint8_t { kContinue, kHold, kSkip, kAbort, kDemote, kError, kSwitch, kFlag, kStop };
 
 /// The reactions to a fault from which the method error does not recover, so that the task is in ERROR.

@@ -10,7 +10,7 @@
 
 #include "chimera/description/draft_values.h"
 #include "chimera/description/text_limits.h"
-#include "chimera/runtime/switch/task_lists.h"
+#include "chimera/runtime/plan/task_lists.h"
 #include "chimera/text/nearest.h"
 #include "chimera/units/quantity.h"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "chimera/platform/clock.h"
-#include "chimera/runtime/boundary_listener.h"
-#include "chimera/runtime/releases.h"
+#include "chimera/runtime/cycle/releases.h"
+#include "chimera/runtime/life/boundary_listener.h"
 
 namespace chimera::toy {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "chimera/runtime/script.h"
-#include "chimera/runtime/tap_record.h"
+#include "chimera/runtime/cycle/script.h"
+#include "chimera/runtime/record/tap_record.h"
 #include "tests/conformance/toy.h"
 
 namespace chimera::toy {

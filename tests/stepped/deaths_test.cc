@@ -92,12 +92,12 @@ TEST_F(Deaths, TheManagerMayDieAtAnyStepOfACommand) {
     ASSERT_TRUE(system.until_started());
     (void)system.ask("signal", {{"signal", "off"}, {"tasks", Json::array({"victim"})}});
     system.run(microseconds(100) * steps);
-    const std::uint64_t last = system.manager().world().log.last();
+    const std::uint64_t last = system.manager().state().log.last();
     system.kill_manager();
     system.run(milliseconds(20));
     system.start_manager();
     ASSERT_TRUE(system.until([&] { return system.manager().is_ready(); })) << steps;
-    EXPECT_EQ(system.manager().world().log.first(), last + 1) << steps;
+    EXPECT_EQ(system.manager().state().log.first(), last + 1) << steps;
     system.run(milliseconds(50));
     const State is = system.state("victim");
     EXPECT_TRUE(is == State::kOn || is == State::kOff) << steps;

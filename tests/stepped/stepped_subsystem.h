@@ -21,7 +21,7 @@
 #include "chimera/manager/manager_backend.h"
 #include "chimera/manager/testing/test_bundle.h"
 #include "chimera/platform/descriptor.h"
-#include "chimera/rtpu/testing/test_units.h"
+#include "chimera/rtpu/testing/test_rtpus.h"
 #include "chimera/runtime/task_word.h"
 
 namespace chimera::manager {
@@ -94,7 +94,7 @@ class SteppedSubsystem {
   }
   /// Until everything of the start set is ON and the manager has said so.
   bool until_started() {
-    return until([&] { return manager_ && manager().world().own.block().memory().started_at != 0; });
+    return until([&] { return manager_ && manager().state().own.block().memory().started_at != 0; });
   }
 
   /// Asks as a client with the right to configure would; the answer comes while time passes.
@@ -133,7 +133,7 @@ class SteppedSubsystem {
   /// The process of the rtpu dies by that signal. The manager has it started again.
   void die(std::string_view rtpu, int signal = SIGKILL) { die(index(rtpu), signal); }
   /// Ends the process of the rtpu alone, as SIGTERM does: it turns its tasks OFF and dies.
-  void terminate(std::string_view rtpu) { rtpus_[index(rtpu)]->edge->unit_end().tell(true); }
+  void terminate(std::string_view rtpu) { rtpus_[index(rtpu)]->edge->rtpu_end().tell(true); }
   /// While it is stopped, as by SIGSTOP, the rtpu does nothing.
   void stop(std::string_view rtpu, bool is_stopped) {
     if (is_stopped) stopped_.insert(index(rtpu));
@@ -175,7 +175,7 @@ class SteppedSubsystem {
   const ApplicationSpec& spec() const { return configuration_->spec(); }
   std::uint32_t n_rtpus() const { return static_cast<std::uint32_t>(spec().rtpus.size()); }
   ManagerLoop& manager() { return *manager_; }
-  testing::Unit& rtpu(std::string_view name) { return *rtpus_[index(name)]; }
+  testing::TestRtpu& rtpu(std::string_view name) { return *rtpus_[index(name)]; }
   KeeperPage& page() { return *reinterpret_cast<KeeperPage*>(keeper_.writable().data()); }
   DecisionPage& decision_page() { return *reinterpret_cast<DecisionPage*>(decision_.bytes().data()); }
   TaskId task(std::string_view name) const {
@@ -189,7 +189,7 @@ class SteppedSubsystem {
     return rtpus_[spec().tasks[id.index].rtpu.index]->tasks->tasks()[id.index].profile;
   }
   /// As the manager shows it.
-  State state(std::string_view name) { return manager_ ? manager_->world().state(task(name)) : State::kNotCreated; }
+  State state(std::string_view name) { return manager_ ? manager_->state().state(task(name)) : State::kNotCreated; }
   /// The names of the tasks that are ON, in the order of the description, a blank after each.
   std::string on() {
     std::string names;
@@ -224,11 +224,11 @@ class SteppedSubsystem {
   /// The texts of all events of a kind, a line each, with the name of the task first if there is one.
   std::string events(std::string_view kind) {
     std::string text;
-    const ManagerState& world = manager_->world();
-    for (std::uint64_t n = world.log.first(); n <= world.log.last(); ++n) {
-      const LoggedEvent& event = world.log.at(n);
+    const ManagerState& state = manager_->state();
+    for (std::uint64_t n = state.log.first(); n <= state.log.last(); ++n) {
+      const LoggedEvent& event = state.log.at(n);
       if (event.kind != kind) continue;
-      text += (event.task.is_valid() ? world.name(event.task) + ": " : "") + event.text + "\n";
+      text += (event.task.is_valid() ? state.name(event.task) + ": " : "") + event.text + "\n";
     }
     return text;
   }
@@ -241,7 +241,7 @@ class SteppedSubsystem {
     std::vector<LibraryEntry> named;
     for (const LibraryEntry& entry : all.entries())
       if (description.find("component: " + entry.descriptor.name) != description.npos) named.push_back(entry);
-    return {"0.1.0", "test.yaml", description, {}, {}, {}, Library::of_entries(std::move(named), all.units())};
+    return {"0.1.0", "test.yaml", description, {}, {}, {}, Library::of_entries(std::move(named), all.rtpus())};
   }
   /// Objects stay open for all tests of the process: what a component keeps in static variables is shared.
   const chimera_component* component_of(const TaskSpec& task) {
@@ -271,23 +271,23 @@ class SteppedSubsystem {
     if (!keeper_is_stopped_) keep();
   }
   void step(std::uint32_t r) {
-    testing::Unit& unit = *rtpus_[r];
-    unit.segment.block.head().attended.fetch_add(1);
-    unit.serve();
-    while (unit.executive->run(now() - page().origin) == RunEnd::kTaskStopped) {
-      Releases& releases = unit.executive->releases();
-      unit.edge->stop_all(releases.signals(), releases.settlement().stopped_by(), now());
+    testing::TestRtpu& rtpu = *rtpus_[r];
+    rtpu.segment.block.head().attended.fetch_add(1);
+    rtpu.serve();
+    while (rtpu.executive->run(now() - page().origin) == RunEnd::kTaskStopped) {
+      Releases& releases = rtpu.executive->releases();
+      rtpu.edge->stop_all(releases.signals(), releases.settlement().stopped_by(), now());
       releases.settlement().forget_stop();
     }
-    if (unit.edge->unit_end().is_over()) die(r, SIGTERM);
+    if (rtpu.edge->rtpu_end().is_over()) die(r, SIGTERM);
   }
 
   void start_rtpu(std::uint32_t r) {
     const std::uint32_t incarnation = rtpus_[r] == nullptr ? 1 : rtpus_[r]->segment.block.head().incarnation + 1;
-    testing::Unit::decision_now = now();
+    testing::TestRtpu::decision_now = now();
     ended_.erase(r);
     stopped_.erase(r);
-    rtpus_[r] = std::make_unique<testing::Unit>(spec(), components_, r, incarnation, decision_page(), page());
+    rtpus_[r] = std::make_unique<testing::TestRtpu>(spec(), components_, r, incarnation, decision_page(), page());
     BlockHead& head = rtpus_[r]->segment.block.head();
     std::strcpy(head.grant, "as an ordinary process");
     head.phase = PeerPhase::kServing;
@@ -360,7 +360,7 @@ class SteppedSubsystem {
   FrozenBytes image_, frozen_bundle_;
   SharedPages decision_;
   MemoryRegion keeper_;
-  std::vector<std::unique_ptr<testing::Unit>> rtpus_;
+  std::vector<std::unique_ptr<testing::TestRtpu>> rtpus_;
   std::map<std::uint32_t, KeeperMessage> ended_;  // by rtpu: the message about its death, until it is started again
   std::set<std::uint32_t> stopped_;
   Channel channel_;

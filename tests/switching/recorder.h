@@ -1,43 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happens in a switch, as events of the model tests/models/switch.pml, read from the words that the units share:
-// from the page and from the blocks, not from what the code of a unit believes. Looked at between any two calls in
-// which a unit tells others something.
+// What happens in a switch, as events of the model tests/models/switch.pml, read from the words that the rtpus share:
+// from the page and from the blocks, not from what the code of an rtpu believes. Looked at between any two calls in
+// which an rtpu tells others something.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "chimera/rtpu/testing/test_units.h"
+#include "chimera/rtpu/testing/test_rtpus.h"
 
 namespace chimera::switching_trial {
 
 class Recorder {
  public:
-  explicit Recorder(const testing::Units& units) : units_(units), progress_(units.n) {}
+  explicit Recorder(const testing::TestRtpus& rtpus) : rtpus_(rtpus), progress_(rtpus.n) {}
 
-  /// "NAME WHO" each; who: the unit, or the number of units for the manager.
+  /// "NAME WHO" each; who: the rtpu, or the number of rtpus for the manager.
   const std::vector<std::string>& events() const noexcept { return events_; }
   void add(const char* what, std::uint32_t who) { events_.push_back(std::string(what) + " " + std::to_string(who)); }
   /// What the words say that they did not say before; `who` has changed them.
   void look(std::uint32_t who) {
-    const SwitchPage& page = units_.decision.switching;
+    const SwitchPage& page = rtpus_.decision.switching;
     const PlanWord plan = PlanWord::of(page.plan.load());
     const TurnWord turn = TurnWord::of(page.turn.load());
     if (plan.number != plan_.number) {
       add("prepared", who);
       plan_ = {plan.number, SwitchPhase::kPrepared, 0};
-      turn_ = {turn.number, 0, static_cast<std::uint16_t>((1u << units_.n) - 1)};
+      turn_ = {turn.number, 0, static_cast<std::uint16_t>((1u << rtpus_.n) - 1)};
     }
     for (; turn_.run < turn.run; ++turn_.run) add("armed", who);
     const bool is_past = plan.phase == SwitchPhase::kProposed || plan.phase == SwitchPhase::kCommitted;
     if (plan_.phase == SwitchPhase::kPrepared && is_past) add("proposed", who);
-    for (std::uint32_t unit = 0; unit < units_.n; ++unit)
-      if (((turn_.missing & ~turn.missing) >> unit & 1u) != 0) add("agreed", unit);
+    for (std::uint32_t rtpu = 0; rtpu < rtpus_.n; ++rtpu)
+      if (((turn_.missing & ~turn.missing) >> rtpu & 1u) != 0) add("agreed", rtpu);
     if (plan.phase != plan_.phase && plan.phase == SwitchPhase::kCommitted) add("committed", who);
     if (plan.phase != plan_.phase && plan.phase == SwitchPhase::kAborted) add("aborted", who);
     plan_ = plan;
     turn_ = turn;
-    for (std::uint32_t unit = 0; unit < units_.n; ++unit) look_at(unit);
+    for (std::uint32_t rtpu = 0; rtpu < rtpus_.n; ++rtpu) look_at(rtpu);
   }
 
  private:
@@ -45,17 +45,17 @@ class Recorder {
     std::uint32_t adopted = 0, over = 0;
   };
   // Who finds a plan aborted adopts nothing.
-  void look_at(std::uint32_t unit) {
-    const SwitchProgress& words = units_.units[unit]->segment.block.head().switching;
+  void look_at(std::uint32_t rtpu) {
+    const SwitchProgress& words = rtpus_.rtpus[rtpu]->segment.block.head().switching;
     const Progress now{words.adopted.load(), words.over.load()};
-    Progress& before = progress_[unit];
+    Progress& before = progress_[rtpu];
     const bool was_aborted = plan_.phase == SwitchPhase::kAborted;
-    if (now.adopted != before.adopted && !was_aborted) add("adopted", unit);
-    if (now.over != before.over) add("over", unit);
+    if (now.adopted != before.adopted && !was_aborted) add("adopted", rtpu);
+    if (now.over != before.over) add("over", rtpu);
     before = now;
   }
 
-  const testing::Units& units_;
+  const testing::TestRtpus& rtpus_;
   PlanWord plan_;
   TurnWord turn_;
   std::vector<Progress> progress_;

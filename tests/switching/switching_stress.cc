@@ -49,7 +49,7 @@ int campaign(double limit, std::uint64_t first, std::uint64_t most) {
     sum.switches += one.switches;
     sum.done += one.done;
     sum.aborted += one.aborted;
-    sum.unit_deaths += one.unit_deaths;
+    sum.rtpu_deaths += one.rtpu_deaths;
     sum.manager_deaths += one.manager_deaths;
     sum.hold_ups += one.hold_ups;
     sum.signals += one.signals;
@@ -59,9 +59,9 @@ int campaign(double limit, std::uint64_t first, std::uint64_t most) {
     std::printf("%s; replay: switching_stress --seed %llu\n", one.failure.c_str(), number(seed));
   }
   std::printf("{\"name\": \"switching\", \"n\": %llu, \"faults\": %llu, \"counted\": \"switches\", \"done\": %llu, "
-              "\"aborted\": %llu, \"unit_deaths\": %llu, \"manager_deaths\": %llu, \"hold_ups\": %llu, "
+              "\"aborted\": %llu, \"rtpu_deaths\": %llu, \"manager_deaths\": %llu, \"hold_ups\": %llu, "
               "\"signals\": %llu, \"cycles\": %llu}\n",
-              number(sum.switches), number(faults), number(sum.done), number(sum.aborted), number(sum.unit_deaths),
+              number(sum.switches), number(faults), number(sum.done), number(sum.aborted), number(sum.rtpu_deaths),
               number(sum.manager_deaths), number(sum.hold_ups), number(sum.signals), number(sum.looks));
   return faults == 0 ? 0 : 1;
 }

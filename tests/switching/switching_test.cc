@@ -13,14 +13,14 @@ TEST(SwitchingTrial, WhateverHappensReadersSeeOneProducerAndNobodyIsLeftArmed) {
     ASSERT_EQ(one.failure, "") << "seed " << seed;
     all.done += one.done;
     all.aborted += one.aborted;
-    all.unit_deaths += one.unit_deaths;
+    all.rtpu_deaths += one.rtpu_deaths;
     all.manager_deaths += one.manager_deaths;
     all.hold_ups += one.hold_ups;
     all.signals += one.signals;
   }
   EXPECT_GT(all.done, 1000u);
   EXPECT_GT(all.aborted, 200u);
-  EXPECT_GT(all.unit_deaths, 100u);
+  EXPECT_GT(all.rtpu_deaths, 100u);
   EXPECT_GT(all.manager_deaths, 50u);
   EXPECT_GT(all.hold_ups, 50u);
   EXPECT_GT(all.signals, 50u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tasks of the switching trials: producers of one variable in two or three units, and readers of it that always
+// The tasks of the switching trials: producers of one variable in two or three rtpus, and readers of it that always
 // cycle. What a producer writes says in which life, since which `on`, and by which method it was written.
 #pragma once
 
@@ -65,7 +65,7 @@ struct Living {
 };
 
 template <unsigned kTask>
-struct Source {  // needs nothing
+struct FreeSource {  // needs nothing
   Out<double> u{"u", "1", initial = 0.0};
   Outcome on(Cycle c) {
     const bool is_well = living.begin(c);
@@ -117,25 +117,25 @@ struct Watch {
   }
 };
 
-/// The sets of tasks: their producer of u is in unit 0, 1, 0, 2. From kFirst to kSecond, and back, a task of unit 0
-/// arrives and then one of unit 1.
-inline constexpr std::uint32_t kFirst = 0, kSecond = 1, kBare = 2, kThirdUnit = 3;
+/// The sets of tasks: their producer of u is in rtpu 0, 1, 0, 2. From kFirst to kSecond, and back, a task of rtpu 0
+/// arrives and then one of rtpu 1.
+inline constexpr std::uint32_t kFirst = 0, kSecond = 1, kBare = 2, kThirdRtpu = 3;
 
 struct Application {
-  /// Bit u of `preemptive`: unit u has a thread for each task.
-  explicit Application(std::uint32_t n_units, unsigned preemptive = 0) {
-    const bool has_third = n_units > 2;
+  /// Bit u of `preemptive`: rtpu u has a thread for each task.
+  explicit Application(std::uint32_t n_rtpus, unsigned preemptive = 0) {
+    const bool has_third = n_rtpus > 2;
     app.rtpus = {{"a", 0, Policy::kEdf}, {"b", 1, Policy::kMuf}};
     if (has_third) app.rtpus.push_back({"c", 2, Policy::kRm});
     for (std::size_t u = 0; u < app.rtpus.size(); ++u) app.rtpus[u].preemptive = (preemptive >> u & 1u) != 0;
     add<Watch<0>>("watch0", 0);
     add<Watch<1>>("watch1", 1, milliseconds(2));
-    add<Source<2>>("near", 0);
+    add<FreeSource<2>>("near", 0);
     add<Extra>("extra", 1);
     add<Shape>("shape", 0, milliseconds(2));
     add<Far>("far", 1);
     if (has_third) add<Watch<6>>("watch2", 2);
-    if (has_third) add<Source<7>>("third", 2, milliseconds(2));
+    if (has_third) add<FreeSource<7>>("third", 2, milliseconds(2));
     app.link(kWatch0.index, 1, "seen0");
     app.link(kWatch1.index, 1, "seen1");
     if (has_third) app.link(kWatch2.index, 1, "seen2");
@@ -163,9 +163,9 @@ struct Application {
 
  private:
   template <class T>
-  void add(const char* name, std::uint32_t unit, Nanoseconds period = milliseconds(1)) {
+  void add(const char* name, std::uint32_t rtpu, Nanoseconds period = milliseconds(1)) {
     TaskSpec& task = app.add(name, testing::component<T>(name), period);
-    task.rtpu = RtpuId(unit);
+    task.rtpu = RtpuId(rtpu);
     task.budget = microseconds(50);
   }
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Steps units, plays their manager and their keeper, and judges after every step.
+// Steps rtpus, plays their manager and their keeper, and judges after every step.
 #include "tests/switching/trial.h"
 
 #include <algorithm>
@@ -11,15 +11,15 @@ namespace {
 constexpr Nanoseconds kGrace = milliseconds(150);
 constexpr int kTurnsOff = 3;  // of heal()
 
-enum class Mishap : std::uint8_t { kNone, kUnitDies, kUnitDiesTelling, kManagerDies, kHoldUp, kCancel, kFlag, kSignal,
+enum class Mishap : std::uint8_t { kNone, kRtpuDies, kRtpuDiesTelling, kManagerDies, kHoldUp, kCancel, kFlag, kSignal,
                                    kOnFails };
 
 /// What goes wrong in a switch, and when.
 struct Plan {
   Mishap what = Mishap::kNone;
-  std::uint32_t unit = 0;
+  std::uint32_t rtpu = 0;
   Nanoseconds at;      // from the announcement
-  int call = 0;        // kUnitDiesTelling: in which call of a unit, counted down
+  int call = 0;        // kRtpuDiesTelling: in which call of an rtpu, counted down
   bool is_over = false;
 };
 
@@ -35,8 +35,8 @@ class Run {
  public:
   Run(std::uint64_t seed, Kind kind)
       : chance_(seed), kind_(kind), n_(kind == Kind::kOfModel || one_in(3) ? 2 : 3), application_(reset(n_)),
-        units_(application_.app, [this](std::uint32_t me, SwitchPeers& links) { return between(me, links); }),
-        recorder_(units_), held_until_(n_), incarnation_(n_ + 1, 1), back_at_(n_ + 1, kNever) {
+        rtpus_(application_.app, [this](std::uint32_t me, SwitchPeers& links) { return between(me, links); }),
+        recorder_(rtpus_), held_until_(n_), incarnation_(n_ + 1, 1), back_at_(n_ + 1, kNever) {
     rest(milliseconds(1));
     heal();
   }
@@ -51,9 +51,9 @@ class Run {
  private:
   std::uint32_t draw(std::uint32_t n) { return static_cast<std::uint32_t>(chance_.below(n)); }
   bool one_in(std::uint32_t n) { return draw(n) == 0; }
-  static std::uint32_t reset(std::uint32_t n_units) {
+  static std::uint32_t reset(std::uint32_t n_rtpus) {
     stage = {};
-    return n_units;
+    return n_rtpus;
   }
   std::shared_ptr<SwitchPeers> between(std::uint32_t me, SwitchPeers& links) {
     auto made = std::make_shared<CutLinks>(links, [this, me] { told(me); });
@@ -63,21 +63,21 @@ class Run {
   }
   bool is_well() const { return tally_.failure.empty(); }
   void fail(const std::string& what) {
-    if (is_well()) tally_.failure = what + ", at " + std::to_string(units_.now.count / 1000) + " us, plan " +
+    if (is_well()) tally_.failure = what + ", at " + std::to_string(rtpus_.now.count / 1000) + " us, plan " +
                                     std::to_string(plan().number);
   }
-  PlanWord plan() const { return PlanWord::of(units_.decision.switching.plan.load()); }
-  SwitchAgreement agreement() { return {units_.decision.switching, units_.keeper.origin}; }
-  bool lives(std::uint32_t peer) const { return units_.keeper.alive[peer] != 0; }
+  PlanWord plan() const { return PlanWord::of(rtpus_.decision.switching.plan.load()); }
+  SwitchAgreement agreement() { return {rtpus_.decision.switching, rtpus_.keeper.origin}; }
+  bool lives(std::uint32_t peer) const { return rtpus_.keeper.alive[peer] != 0; }
   bool all_live() const {
     for (std::uint32_t peer = 0; peer <= n_; ++peer)
       if (!lives(peer)) return false;
     return true;
   }
-  std::uint32_t unit_of(TaskId task) const { return application_.app.tasks[task.index].rtpu.index; }
-  const Task& task(TaskId id) const { return units_.units[unit_of(id)]->tasks->tasks()[id.index]; }
+  std::uint32_t rtpu_of(TaskId task) const { return application_.app.tasks[task.index].rtpu.index; }
+  const Task& task(TaskId id) const { return rtpus_.rtpus[rtpu_of(id)]->tasks->tasks()[id.index]; }
   std::size_t n_tasks() const { return application_.app.tasks.size(); }
-  bool is_on(TaskId id) const { return lives(unit_of(id)) && task(id).state == State::kOn; }
+  bool is_on(TaskId id) const { return lives(rtpu_of(id)) && task(id).state == State::kOn; }
   static bool is_in(const std::vector<TaskId>& set, TaskId id) { return std::ranges::find(set, id) != set.end(); }
   std::vector<TaskId> watches() const {
     return n_ > 2 ? std::vector{kWatch0, kWatch1, kWatch2} : std::vector{kWatch0, kWatch1};
@@ -88,10 +88,10 @@ class Run {
     return now.is_open() ? 0 : now.phase == SwitchPhase::kCommitted ? 1 : -1;
   }
 
-  // A unit, in the middle of an edge, before and after it tells others something.
+  // An rtpu, in the middle of an edge, before and after it tells others something.
   void told(std::uint32_t me) {
     look(me);
-    if (mishap_.what != Mishap::kUnitDiesTelling || mishap_.is_over || mishap_.unit != me) return;
+    if (mishap_.what != Mishap::kRtpuDiesTelling || mishap_.is_over || mishap_.rtpu != me) return;
     if (!journal_.is_open || mishap_.call-- > 0) return;
     mishap_.is_over = true;
     links_[me]->cut();
@@ -112,61 +112,61 @@ class Run {
     return life;
   }
 
-  void died(std::uint32_t unit) {
-    if (kind_ == Kind::kOfModel) recorder_.add("died", unit);
-    ++tally_.unit_deaths;
+  void died(std::uint32_t rtpu) {
+    if (kind_ == Kind::kOfModel) recorder_.add("died", rtpu);
+    ++tally_.rtpu_deaths;
     readers_.let_loose();
     for (const TaskId id : watches())
-      if (unit_of(id) == unit) readers_.forget(id);
-    if (kind_ == Kind::kAll) back_at_[unit] = units_.now + microseconds(draw(8000));
+      if (rtpu_of(id) == rtpu) readers_.forget(id);
+    if (kind_ == Kind::kAll) back_at_[rtpu] = rtpus_.now + microseconds(draw(8000));
   }
-  void kill_unit(std::uint32_t unit) {
-    if (!lives(unit)) return;
-    died(unit);
-    units_.die(unit);
+  void kill_rtpu(std::uint32_t rtpu) {
+    if (!lives(rtpu)) return;
+    died(rtpu);
+    rtpus_.die(rtpu);
   }
   void kill_manager() {
     if (!lives(n_)) return;
     if (kind_ == Kind::kOfModel) recorder_.add("died", n_);
     ++tally_.manager_deaths;
-    units_.die(n_);
-    back_at_[n_] = units_.now + microseconds(draw(8000));
+    rtpus_.die(n_);
+    back_at_[n_] = rtpus_.now + microseconds(draw(8000));
   }
   // The keeper.
   void bring_back() {
     for (std::uint32_t peer = 0; peer <= n_; ++peer) {
-      if (lives(peer) || units_.now < back_at_[peer]) continue;
+      if (lives(peer) || rtpus_.now < back_at_[peer]) continue;
       back_at_[peer] = kNever;
       for (const TaskId id : watches())
-        if (unit_of(id) == peer) readers_.forget(id);
-      if (peer < n_) units_.start(peer, ++incarnation_[peer]);
-      else units_.start_manager(++incarnation_[peer]);
-      units_.change();
+        if (rtpu_of(id) == peer) readers_.forget(id);
+      if (peer < n_) rtpus_.start(peer, ++incarnation_[peer]);
+      else rtpus_.start_manager(++incarnation_[peer]);
+      rtpus_.change();
     }
   }
 
   void step(std::uint32_t u) {
-    if (!lives(u) || units_.now < held_until_[u]) return;
-    testing::Unit& unit = *units_.units[u];
-    const Nanoseconds clock = unit.clock.now();
-    if (held_until_[u] > Nanoseconds{} && clock < held_until_[u]) unit.clock.advance(held_until_[u] - clock);
-    unit.serve();
-    (void)unit.executive->run(units_.now - units_.keeper.origin);
+    if (!lives(u) || rtpus_.now < held_until_[u]) return;
+    testing::TestRtpu& rtpu = *rtpus_.rtpus[u];
+    const Nanoseconds clock = rtpu.clock.now();
+    if (held_until_[u] > Nanoseconds{} && clock < held_until_[u]) rtpu.clock.advance(held_until_[u] - clock);
+    rtpu.serve();
+    (void)rtpu.executive->run(rtpus_.now - rtpus_.keeper.origin);
     look(u);
-    if (links_[u]->is_cut()) units_.die(u);
+    if (links_[u]->is_cut()) rtpus_.die(u);
     judge();
   }
   void pass(Nanoseconds time) {
-    units_.now += time;
+    rtpus_.now += time;
     bring_back();
     std::vector<std::uint32_t> order;
     for (std::uint32_t u = 0; u < n_; ++u) order.insert(order.begin() + draw(u + 1), u);
     for (const std::uint32_t u : order) step(u);
-    units_.collect();
-    units_.posts.clear();
+    rtpus_.collect();
+    rtpus_.posts.clear();
   }
   void rest(Nanoseconds time) {
-    for (const Nanoseconds end = units_.now + time; units_.now < end && is_well();) pass(microseconds(100));
+    for (const Nanoseconds end = rtpus_.now + time; rtpus_.now < end && is_well();) pass(microseconds(100));
   }
 
   void judge() {
@@ -179,14 +179,14 @@ class Run {
     }
     stage.looks.clear();
     if (!readers_.is_strict()) return;
-    if (units_.flag_is_up()) fail("the flag is up");
+    if (rtpus_.flag_is_up()) fail("the flag is up");
     const bool is_changing = journal_.is_open && plan().phase == SwitchPhase::kCommitted;
     std::uint32_t n_producers = 0;
     for (const TaskId id : {kNear, kFar, kThird}) n_producers += id.index < n_tasks() && is_on(id);
     if (!is_changing && n_producers != 1) fail(std::to_string(n_producers) + " producers are ON");
   }
 
-  // What the manager does when a unit has come back, or a signal or an error has changed the set: the first set again.
+  // What the manager does when an rtpu has come back, or a signal or an error has changed the set: the first set again.
   void heal() {
     readers_.let_loose();
     rest(milliseconds(2));  // who came last has met the others
@@ -202,7 +202,7 @@ class Run {
         if (state == (wanted ? State::kOn : State::kOff)) continue;
         if (signal != Signal::kOff && turn < kTurnsOff) continue;  // never two producers
         is_whole = false;
-        units_.send(signal, {id});
+        rtpus_.send(signal, {id});
         rest(microseconds(300));
       }
       if (!is_whole || turn < kTurnsOff) continue;
@@ -227,10 +227,10 @@ class Run {
     announce();
     for (Nanoseconds limit; journal_.is_open && is_well();) {
       pass(microseconds(10 + draw(one_in(4) ? 400 : 120)));
-      have_mishap(units_.now - began_);
+      have_mishap(rtpus_.now - began_);
       if (lives(n_)) manage();
       limit = std::max(journal_.until, *std::ranges::max_element(held_until_)) + kGrace;
-      if (journal_.is_open && units_.now > limit + milliseconds(50)) fail("the switch does not end");
+      if (journal_.is_open && rtpus_.now > limit + milliseconds(50)) fail("the switch does not end");
     }
     return is_well();
   }
@@ -244,20 +244,20 @@ class Run {
     stage.on_takes = microseconds(draw(60));
     rest(microseconds(draw(2000)));
     const Nanoseconds wait = milliseconds(5 + draw(40));
-    began_ = units_.now;
-    journal_ = {next_plan(plan().number), true, in_force_, next, units_.now + wait};
+    began_ = rtpus_.now;
+    journal_ = {next_plan(plan().number), true, in_force_, next, rtpus_.now + wait};
     if (mishap_.what == Mishap::kManagerDies && mishap_.call == 0) return mishap_.is_over = true, kill_manager();
     stage.open_plan = journal_.number;
-    units_.switch_to(next, microseconds(draw(1500)), wait);
+    rtpus_.switch_to(next, microseconds(draw(1500)), wait);
     if (kind_ == Kind::kOfModel) recorder_.look(n_);
   }
   void draw_mishap() {
     mishap_ = {};
     if (one_in(2)) return;
-    constexpr Mishap kOfModel[] = {Mishap::kUnitDies, Mishap::kUnitDiesTelling, Mishap::kUnitDiesTelling,
+    constexpr Mishap kOfModel[] = {Mishap::kRtpuDies, Mishap::kRtpuDiesTelling, Mishap::kRtpuDiesTelling,
                                    Mishap::kManagerDies, Mishap::kHoldUp, Mishap::kCancel};
     mishap_.what = kind_ == Kind::kOfModel ? kOfModel[draw(6)] : static_cast<Mishap>(1 + draw(8));
-    mishap_.unit = draw(n_);
+    mishap_.rtpu = draw(n_);
     mishap_.at = microseconds(draw(one_in(2) ? 1200 : 5000));
     if (mishap_.what == Mishap::kCancel) mishap_.at = microseconds(draw(300));
     mishap_.call = static_cast<int>(draw(8));
@@ -267,24 +267,24 @@ class Run {
   void have_mishap(Nanoseconds since) {
     if (mishap_.is_over || since < mishap_.at || !journal_.is_open) return;
     const Mishap what = mishap_.what;
-    mishap_.is_over = what != Mishap::kUnitDiesTelling;
-    if (what == Mishap::kUnitDies) kill_unit(mishap_.unit);
+    mishap_.is_over = what != Mishap::kRtpuDiesTelling;
+    if (what == Mishap::kRtpuDies) kill_rtpu(mishap_.rtpu);
     if (what == Mishap::kManagerDies) kill_manager();
-    if (what == Mishap::kHoldUp) hold_up(mishap_.unit);
+    if (what == Mishap::kHoldUp) hold_up(mishap_.rtpu);
     if (what == Mishap::kCancel && lives(n_)) abort_plan();
     if (what == Mishap::kFlag) raise(true);
     if (what == Mishap::kSignal) signal();
   }
-  void hold_up(std::uint32_t unit) {
+  void hold_up(std::uint32_t rtpu) {
     ++tally_.hold_ups;
-    held_until_[unit] = units_.now + microseconds(100 + draw(6000));
+    held_until_[rtpu] = rtpus_.now + microseconds(100 + draw(6000));
     for (const TaskId id : watches())
-      if (unit_of(id) == unit) readers_.excuse(id, held_until_[unit] + milliseconds(4));
+      if (rtpu_of(id) == rtpu) readers_.excuse(id, held_until_[rtpu] + milliseconds(4));
   }
   void raise(bool up) {
     readers_.let_loose();
-    units_.manager->block.head().flag = up ? 1 : 0;
-    units_.change();
+    rtpus_.manager->block.head().flag = up ? 1 : 0;
+    rtpus_.change();
   }
   void signal() {
     const TaskId members[] = {kNear, kExtra, kShape, kFar};
@@ -292,12 +292,12 @@ class Run {
     if (!all_live() || !readers_.is_strict()) return;  // they may not have met yet
     ++tally_.signals;
     readers_.let_loose();
-    units_.send(one_in(3) ? Signal::kKill : Signal::kOff, {id});
+    rtpus_.send(one_in(3) ? Signal::kKill : Signal::kOff, {id});
   }
   void abort_plan() {
     if (!agreement().abort(journal_.number)) return;
     if (kind_ == Kind::kOfModel) recorder_.look(n_);
-    units_.change();
+    rtpus_.change();
   }
 
   // The manager, or its successor, which knows the journal.
@@ -307,11 +307,11 @@ class Run {
       journal_.is_open = false;
       return;
     }
-    if (units_.now > journal_.until + milliseconds(100)) abort_plan();
+    if (rtpus_.now > journal_.until + milliseconds(100)) abort_plan();
     if (plan().is_open() || !is_over()) return;
     file();
   }
-  bool is_over() const { return units_.is_over(journal_.number); }
+  bool is_over() const { return rtpus_.is_over(journal_.number); }
   void file() {
     if (kind_ == Kind::kOfModel) recorder_.add("filed", n_);
     journal_.is_open = false;
@@ -325,15 +325,15 @@ class Run {
   void judge_end(bool is_done) {
     for (std::uint32_t u = 0; u < n_; ++u) {
       if (!lives(u)) continue;
-      const SwitchPart& part = units_.part(u);
-      if (part.number != journal_.number) fail("a unit has no part in the receipt");
+      const SwitchPart& part = rtpus_.part(u);
+      if (part.number != journal_.number) fail("an rtpu has no part in the receipt");
       const bool was_there = incarnation_[u] == 1 || part.n_tasks > 0;
       if (was_there && (part.end == SwitchEnd::kDone) != is_done) fail("a part tells of another end");
       if (is_done && readers_.is_strict() && held_until_[u] + milliseconds(4) < began_) judge_losses(part);
     }
     for (std::size_t t = 0; t < n_tasks(); ++t) {
       const TaskId id(t);
-      if (!lives(unit_of(id))) continue;
+      if (!lives(rtpu_of(id))) continue;
       if (task(id).owes_off) fail("task " + std::to_string(t) + " is armed for nothing");
       if (readers_.is_strict() && is_on(id) != is_in(application_.sets[in_force_], id))
         fail("task " + std::to_string(t) + (is_on(id) ? " is ON" : " is not ON"));
@@ -349,7 +349,7 @@ class Run {
   std::uint32_t n_;
   Application application_;
   std::vector<std::shared_ptr<CutLinks>> links_;
-  testing::Units units_;
+  testing::TestRtpus rtpus_;
   Recorder recorder_;
   Readers readers_;
   Journal journal_;

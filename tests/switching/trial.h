@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Switches among real units, stepped by hand, by seed: random sets at random instants, and in every second of them
-// something that goes wrong at a random step: a unit or the manager dies, a unit is held up, the switch is cancelled,
+// Switches among real rtpus, stepped by hand, by seed: random sets at random instants, and in every second of them
+// something that goes wrong at a random step: an rtpu or the manager dies, an rtpu is held up, the switch is cancelled,
 // the flag is raised, a signal comes, `on` fails. What must hold is judged after every step.
 #pragma once
 
@@ -17,18 +17,18 @@
 
 namespace chimera::switching_trial {
 
-/// Of the model: two units, who dies stays dead, nothing but deaths, hold-ups and cancels.
+/// Of the model: two rtpus, who dies stays dead, nothing but deaths, hold-ups and cancels.
 enum class Kind : std::uint8_t { kAll, kOfModel };
 
 /// What a trial did. `failure` "": everything held.
 struct Tally {
   std::string failure;
-  std::uint64_t switches = 0, done = 0, aborted = 0, unit_deaths = 0, manager_deaths = 0, hold_ups = 0, signals = 0,
+  std::uint64_t switches = 0, done = 0, aborted = 0, rtpu_deaths = 0, manager_deaths = 0, hold_ups = 0, signals = 0,
                 looks = 0;
   std::vector<std::string> events;  ///< of the model
 };
 
-/// One trial of `n_switches` of real units.
+/// One trial of `n_switches` of real rtpus.
 Tally run_trial(std::uint64_t seed, std::uint32_t n_switches, Kind kind = Kind::kAll);
 /// One trial of three rtpus in virtual time, some of them preemptive, that nothing disturbs but other requests.
 Tally run_virtual_trial(std::uint64_t seed, std::uint32_t n_switches);

@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "chimera/base/assert.h"
-#include "chimera/cli/live/answer_text.h"
 #include "chimera/cli/live/live.h"
 #include "chimera/cli/live/one_shot.h"
 #include "chimera/cli/live/receipts_command.h"
 #include "chimera/cli/live/scope_command.h"
-#include "chimera/cli/live/status_text.h"
+#include "chimera/cli/print/answer_text.h"
+#include "chimera/cli/print/status_text.h"
 #include "chimera/task/signal.h"
 #include "chimera/text/json.h"
 

@@ -15,9 +15,9 @@
 #include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/base/hosted/terminal_text.h"
 #include "chimera/cli/live/commands.h"
-#include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/terminal.h"
 #include "chimera/cli/live/words.h"
+#include "chimera/cli/print/fields.h"
 #include "chimera/control/state_folder.h"
 #include "chimera/text/json.h"
 

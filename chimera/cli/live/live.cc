@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "chimera/base/hosted/terminal_text.h"
-#include "chimera/cli/live/event_lines.h"
-#include "chimera/cli/live/fields.h"
-#include "chimera/cli/live/sparkline.h"
 #include "chimera/cli/live/terminal.h"
 #include "chimera/cli/live/top.h"
 #include "chimera/cli/live/watch.h"
+#include "chimera/cli/print/event_lines.h"
+#include "chimera/cli/print/fields.h"
+#include "chimera/cli/print/sparkline.h"
 #include "chimera/platform/standard_streams.h"
 #include "chimera/text/json.h"
 #include "chimera/units/quantity.h"

@@ -9,11 +9,11 @@
 #include <filesystem>
 #include <optional>
 
-#include "chimera/cli/live/answer_text.h"
-#include "chimera/cli/live/columns.h"
-#include "chimera/cli/live/fields.h"
-#include "chimera/cli/live/figures.h"
-#include "chimera/control/receipt_file.h"
+#include "chimera/cli/print/answer_text.h"
+#include "chimera/cli/print/columns.h"
+#include "chimera/cli/print/fields.h"
+#include "chimera/cli/print/figures.h"
+#include "chimera/control/receipt/receipt_file.h"
 #include "chimera/control/state_folder.h"
 #include "chimera/text/json.h"
 

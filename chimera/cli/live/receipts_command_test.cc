@@ -7,7 +7,7 @@
 #include <ctime>
 #include <filesystem>
 
-#include "chimera/control/receipt_file.h"
+#include "chimera/control/receipt/receipt_file.h"
 #include "chimera/text/json.h"
 
 namespace chimera::cli {

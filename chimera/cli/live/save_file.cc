@@ -10,9 +10,9 @@
 #include <sstream>
 
 #include "chimera/base/hosted/ordinary_file.h"
-#include "chimera/cli/live/answer_text.h"
-#include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/operator_text.h"
+#include "chimera/cli/print/answer_text.h"
+#include "chimera/cli/print/fields.h"
 #include "chimera/control/state_folder.h"
 #include "chimera/platform/clock.h"
 #include "chimera/platform/file.h"

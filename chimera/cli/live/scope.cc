@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "chimera/cli/live/fields.h"
+#include "chimera/cli/print/fields.h"
 #include "chimera/text/json.h"
 
 namespace chimera::cli {

@@ -8,13 +8,13 @@
 #include <cstring>
 
 #include "chimera/analysis/recorded_profile.h"
-#include "chimera/cli/live/answer_text.h"
-#include "chimera/cli/live/fields.h"
-#include "chimera/cli/live/figures.h"
 #include "chimera/cli/live/scope.h"
-#include "chimera/cli/live/sketch.h"
-#include "chimera/cli/live/sparkline.h"
 #include "chimera/cli/live/terminal.h"
+#include "chimera/cli/print/answer_text.h"
+#include "chimera/cli/print/fields.h"
+#include "chimera/cli/print/figures.h"
+#include "chimera/cli/print/sketch.h"
+#include "chimera/cli/print/sparkline.h"
 #include "chimera/platform/clock.h"
 #include "chimera/text/json.h"
 #include "chimera/text/nearest.h"

@@ -5,10 +5,10 @@
 #include <cstdlib>
 
 #include "chimera/base/hosted/terminal_text.h"
-#include "chimera/cli/live/answer_text.h"
 #include "chimera/cli/live/commands.h"
-#include "chimera/cli/live/fields.h"
 #include "chimera/cli/live/terminal.h"
+#include "chimera/cli/print/answer_text.h"
+#include "chimera/cli/print/fields.h"
 #include "chimera/text/json.h"
 
 namespace chimera::cli {

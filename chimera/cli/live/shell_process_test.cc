@@ -131,22 +131,22 @@ struct ShellTest : ::testing::Test {
     open(::dup(keepers));
   }
   void open(int listening) {
-    door = *control::ControlServer::open(listening, subject, ::getuid(), {});
+    server = *control::ControlServer::open(listening, subject, ::getuid(), {});
     server = std::thread([this] {
       sigset_t all;
       ::sigfillset(&all);
       ::pthread_sigmask(SIG_BLOCK, &all, nullptr);
       while (!is_over) {
-        pollfd one{door->descriptor(), POLLIN, 0};
+        pollfd one{server->descriptor(), POLLIN, 0};
         ::poll(&one, 1, 2);
-        door->serve(LinuxClock().now());
+        server->serve(LinuxClock().now());
       }
     });
   }
   void stop() {
     is_over = true;
     if (server.joinable()) server.join();
-    door.reset();
+    server.reset();
   }
   void TearDown() override {
     stop();
@@ -179,7 +179,7 @@ struct ShellTest : ::testing::Test {
   std::string folder;
   int keepers = -1;  ///< the listening socket, which outlives a ControlServer
   FakeSubject subject;
-  std::unique_ptr<control::ControlServer> door;
+  std::unique_ptr<control::ControlServer> server;
   std::thread server;
   std::atomic<bool> is_over{false};
 };
@@ -236,7 +236,7 @@ TEST_F(ShellTest, AnswersOfProgramsNameTheirSubsystem) {
   EXPECT_EQ(Json::parse(raw.substr(2, raw.size() - 3))["subsystem"], "puma_pid");
 }
 
-TEST_F(ShellTest, TheProcessOfAUnitIsANumberForKill) {
+TEST_F(ShellTest, TheProcessOfAnRtpuIsANumberForKill) {
   serve();
   EXPECT_EQ(run({"status", "--pid", "servo"}), "0|4711\n|");
   EXPECT_EQ(run({"status", "--pid", "keeper"}), "0|1\n|");

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "chimera/cli/live/columns.h"
-#include "chimera/cli/live/fields.h"
-#include "chimera/cli/live/figures.h"
-#include "chimera/cli/live/status_text.h"
+#include "chimera/cli/print/columns.h"
+#include "chimera/cli/print/fields.h"
+#include "chimera/cli/print/figures.h"
+#include "chimera/cli/print/status_text.h"
 #include "chimera/text/json.h"
 
 namespace chimera::cli {

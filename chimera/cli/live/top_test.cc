@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "chimera/cli/live/columns.h"
 #include "chimera/cli/live/testing/test_answers.h"
+#include "chimera/cli/print/columns.h"
 #include "chimera/text/json.h"
 
 namespace chimera::cli::top_test {
@@ -89,7 +89,7 @@ TEST(Top, ATaskThatWasMadeAnewStartsItsFiguresAnew) {
   EXPECT_EQ(top_lines(json, status(), {})[6].text.substr(20, 6), " 1 kHz");
 }
 
-TEST(Top, AlarmsAreErrorsNewMissesTheFlagAndDeadUnits) {
+TEST(Top, AlarmsAreErrorsNewMissesTheFlagAndDeadRtpus) {
   const std::vector<TopLine> lines = top_lines(later(), status(), {});
   const std::vector<TopLine::Look> expected = {TopLine::Look::kAlarm, TopLine::Look::kPlain, TopLine::Look::kAlarm,
                                                TopLine::Look::kPlain, TopLine::Look::kHeading, TopLine::Look::kAlarm,

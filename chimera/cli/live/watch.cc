@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <limits>
 
-#include "chimera/cli/live/columns.h"
-#include "chimera/cli/live/fields.h"
-#include "chimera/cli/live/sparkline.h"
+#include "chimera/cli/print/columns.h"
+#include "chimera/cli/print/fields.h"
+#include "chimera/cli/print/sparkline.h"
 #include "chimera/text/json.h"
 
 namespace chimera::cli {

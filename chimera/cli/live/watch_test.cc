@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "chimera/cli/live/columns.h"
+#include "chimera/cli/print/columns.h"
 #include "chimera/text/json.h"
 
 namespace chimera::cli {

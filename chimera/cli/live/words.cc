@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "chimera/cli/live/fields.h"
+#include "chimera/cli/print/fields.h"
 #include "chimera/text/json.h"
 
 namespace chimera::cli {

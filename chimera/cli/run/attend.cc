@@ -102,7 +102,7 @@ class RemoteTarget final : public RunTarget {
   void act(const TimedAct& timed);
   void switch_to(const TimedAct& timed);
   void add_receipts(const Json& origin_ns, RunReport& report);
-  std::vector<UnitFate> units_of(const Json& status) const;
+  std::vector<RtpuFate> rtpus_of(const Json& status) const;
   std::vector<TaskProfile> profiles(const Json& origin);
   std::optional<Json> await_end();
   void judge_end(RunReport& report, const Json& status);
@@ -335,7 +335,7 @@ std::vector<Reading> RemoteTarget::read(const std::vector<std::string>& names) {
   std::vector<Reading> readings;
   for (const std::string& name : names) {
     const Json& reading = std::as_const(values)[name];
-    readings.push_back({seen_of(reading), text_at(reading, "unit", "1"), reading["value"].dump()});
+    readings.push_back({seen_of(reading), text_at(reading, "rtpu", "1"), reading["value"].dump()});
   }
   return readings;
 }
@@ -367,19 +367,19 @@ std::optional<RunEnd> RemoteTarget::advance(Nanoseconds until) {
   }
 }
 
-std::vector<UnitFate> RemoteTarget::units_of(const Json& status) const {
-  std::vector<UnitFate> units;
+std::vector<RtpuFate> RemoteTarget::rtpus_of(const Json& status) const {
+  std::vector<RtpuFate> rtpus;
   for (const Json& rtpu : status["rtpus"]) {
-    UnitFate unit{text_at(rtpu, "name"),
+    RtpuFate rtpu{text_at(rtpu, "name"),
                   static_cast<std::uint64_t>(whole_at(rtpu, "restarts")),
                   kNever,
                   truth_at(rtpu, "given_up"),
                   {}};
-    if (const auto at = restarted_.find(unit.name); at != restarted_.end() && started_ != kNever)
-      unit.restarted = at->second - started_;
-    units.push_back(std::move(unit));
+    if (const auto at = restarted_.find(rtpu.name); at != restarted_.end() && started_ != kNever)
+      rtpu.restarted = at->second - started_;
+    rtpus.push_back(std::move(rtpu));
   }
-  return units;
+  return rtpus;
 }
 
 std::vector<TaskProfile> RemoteTarget::profiles(const Json& origin) {
@@ -409,7 +409,7 @@ std::optional<Json> RemoteTarget::await_end() {
 
 /// Takes what the last methods of the tasks left: what fails there belongs to the run.
 void RemoteTarget::judge_end(RunReport& report, const Json& before) {
-  std::vector<UnitFate> units = units_of(before);
+  std::vector<RtpuFate> rtpus = rtpus_of(before);
   std::vector<std::uint64_t> faults;
   for (const TaskProfile& task : report.profiles) faults.push_back(task.faults.count);
   const auto after = await_end();
@@ -420,13 +420,13 @@ void RemoteTarget::judge_end(RunReport& report, const Json& before) {
     for (const int method : {CHIMERA_OFF, CHIMERA_KILL, CHIMERA_ERROR})
       task.profile.execution[method] = ended[t].profile.execution[method];
   }
-  for (std::size_t r = 0; after && r < units.size(); ++r) {
+  for (std::size_t r = 0; after && r < rtpus.size(); ++r) {
     const Json& was = before["rtpus"][r];
     const Json end = (*after)["rtpus"][r]["last_end"];
     const bool is_new = truth_at(was, "alive") && end.is_string() && end != was["last_end"];
-    if (is_new && end != "ended with status 0") units[r].bad_end = end.as_string();
+    if (is_new && end != "ended with status 0") rtpus[r].bad_end = end.as_string();
   }
-  report.verdict = judge_run({report.profiles, faults, units, report.is_flag_up, run_.strict, not_off_});
+  report.verdict = judge_run({report.profiles, faults, rtpus, report.is_flag_up, run_.strict, not_off_});
   if (page_.deaths > 0)
     report.verdict.remarks.push_back("the process that prints and ends the run died " + std::to_string(page_.deaths) +
                                      (page_.deaths == 1 ? " time" : " times"));

@@ -287,7 +287,7 @@ TEST_F(Attend, ARestartIsToldAndFailsAStrictRunOnly) {
   EXPECT_NE(out_.find("FAILED: not clean, and --strict makes that a failure\n"), std::string::npos) << out_;
 }
 
-TEST_F(Attend, AUnitThatWasGivenUpIsNoSuccess) {
+TEST_F(Attend, AnRtpuThatWasGivenUpIsNoSuccess) {
   backend_.servo["restarts"] = 3;
   backend_.servo["given_up"] = true;
   EXPECT_EQ(attend(), kRefused);

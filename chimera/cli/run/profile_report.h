@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "chimera/analysis/task_profile.h"
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/life/task_set.h"
 
 namespace chimera::cli {
 

@@ -19,10 +19,10 @@
 #include "chimera/cli/run/run_session.h"
 #include "chimera/cli/run/under_way.h"
 #include "chimera/cli/run/watch_plot.h"
-#include "chimera/control/receipt_json.h"
-#include "chimera/control/receipt_text.h"
+#include "chimera/control/receipt/receipt_json.h"
+#include "chimera/control/receipt/receipt_text.h"
 #include "chimera/platform/standard_streams.h"
-#include "chimera/runtime/tap_ring.h"
+#include "chimera/runtime/record/tap_ring.h"
 
 namespace chimera::cli {
 namespace {
@@ -91,7 +91,7 @@ class LocalTarget final : public RunTarget {
  private:
   void drain();
   void print_notes();
-  std::vector<UnitFate> fates();
+  std::vector<RtpuFate> fates();
 
   const RunRequest& request_;
   const RunPlan& plan_;
@@ -136,14 +136,14 @@ Result<void> LocalTarget::start() {
 }
 
 // The fates of rtpus that the script let die, or that a standby had killed because their tasks were silent.
-std::vector<UnitFate> LocalTarget::fates() {
-  std::vector<UnitFate> fates;
+std::vector<RtpuFate> LocalTarget::fates() {
+  std::vector<RtpuFate> fates;
   const VirtualPeers* const peers = application_.peers();
   for (std::size_t r = 0; peers != nullptr && r < application_.spec().rtpus.size(); ++r)
     if (peers->died(RtpuId(r)) != kNever)
       fates.push_back({.name = std::string(application_.spec().rtpus[r].name),
                        .died = peers->died(RtpuId(r)) - loop_->origin()});
-  std::ranges::stable_sort(fates, {}, [](const UnitFate& fate) { return fate.died.count; });
+  std::ranges::stable_sort(fates, {}, [](const RtpuFate& fate) { return fate.died.count; });
   return fates;
 }
 
@@ -222,7 +222,7 @@ void LocalTarget::finish(RunReport& report) {
   report.receipts_left_out = loop_->receipts().left_out();
   // The profiles contain the cost and the faults of `off` and `kill`, too.
   report.profiles = profiles_of(tasks, states, application_.configuration(), now);
-  const std::vector<UnitFate> units = fates();
+  const std::vector<RtpuFate> units = fates();
   report.verdict = judge_run({report.profiles, faults_before, units, report.is_flag_up, request_.strict});
   if (sink_ != nullptr) {
     drain();

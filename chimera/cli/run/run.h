@@ -11,7 +11,7 @@
 #include "chimera/cli/files/file_refusal.h"
 #include "chimera/cli/files/workplace.h"
 #include "chimera/cli/run/application.h"
-#include "chimera/runtime/tap_record.h"
+#include "chimera/runtime/record/tap_record.h"
 #include "chimera/verify/setting.h"
 
 namespace chimera::cli {

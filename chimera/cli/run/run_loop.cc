@@ -8,7 +8,7 @@
 #include <future>
 #include <thread>
 
-#include "chimera/control/switch_reason.h"
+#include "chimera/control/receipt/switch_reason.h"
 #include "chimera/platform/clock.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/runtime/executive/counter_clock.h"

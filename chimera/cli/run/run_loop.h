@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "chimera/cli/run/run.h"
+#include "chimera/runtime/cycle/releases.h"
 #include "chimera/runtime/hosted/asked_sets.h"
-#include "chimera/runtime/releases.h"
 
 namespace chimera::cli {
 

@@ -13,7 +13,7 @@
 #include "chimera/cli/files/workplace.h"
 #include "chimera/cli/run/expectation.h"
 #include "chimera/cli/run/own_process.h"
-#include "chimera/runtime/script.h"
+#include "chimera/runtime/cycle/script.h"
 #include "chimera/verify/configuration.h"
 
 namespace chimera::cli {

@@ -9,7 +9,7 @@
 #include "chimera/analysis/task_profile.h"
 #include "chimera/cli/run/expectation.h"
 #include "chimera/cli/run/run_verdict.h"
-#include "chimera/runtime/releases.h"
+#include "chimera/runtime/cycle/releases.h"
 
 namespace chimera::cli {
 

@@ -37,23 +37,23 @@ void add_not_off(RunVerdict& verdict, const std::string& task, const std::string
 }
 
 /// `is_told`: tasks of it that were not turned off say how it ended.
-void add_unit(RunVerdict& verdict, const UnitFate& unit, bool is_told) {
-  verdict.restarts += unit.restarts;
-  if (unit.restarts > 0) {
-    verdict.remarks.push_back(counted(unit.restarts, "restart", "restarts") + " of " + unit.name);
+void add_rtpu(RunVerdict& verdict, const RtpuFate& rtpu, bool is_told) {
+  verdict.restarts += rtpu.restarts;
+  if (rtpu.restarts > 0) {
+    verdict.remarks.push_back(counted(rtpu.restarts, "restart", "restarts") + " of " + rtpu.name);
     char at[40] = "";
-    if (unit.restarted != kNever) std::snprintf(at, sizeof at, " at %.3f s", to_seconds(unit.restarted));
-    verdict.since.push_back(unit.name + ": the counts of its tasks begin at its restart" + at);
+    if (rtpu.restarted != kNever) std::snprintf(at, sizeof at, " at %.3f s", to_seconds(rtpu.restarted));
+    verdict.since.push_back(rtpu.name + ": the counts of its tasks begin at its restart" + at);
   }
-  if (unit.died != kNever) {
+  if (rtpu.died != kNever) {
     char at[40];
-    std::snprintf(at, sizeof at, "%.3f s", to_seconds(unit.died));
-    verdict.remarks.push_back(unit.name + " died at " + at + " and is not restarted");
+    std::snprintf(at, sizeof at, "%.3f s", to_seconds(rtpu.died));
+    verdict.remarks.push_back(rtpu.name + " died at " + at + " and is not restarted");
   }
-  if (unit.is_given_up)
-    verdict.failures.push_back(unit.name + " was given up: its process ended too often, its tasks did not run");
-  if (!unit.bad_end.empty() && !is_told)
-    verdict.failures.push_back(unit.name + " did not end in order: it " + unit.bad_end);
+  if (rtpu.is_given_up)
+    verdict.failures.push_back(rtpu.name + " was given up: its process ended too often, its tasks did not run");
+  if (!rtpu.bad_end.empty() && !is_told)
+    verdict.failures.push_back(rtpu.name + " did not end in order: it " + rtpu.bad_end);
 }
 
 void add_end(RunVerdict& verdict, const TaskProfile& task, bool died_on_purpose, std::uint64_t faults_before) {
@@ -86,17 +86,17 @@ RunVerdict judge_run(const RunFacts& facts) {
   verdict.faults = add_up(verdict, facts.tasks, "fault", "faults",
                           [](const TaskProfile& task) { return std::uint64_t{task.faults.count}; });
   for (const NotOff& one : facts.not_off) add_not_off(verdict, one.task, one.text);
-  for (const UnitFate& unit : facts.units) {
+  for (const RtpuFate& rtpu : facts.rtpus) {
     const bool is_told = std::any_of(facts.tasks.begin(), facts.tasks.end(), [&](const TaskProfile& task) {
-      return task.rtpu == unit.name && std::any_of(facts.not_off.begin(), facts.not_off.end(),
+      return task.rtpu == rtpu.name && std::any_of(facts.not_off.begin(), facts.not_off.end(),
                                                    [&](const NotOff& one) { return one.task == task.task; });
     });
-    add_unit(verdict, unit, is_told);
+    add_rtpu(verdict, rtpu, is_told);
   }
   if (facts.is_flag_up) verdict.remarks.emplace_back("the illegal-configuration flag is up");
   for (std::size_t t = 0; t < facts.tasks.size(); ++t) {
-    const bool died_on_purpose = std::any_of(facts.units.begin(), facts.units.end(), [&](const UnitFate& unit) {
-      return unit.died != kNever && unit.name == facts.tasks[t].rtpu;
+    const bool died_on_purpose = std::any_of(facts.rtpus.begin(), facts.rtpus.end(), [&](const RtpuFate& rtpu) {
+      return rtpu.died != kNever && rtpu.name == facts.tasks[t].rtpu;
     });
     add_end(verdict, facts.tasks[t], died_on_purpose, t < facts.faults_before.size() ? facts.faults_before[t] : 0);
   }

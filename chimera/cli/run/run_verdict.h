@@ -12,7 +12,7 @@
 namespace chimera::cli {
 
 /// The result of one rtpu. Plain value.
-struct UnitFate {
+struct RtpuFate {
   std::string name;
   std::uint64_t restarts = 0;
   Nanoseconds restarted = kNever;  ///< since the start of the run, the last time; kNever: not known
@@ -53,7 +53,7 @@ struct RunVerdict {
 struct RunFacts {
   std::span<const TaskProfile> tasks;
   std::span<const std::uint64_t> faults_before;
-  std::span<const UnitFate> units;
+  std::span<const RtpuFate> rtpus;
   bool is_flag_up = false;
   bool is_strict = false;
   std::span<const NotOff> not_off = {};  ///< from the subsystem's events; judge_run() adds those of `tasks`

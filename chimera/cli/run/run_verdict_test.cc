@@ -15,9 +15,9 @@ TaskProfile task(const std::string& name, State state = State::kOn) {
   return made;
 }
 
-RunVerdict judged(const std::vector<TaskProfile>& tasks, const std::vector<UnitFate>& units = {},
+RunVerdict judged(const std::vector<TaskProfile>& tasks, const std::vector<RtpuFate>& rtpus = {},
                   bool is_flag_up = false, bool is_strict = false, std::vector<std::uint64_t> faults_before = {}) {
-  return judge_run({tasks, faults_before, units, is_flag_up, is_strict});
+  return judge_run({tasks, faults_before, rtpus, is_flag_up, is_strict});
 }
 
 TaskProfile with_fault(TaskProfile of, Method method, const char* text) {
@@ -38,12 +38,12 @@ TEST(RunVerdict, AGoodRunIsOneLineAndASuccessStrictToo) {
 TEST(RunVerdict, ADeathThatWasAskedForIsNotCleanAndFailsOnlyAStrictRun) {
   TaskProfile lost = task("pi", State::kError);
   lost.rtpu = "servo";
-  const std::vector<UnitFate> units = {{.name = "servo", .died = milliseconds(1500)}};
-  EXPECT_EQ(judged({lost}, units).text(), "not clean: servo died at 1.500 s and is not restarted\n");
-  EXPECT_FALSE(judged({lost}, units).is_failure());
-  EXPECT_TRUE(judged({lost}, units, false, true).is_failure());
+  const std::vector<RtpuFate> rtpus = {{.name = "servo", .died = milliseconds(1500)}};
+  EXPECT_EQ(judged({lost}, rtpus).text(), "not clean: servo died at 1.500 s and is not restarted\n");
+  EXPECT_FALSE(judged({lost}, rtpus).is_failure());
+  EXPECT_TRUE(judged({lost}, rtpus, false, true).is_failure());
   lost.rtpu = "plan";
-  EXPECT_TRUE(judged({lost}, units).is_failure()) << "another rtpu";
+  EXPECT_TRUE(judged({lost}, rtpus).is_failure()) << "another rtpu";
 }
 
 TEST(RunVerdict, CountsAreToldByTaskAndFailOnlyAStrictRun) {
@@ -106,7 +106,7 @@ TEST(RunVerdict, WhatMayNotBeOffIsToldOnceWithItsCauseWheneverItHappened) {
   TaskProfile pi = with_fault(task("pi"), Method::kOff, "stuck"), arm = task("arm");
   pi.rtpu = arm.rtpu = "servo";
   const NotOff told[] = {{"arm", "servo ended by signal 9 (SIGKILL) in arm.off: its hardware may not be off"}};
-  const UnitFate servo{.name = "servo", .bad_end = "ended by signal 9 (SIGKILL) in arm.off"};
+  const RtpuFate servo{.name = "servo", .bad_end = "ended by signal 9 (SIGKILL) in arm.off"};
   const std::vector<TaskProfile> tasks = {pi, arm};
   const RunVerdict verdict = judge_run({tasks, {}, {&servo, 1}, false, false, told});
   EXPECT_EQ(verdict.text(), "not clean: 1 fault (pi 1)\n"

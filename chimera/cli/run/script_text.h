@@ -8,7 +8,7 @@
 
 #include "chimera/base/result.h"
 #include "chimera/runtime/application_spec.h"
-#include "chimera/runtime/script.h"
+#include "chimera/runtime/cycle/script.h"
 
 namespace chimera::cli {
 

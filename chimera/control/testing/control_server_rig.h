@@ -36,7 +36,7 @@ struct FakeBackend final : ControlBackend {
 
 struct DoorTest : ::testing::Test {
   void SetUp() override {
-    char made[] = "/tmp/chimera-door-XXXXXX";
+    char made[] = "/tmp/chimera-server-XXXXXX";
     folder = ::mkdtemp(made);
     path = folder + "/subject.sock";
     open_door();
@@ -51,7 +51,7 @@ struct DoorTest : ::testing::Test {
       ASSERT_EQ(::bind(listening, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
       ASSERT_EQ(::listen(listening, 64), 0);
     }
-    door = *ControlServer::open(::dup(listening), backend, ::getuid(), groups);
+    server = *ControlServer::open(::dup(listening), backend, ::getuid(), groups);
   }
   static sockaddr_un address_of(const std::string& path) {
     sockaddr_un address{};
@@ -69,8 +69,8 @@ struct DoorTest : ::testing::Test {
 
   /// Serves once, and again as long as ControlServer has more to do at the same instant.
   void serve(Nanoseconds step = milliseconds(1)) {
-    door->serve(now = now + step);
-    for (int i = 0; i < 1000 && door->next_due() <= now; ++i) door->serve(now);
+    server->serve(now = now + step);
+    for (int i = 0; i < 1000 && server->next_due() <= now; ++i) server->serve(now);
   }
   static void say(int fd, const std::string& text) {
     EXPECT_EQ(::send(fd, text.data(), text.size(), MSG_NOSIGNAL), static_cast<ssize_t>(text.size()));
@@ -120,7 +120,7 @@ struct DoorTest : ::testing::Test {
   int listening = -1;
   RoleGroups groups;
   FakeBackend backend;
-  std::unique_ptr<ControlServer> door;
+  std::unique_ptr<ControlServer> server;
   Nanoseconds now = seconds(1);
 };
 

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "chimera/manager/peers.h"
+#include "chimera/manager/state/peers.h"
 #include "chimera/platform/clock.h"
 #include "chimera/platform/descriptor.h"
 #include "chimera/platform/wake.h"

@@ -130,7 +130,7 @@ class FakeSubsystem {
     for (std::uint32_t r = 0; r < n_rtpus(); ++r) revive(r);
   }
   ~FakeSubsystem() {
-    driver_.reset();
+    loop_.reset();
     rtpus_.clear();
     std::error_code error;  // a manager that was left behind may still file
     std::filesystem::remove_all(state_, error);
@@ -143,7 +143,7 @@ class FakeSubsystem {
   FakeRtpu& rtpu(std::uint32_t index) { return *rtpus_[index]; }
   KeeperPage& page() { return *reinterpret_cast<KeeperPage*>(keeper_.writable().data()); }
   DecisionPage& decision_page() { return *reinterpret_cast<DecisionPage*>(decision_.bytes().data()); }
-  ManagerLoop& driver() { return *driver_; }
+  ManagerLoop& loop() { return *loop_; }
   TaskId task(std::string_view name) const {
     for (std::size_t t = 0; t < spec_.tasks.size(); ++t)
       if (spec_.tasks[t].name == name) return TaskId(t);
@@ -158,8 +158,8 @@ class FakeSubsystem {
                               again(keeper_.descriptor()), -1, again(frozen_bundle_.descriptor())};
     auto made = ManagerLoop::start(inherited, manager_incarnation_, ::getpid());
     ASSERT_TRUE(made) << made.error().message.c_str();
-    driver_ = *std::move(made);
-    ASSERT_NE(driver_, nullptr);
+    loop_ = *std::move(made);
+    ASSERT_NE(loop_, nullptr);
   }
   /// Starts a manager as a process of its own; the test must call keep().
   Process start_program(const char* program, int listening) {
@@ -175,7 +175,7 @@ class FakeSubsystem {
   }
   /// Ends the manager as SIGKILL does: it sends no message.
   void kill_manager() {
-    driver_.reset();
+    loop_.reset();
     channel_ = Channel();
   }
   /// Ends the rtpu as that signal does; the segment stays for its last words.
@@ -192,7 +192,7 @@ class FakeSubsystem {
 
   /// One round of ManagerLoop, of the steps after it, and of the keeper.
   bool step() {
-    if (!driver_->step(now() + milliseconds(1))) return false;
+    if (!loop_->step(now() + milliseconds(1))) return false;
     if (after_step) after_step();
     keep();
     return true;
@@ -207,16 +207,16 @@ class FakeSubsystem {
     return false;
   }
   bool until_on(std::string_view name) {
-    return until([&] { return driver_->world().state(task(name)) == State::kOn; });
+    return until([&] { return loop_->state().state(task(name)) == State::kOn; });
   }
   /// The texts of all events of a kind, with the task's name before it.
   std::string told(const std::string& kind) {
     std::string text;
-    const ManagerState& world = driver_->world();
-    for (std::uint64_t n = world.log.first(); n <= world.log.last(); ++n) {
-      const LoggedEvent& event = world.log.at(n);
+    const ManagerState& state = loop_->state();
+    for (std::uint64_t n = state.log.first(); n <= state.log.last(); ++n) {
+      const LoggedEvent& event = state.log.at(n);
       if (event.kind == kind)
-        text += (event.task.is_valid() ? world.name(event.task) + ": " : "") + event.text + "\n";
+        text += (event.task.is_valid() ? state.name(event.task) + ": " : "") + event.text + "\n";
     }
     return text;
   }
@@ -284,7 +284,7 @@ class FakeSubsystem {
   std::uint32_t manager_incarnation_ = 0, segment_incarnation_ = 0;
   std::map<std::uint32_t, std::unique_ptr<FakeRtpu>> rtpus_;
   std::map<std::uint32_t, std::optional<KeeperMessage>> ended_;
-  std::unique_ptr<ManagerLoop> driver_;
+  std::unique_ptr<ManagerLoop> loop_;
 };
 
 }  // namespace chimera::manager

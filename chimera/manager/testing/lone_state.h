@@ -21,10 +21,10 @@ class LoneState {
     keeper_.n_rtpus = static_cast<std::uint32_t>(spec().rtpus.size());
     Peers peers = *Peers::create(spec());
     OwnSegment own = *OwnSegment::make(peers, 1, nullptr, now());
-    world_ = std::make_unique<ManagerState>(std::move(bundle), std::move(peers), std::move(own), page_, keeper_);
+    state_ = std::make_unique<ManagerState>(std::move(bundle), std::move(peers), std::move(own), page_, keeper_);
   }
 
-  ManagerState& world() { return *world_; }
+  ManagerState& state() { return *state_; }
   const ApplicationSpec& spec() const { return configuration_->spec(); }
   TaskId task(std::string_view name) const {
     for (std::size_t t = 0; t < spec().tasks.size(); ++t)
@@ -35,8 +35,8 @@ class LoneState {
   /// "KIND: TEXT" of each event after number `last`, one a line.
   std::string told(std::uint64_t last = 0) const {
     std::string text;
-    for (std::uint64_t n = std::max(last + 1, world_->log.first()); n <= world_->log.last(); ++n)
-      text += world_->log.at(n).kind + ": " + world_->log.at(n).text + "\n";
+    for (std::uint64_t n = std::max(last + 1, state_->log.first()); n <= state_->log.last(); ++n)
+      text += state_->log.at(n).kind + ": " + state_->log.at(n).text + "\n";
     return text;
   }
 
@@ -44,7 +44,7 @@ class LoneState {
   std::optional<Configuration> configuration_;
   DecisionPage page_;
   KeeperPage keeper_;
-  std::unique_ptr<ManagerState> world_;
+  std::unique_ptr<ManagerState> state_;
 };
 
 }  // namespace chimera::manager

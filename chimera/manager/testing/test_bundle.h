@@ -7,7 +7,7 @@
 #include <string>
 
 #include "chimera/base/testing/tree_path.h"
-#include "chimera/manager/bundle.h"
+#include "chimera/manager/state/bundle.h"
 #include "chimera/units/testing/unit_samples.h"
 
 namespace chimera::manager {

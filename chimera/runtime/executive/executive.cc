@@ -2,7 +2,7 @@
 // Runs the cycle loop on a calibrated clock until a stop is requested.
 #include "chimera/runtime/executive/executive.h"
 
-#include "chimera/runtime/cycle_loop.h"
+#include "chimera/runtime/cycle/cycle_loop.h"
 
 namespace chimera {
 namespace {

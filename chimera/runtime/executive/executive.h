@@ -5,7 +5,7 @@
 #pragma once
 
 #include "chimera/platform/clock.h"
-#include "chimera/runtime/releases.h"
+#include "chimera/runtime/cycle/releases.h"
 
 namespace chimera {
 

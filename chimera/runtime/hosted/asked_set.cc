@@ -8,8 +8,8 @@
 
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/hosted/variables.h"
-#include "chimera/runtime/switch/rivals.h"
-#include "chimera/runtime/switch/switch_plan.h"
+#include "chimera/runtime/plan/rivals.h"
+#include "chimera/runtime/plan/switch_plan.h"
 #include "chimera/schedule/utilisation.h"
 
 namespace chimera {

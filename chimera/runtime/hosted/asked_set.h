@@ -6,7 +6,7 @@
 #include <string>
 
 #include "chimera/runtime/application_spec.h"
-#include "chimera/runtime/switch/task_lists.h"
+#include "chimera/runtime/plan/task_lists.h"
 
 namespace chimera {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "chimera/runtime/application_spec.h"
-#include "chimera/runtime/switch/switch_request.h"
+#include "chimera/runtime/plan/switch_request.h"
 
 namespace chimera {
 

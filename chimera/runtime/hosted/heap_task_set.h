@@ -6,7 +6,7 @@
 #include <span>
 
 #include "chimera/runtime/hosted/heap_memory.h"
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/life/task_set.h"
 
 namespace chimera {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "chimera/base/time.h"
-#include "chimera/runtime/switch/switch_agreement.h"
+#include "chimera/runtime/plan/switch_agreement.h"
 
 namespace chimera {
 
@@ -30,9 +30,9 @@ struct DecisionPage {
   /// By peer: what it makes before it shows a block of its own, as show_making() writes it. Relaxed, pairs with
   /// nothing: read when the peer is dead or hangs.
   alignas(64) std::atomic<std::uint32_t> making[kMaxPeers];
-  /// By group of standbys (runtime/standbys.h): the rtpu that is about to turn one of its tasks ON. Bits 32-63: its
-  /// number plus 1; bits 0-31: its incarnation; 0: none. Compare-and-swap, acq_rel: the new holder of the claim sees
-  /// the status words that the holder before has stored. A claim of a dead process is free.
+  /// By group of standbys (runtime/plan/standbys.h): the rtpu that is about to turn one of its tasks ON. Bits 32-63:
+  /// its number plus 1; bits 0-31: its incarnation; 0: none. Compare-and-swap, acq_rel: the new holder of the claim
+  /// sees the status words that the holder before has stored. A claim of a dead process is free.
   alignas(64) std::atomic<std::uint64_t> claims[kMaxGroups];
   /// How far a switch of configurations has come. Outlives the manager, which plans.
   SwitchPage switching;

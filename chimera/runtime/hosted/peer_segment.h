@@ -8,7 +8,7 @@
 #include "chimera/base/result.h"
 #include "chimera/platform/shared_memory.h"
 #include "chimera/runtime/hosted/rtpu_block.h"
-#include "chimera/runtime/peer_layout.h"
+#include "chimera/runtime/state/peer_layout.h"
 #include "chimera/table/group.h"
 
 namespace chimera {

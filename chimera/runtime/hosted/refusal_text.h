@@ -5,7 +5,7 @@
 #include <string>
 
 #include "chimera/base/result.h"
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/life/task_set.h"
 
 namespace chimera {
 

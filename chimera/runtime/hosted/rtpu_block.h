@@ -14,11 +14,11 @@
 #include "chimera/base/ids.h"
 #include "chimera/runtime/hosted/pages.h"
 #include "chimera/runtime/outbox.h"
+#include "chimera/runtime/plan/switch_receipt.h"
+#include "chimera/runtime/plan/switch_wish.h"
+#include "chimera/runtime/plan/takeover.h"
+#include "chimera/runtime/record/tap_ring.h"
 #include "chimera/runtime/safe_frame.h"
-#include "chimera/runtime/switch/switch_receipt.h"
-#include "chimera/runtime/switch/switch_wish.h"
-#include "chimera/runtime/takeover.h"
-#include "chimera/runtime/tap_ring.h"
 #include "chimera/runtime/task_status.h"
 #include "chimera/table/segment.h"
 #include "chimera/task/profile.h"
@@ -72,7 +72,7 @@ struct ManagerMemory {
   std::atomic<std::uint64_t> takeovers[kMaxRtpus];  ///< incarnation, and number of the last one that has a receipt
 };
 
-/// The journal of switches, used in the manager's block only. chimera/manager/switch_journal.h defines its format.
+/// The journal of switches, used in the manager's block only. manager/state/switch_journal.h defines its format.
 inline constexpr std::size_t kJournalBytes = (128u << 10) + 1024;
 
 /// Views into a block over mapped bytes. Plain value; every accessor is O(1) and wait-free.

@@ -8,7 +8,7 @@
 #include <memory>
 #include <random>
 
-#include "chimera/runtime/tap_ring.h"
+#include "chimera/runtime/record/tap_ring.h"
 
 namespace chimera::tap_rows_test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "chimera/runtime/job_threads.h"
+#include "chimera/runtime/job/job_threads.h"
 #include "chimera/runtime/preemptive/processor.h"
 
 namespace chimera {

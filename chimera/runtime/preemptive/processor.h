@@ -10,10 +10,10 @@
 #include <algorithm>
 
 #include "chimera/platform/wake.h"
+#include "chimera/runtime/cycle/releases.h"
 #include "chimera/runtime/preemptive/job_checks.h"
 #include "chimera/runtime/preemptive/processor_share.h"
 #include "chimera/runtime/preemptive/ready_jobs.h"
-#include "chimera/runtime/releases.h"
 
 namespace chimera {
 

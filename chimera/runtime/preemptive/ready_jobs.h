@@ -6,10 +6,10 @@
 #include <deque>
 #include <vector>
 
+#include "chimera/runtime/life/task_set.h"
 #include "chimera/runtime/preemptive/job_thread.h"
 #include "chimera/runtime/preemptive/label_list.h"
 #include "chimera/runtime/preemptive/processor_place.h"
-#include "chimera/runtime/task_set.h"
 
 namespace chimera {
 

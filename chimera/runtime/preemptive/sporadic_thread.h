@@ -5,7 +5,7 @@
 
 #include "chimera/platform/thread.h"
 #include "chimera/platform/wake.h"
-#include "chimera/runtime/sporadic_job.h"
+#include "chimera/runtime/job/sporadic_job.h"
 
 namespace chimera {
 

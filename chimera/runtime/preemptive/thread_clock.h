@@ -3,7 +3,7 @@
 
 #include "chimera/platform/clock.h"
 #include "chimera/platform/thread.h"
-#include "chimera/runtime/job_clock.h"
+#include "chimera/runtime/job/job_clock.h"
 
 namespace chimera {
 

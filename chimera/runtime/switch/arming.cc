@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "chimera/runtime/job_step.h"
+#include "chimera/runtime/job/job_step.h"
 
 namespace chimera {
 

@@ -6,14 +6,14 @@
 #include <cstdint>
 #include <span>
 
-#include "chimera/runtime/job_threads.h"
-#include "chimera/runtime/members.h"
-#include "chimera/runtime/switch/idle_gap.h"
-#include "chimera/runtime/switch/safe_condition.h"
-#include "chimera/runtime/switch/switch_agreement.h"
+#include "chimera/runtime/job/job_threads.h"
+#include "chimera/runtime/life/members.h"
+#include "chimera/runtime/life/task_set.h"
+#include "chimera/runtime/plan/idle_gap.h"
+#include "chimera/runtime/plan/switch_agreement.h"
+#include "chimera/runtime/plan/switch_plan.h"
+#include "chimera/runtime/safe_condition.h"
 #include "chimera/runtime/switch/switch_peers.h"
-#include "chimera/runtime/switch/switch_plan.h"
-#include "chimera/runtime/task_set.h"
 
 namespace chimera {
 

@@ -3,12 +3,12 @@
 // see one step. A job that was released before T ends with its old inputs and outputs.
 #pragma once
 
-#include "chimera/runtime/context_tap.h"
-#include "chimera/runtime/job_threads.h"
-#include "chimera/runtime/members.h"
-#include "chimera/runtime/miss_policy.h"
-#include "chimera/runtime/switch/switch_plan.h"
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/job/job_threads.h"
+#include "chimera/runtime/job/miss_policy.h"
+#include "chimera/runtime/life/members.h"
+#include "chimera/runtime/life/task_set.h"
+#include "chimera/runtime/plan/switch_plan.h"
+#include "chimera/runtime/record/context_tap.h"
 #include "chimera/schedule/ready_queue.h"
 
 namespace chimera {

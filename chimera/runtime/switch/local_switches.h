@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Orders the switches of all contexts in one process without delay, keeps their receipts, and shows each context the
-// others. A context that is alone has one instance (runtime/releases.h); the rtpus of virtual time share one
-// (runtime/virtual/virtual_rtpus.cc). For processes the manager orders switches: manager/switch_coordinator.h.
+// others. A context that is alone has one instance (runtime/cycle/releases.h); the rtpus of virtual time share one
+// (runtime/virtual/virtual_rtpus.cc). For processes the manager orders switches: manager/switch/switch_coordinator.h.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
+#include "chimera/runtime/life/task_set.h"
+#include "chimera/runtime/plan/switch_request.h"
+#include "chimera/runtime/plan/switch_wish.h"
 #include "chimera/runtime/switch/switch_orders.h"
 #include "chimera/runtime/switch/switch_peers.h"
-#include "chimera/runtime/switch/switch_request.h"
-#include "chimera/runtime/switch/switch_wish.h"
-#include "chimera/runtime/task_set.h"
 
 namespace chimera {
 

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <span>
 
-#include "chimera/runtime/context_tap.h"
-#include "chimera/runtime/settlement.h"
-#include "chimera/runtime/switch/idle_gap.h"
-#include "chimera/runtime/switch/slow_plan.h"
+#include "chimera/runtime/life/settlement.h"
+#include "chimera/runtime/plan/idle_gap.h"
+#include "chimera/runtime/plan/slow_plan.h"
+#include "chimera/runtime/record/context_tap.h"
 #include "chimera/runtime/switch/switch_record.h"
 #include "chimera/task/state_machine.h"
 

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <span>
 
+#include "chimera/runtime/plan/switch_agreement.h"
 #include "chimera/runtime/switch/slow_steps.h"
-#include "chimera/runtime/switch/switch_agreement.h"
 #include "chimera/runtime/switch/switch_peers.h"
 #include "chimera/runtime/switch/switch_record.h"
 

@@ -10,8 +10,8 @@
 
 #include "chimera/base/testing/property.h"
 #include "chimera/runtime/hosted/heap_memory.h"
-#include "chimera/runtime/switch/switch_agreement.h"
-#include "chimera/runtime/switch/switch_plan.h"
+#include "chimera/runtime/plan/switch_agreement.h"
+#include "chimera/runtime/plan/switch_plan.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Decides about a switch of configurations: judges the request, makes the order that the contexts carry out, makes
 // another try where that may help, and puts the parts of the contexts together into one receipt. The manager does this
-// for processes (manager/switch_coordinator.h), LocalSwitches for the contexts of one process (local_switches.h).
+// for processes (manager/switch/switch_coordinator.h), LocalSwitches for the contexts of one process.
 //
 //   judge -> make -> announce     the contexts arm, agree and change, or abort: runtime/switch/switching.h
 //   is_over -> collect            what the contexts say becomes a receipt
@@ -12,12 +12,12 @@
 #include <span>
 
 #include "chimera/base/setup_memory.h"
-#include "chimera/runtime/switch/constant_choice.h"
-#include "chimera/runtime/switch/idle_gap.h"
-#include "chimera/runtime/switch/switch_agreement.h"
-#include "chimera/runtime/switch/switch_plan.h"
-#include "chimera/runtime/switch/switch_receipt.h"
-#include "chimera/runtime/switch/switch_way.h"
+#include "chimera/runtime/plan/constant_choice.h"
+#include "chimera/runtime/plan/idle_gap.h"
+#include "chimera/runtime/plan/switch_agreement.h"
+#include "chimera/runtime/plan/switch_plan.h"
+#include "chimera/runtime/plan/switch_receipt.h"
+#include "chimera/runtime/plan/switch_way.h"
 #include "chimera/task/profile.h"
 
 namespace chimera {

@@ -2,9 +2,9 @@
 // Interface to the other contexts that take part in a switch: reads their progress, and shows them that of this one.
 #pragma once
 
-#include "chimera/runtime/switch/switch_agreement.h"
-#include "chimera/runtime/switch/switch_receipt.h"
-#include "chimera/runtime/takeover.h"
+#include "chimera/runtime/plan/switch_agreement.h"
+#include "chimera/runtime/plan/switch_receipt.h"
+#include "chimera/runtime/plan/takeover.h"
 
 namespace chimera {
 

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <span>
 
-#include "chimera/runtime/job_threads.h"
-#include "chimera/runtime/switch/switch_receipt.h"
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/job/job_threads.h"
+#include "chimera/runtime/life/task_set.h"
+#include "chimera/runtime/plan/switch_receipt.h"
 
 namespace chimera {
 

@@ -24,14 +24,14 @@
 #include <cstdint>
 #include <span>
 
-#include "chimera/runtime/context_tap.h"
-#include "chimera/runtime/miss_policy.h"
-#include "chimera/runtime/settlement.h"
+#include "chimera/runtime/job/miss_policy.h"
+#include "chimera/runtime/life/settlement.h"
+#include "chimera/runtime/plan/idle_gap.h"
+#include "chimera/runtime/plan/switch_agreement.h"
+#include "chimera/runtime/record/context_tap.h"
 #include "chimera/runtime/switch/arming.h"
 #include "chimera/runtime/switch/changeover.h"
-#include "chimera/runtime/switch/idle_gap.h"
 #include "chimera/runtime/switch/slow_switch.h"
-#include "chimera/runtime/switch/switch_agreement.h"
 #include "chimera/runtime/switch/switch_peers.h"
 #include "chimera/runtime/switch/switch_record.h"
 

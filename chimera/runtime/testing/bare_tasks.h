@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "chimera/runtime/context_tap.h"
 #include "chimera/runtime/hosted/heap_memory.h"
-#include "chimera/runtime/job_record.h"
+#include "chimera/runtime/job/job_record.h"
+#include "chimera/runtime/record/context_tap.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
 
 namespace chimera::testing {

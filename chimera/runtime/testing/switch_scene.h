@@ -48,7 +48,7 @@ struct Beacon {  // has no links to others
   }
 };
 
-/// Reads u in the other unit.
+/// Reads u in the other rtpu.
 struct Reader {
   In<double> u{"u", "1"};
   Out<double> seen{"seen", "1", initial = 0.0};

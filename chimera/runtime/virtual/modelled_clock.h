@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "chimera/runtime/job_clock.h"
+#include "chimera/runtime/job/job_clock.h"
 #include "chimera/task/task_spec.h"
 
 namespace chimera {

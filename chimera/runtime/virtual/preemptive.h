@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-#include "chimera/runtime/releases.h"
+#include "chimera/runtime/cycle/releases.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
 #include "chimera/runtime/virtual/sporadic_tasks.h"
 #include "chimera/runtime/virtual/virtual_processor.h"

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "chimera/runtime/releases.h"
-#include "chimera/runtime/sporadic_job.h"
+#include "chimera/runtime/cycle/releases.h"
+#include "chimera/runtime/job/sporadic_job.h"
 #include "chimera/runtime/virtual/virtual_processor.h"
 
 namespace chimera {

@@ -3,7 +3,7 @@
 // at which something may happen it calls: end_jobs, take_edge if one is due, release_jobs, dispatch.
 #pragma once
 
-#include "chimera/runtime/releases.h"
+#include "chimera/runtime/cycle/releases.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
 
 namespace chimera {

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "chimera/runtime/boundary_signals.h"
+#include "chimera/runtime/cycle/boundary_signals.h"
 
 namespace chimera {
 

@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "chimera/runtime/boundary_listener.h"
-#include "chimera/runtime/context_tap.h"
-#include "chimera/runtime/script.h"
+#include "chimera/runtime/cycle/script.h"
+#include "chimera/runtime/life/boundary_listener.h"
+#include "chimera/runtime/record/context_tap.h"
 #include "chimera/runtime/virtual/virtual_peers.h"
 
 namespace chimera {

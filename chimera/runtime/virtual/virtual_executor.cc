@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "chimera/base/assert.h"
-#include "chimera/runtime/cycle_loop.h"
+#include "chimera/runtime/cycle/cycle_loop.h"
 #include "chimera/runtime/hosted/refusal_text.h"
 
 namespace chimera {

@@ -3,7 +3,7 @@
 // execution times (virtual/modelled_clock.h). Time starts at 0 and a run repeats exactly.
 #pragma once
 
-#include "chimera/runtime/releases.h"
+#include "chimera/runtime/cycle/releases.h"
 #include "chimera/runtime/virtual/modelled_clock.h"
 #include "chimera/runtime/virtual/preemptive.h"
 

@@ -12,10 +12,10 @@
 
 #include "chimera/base/result.h"
 #include "chimera/runtime/hosted/heap_memory.h"
-#include "chimera/runtime/illegal_flag.h"
-#include "chimera/runtime/peer_layout.h"
-#include "chimera/runtime/peer_view.h"
-#include "chimera/runtime/task_set.h"
+#include "chimera/runtime/life/illegal_flag.h"
+#include "chimera/runtime/life/task_set.h"
+#include "chimera/runtime/state/peer_layout.h"
+#include "chimera/runtime/state/peer_view.h"
 
 namespace chimera {
 

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "chimera/runtime/hosted/heap_task_set.h"
-#include "chimera/runtime/testing/two_units.h"
+#include "chimera/runtime/testing/two_rtpus.h"
 #include "chimera/runtime/virtual/virtual_rtpus.h"
 
 namespace chimera {
@@ -18,7 +18,7 @@ using testing::kTaker;
 
 constexpr RtpuId kOfTaker{0u}, kOfMaker{1u};
 
-struct VirtualPeersTest : ::testing::Test, testing::TwoUnits {
+struct VirtualPeersTest : ::testing::Test, testing::TwoRtpus {
   void build() {
     peers = *VirtualPeers::create(app.spec);
     for (std::uint32_t r = 0; r < 2; ++r) {

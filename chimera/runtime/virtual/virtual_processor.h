@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "chimera/runtime/context_tap.h"
-#include "chimera/runtime/job_step.h"
+#include "chimera/runtime/job/job_step.h"
+#include "chimera/runtime/record/context_tap.h"
 
 namespace chimera {
 

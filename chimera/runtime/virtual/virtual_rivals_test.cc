@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <vector>
 
-#include "chimera/runtime/testing/virtual_units.h"
+#include "chimera/runtime/testing/virtual_scene.h"
 
 namespace chimera::virtual_rivals_test {
 namespace {
 
 using testing::act_at;
-using testing::VirtualUnits;
+using testing::VirtualScene;
 
 /// The device, which a process that dies closes. One run at a time.
 struct Device {
@@ -88,14 +88,14 @@ struct VirtualRivals : ::testing::TestWithParam<bool> {
     app->make(hand, false);
     app->spec.sets = named;
     app->spec.standbys = standbys;
-    units.reset();
-    units = std::make_unique<VirtualUnits>(std::move(app), std::move(acts), GetParam());
-    device.peers = &units->peers();
-    units->run(duration);
-    return units->receipts();
+    rtpus.reset();
+    rtpus = std::make_unique<VirtualScene>(std::move(app), std::move(acts), GetParam());
+    device.peers = &rtpus->peers();
+    rtpus->run(duration);
+    return rtpus->receipts();
   }
-  State state(TaskId task) const { return units->state(task); }
-  void TearDown() override { units.reset(); }
+  State state(TaskId task) const { return rtpus->state(task); }
+  void TearDown() override { rtpus.reset(); }
 
   std::uint32_t rtpu_of_arm = kOfDrill;
   bool has_second = false;
@@ -103,7 +103,7 @@ struct VirtualRivals : ::testing::TestWithParam<bool> {
   std::vector<TaskId> hand{kHand, kArm}, drill{kDrill, kArm};
   NamedSet named[2] = {{"hand", hand}, {"drill", drill}};
   std::vector<StandbySpec> standbys;
-  std::unique_ptr<VirtualUnits> units;
+  std::unique_ptr<VirtualScene> rtpus;
 };
 
 INSTANTIATE_TEST_SUITE_P(All, VirtualRivals, ::testing::Bool(),
@@ -158,11 +158,11 @@ TEST_P(VirtualRivals, AStandbyOpensItWhenTheProcessIsDead) {
   standbys = {{kHand, kDrill}};
   go(milliseconds(60), {act_at(milliseconds(10), ScriptAct::Kind::kDie, kOfHand)});
   EXPECT_EQ(state(kDrill), State::kOn);
-  EXPECT_EQ(units->set(kOfDrill).tasks()[kDrill.index].profile.takeovers, 1u);
+  EXPECT_EQ(rtpus->set(kOfDrill).tasks()[kDrill.index].profile.takeovers, 1u);
   EXPECT_EQ(device.doubles, 0);
   EXPECT_TRUE(device.is_open[1]);
   EXPECT_EQ(device.ons, 3) << "it was asked again, each millisecond";
-  EXPECT_FALSE(units->peers().is_flag_up());
+  EXPECT_FALSE(rtpus->peers().is_flag_up());
 }
 
 // The primary closes it when the other rtpu has seen that it is in ERROR: else that would look like `kill`.

@@ -29,8 +29,8 @@ std::vector<Silence> silences_of(const ApplicationSpec& spec) {
 }  // namespace
 
 /// One rtpu.
-struct VirtualRtpus::Unit {
-  Unit(VirtualPeers& peers, RtpuId rtpu, SwitchPeers* switches, const RunOptions& run, const VirtualOptions& how)
+struct VirtualRtpus::Rtpu {
+  Rtpu(VirtualPeers& peers, RtpuId rtpu, SwitchPeers* switches, const RunOptions& run, const VirtualOptions& how)
       : id(rtpu),
         tasks(*peers.tasks(rtpu)),
         control(peers, rtpu, run.script.size()),
@@ -79,8 +79,8 @@ VirtualRtpus::VirtualRtpus(VirtualPeers& peers, const RunOptions& options, const
   for (std::uint32_t r = 0; r < n_rtpus; ++r) {
     if (peers.tasks(RtpuId(r)) == nullptr) continue;
     SwitchPeers* const switches = n_receipts > 0 ? &switches_.of(r) : nullptr;
-    units_.push_back(std::make_unique<Unit>(peers, RtpuId(r), switches, options, how));
-    if (n_receipts > 0) switches_.join(r, *peers.tasks(RtpuId(r)), !units_.back()->is_preemptive(how));
+    rtpus_.push_back(std::make_unique<Rtpu>(peers, RtpuId(r), switches, options, how));
+    if (n_receipts > 0) switches_.join(r, *peers.tasks(RtpuId(r)), !rtpus_.back()->is_preemptive(how));
   }
   silences_ = silences_of(peers.spec());
   of_dead_.reserve(kMostRefused);
@@ -88,9 +88,9 @@ VirtualRtpus::VirtualRtpus(VirtualPeers& peers, const RunOptions& options, const
 
 VirtualRtpus::~VirtualRtpus() = default;
 
-VirtualRtpus::Unit& VirtualRtpus::unit_of(TaskId task) noexcept {
+VirtualRtpus::Rtpu& VirtualRtpus::rtpu_of(TaskId task) noexcept {
   const RtpuId rtpu = peers_.spec().tasks[task.index].rtpu;
-  return **std::find_if(units_.begin(), units_.end(), [rtpu](const auto& unit) { return unit->id == rtpu; });
+  return **std::find_if(rtpus_.begin(), rtpus_.end(), [rtpu](const auto& one) { return one->id == rtpu; });
 }
 
 Result<void> VirtualRtpus::start() {
@@ -101,36 +101,36 @@ Result<void> VirtualRtpus::start() {
   if (!started) return started;
   origin_ = now_;
   switches_.begin(origin_);
-  for (const auto& unit : units_) {
-    unit->control.follow(now_);
-    unit->control.publish();
-    unit->control.record_on(unit->releases.tap());
-    unit->clock.set(now_);
-    unit->releases.begin(origin_);
+  for (const auto& rtpu : rtpus_) {
+    rtpu->control.follow(now_);
+    rtpu->control.publish();
+    rtpu->control.record_on(rtpu->releases.tap());
+    rtpu->clock.set(now_);
+    rtpu->releases.begin(origin_);
   }
   return {};
 }
 
 // The times of methods add up, one after the other, even if they run on different rtpus.
 SignalReport VirtualRtpus::signal(TaskId task, Signal signal) {
-  Unit& unit = unit_of(task);
-  unit.clock.set(now_);
-  unit.control.follow({});
-  const SignalReport report = unit.tasks.life().signal(task, signal, {});
-  unit.control.publish();
-  now_ = unit.clock.now();
+  Rtpu& rtpu = rtpu_of(task);
+  rtpu.clock.set(now_);
+  rtpu.control.follow({});
+  const SignalReport report = rtpu.tasks.life().signal(task, signal, {});
+  rtpu.control.publish();
+  now_ = rtpu.clock.now();
   return report;
 }
 
 Result<void> VirtualRtpus::spawn_all() {
   for (const TaskId id : peers_.spec().init_order) {
-    if (!unit_of(id).tasks.life().judge().rivals().is_created_at_start(id)) continue;
+    if (!rtpu_of(id).tasks.life().judge().rivals().is_created_at_start(id)) continue;
     const SignalReport report = signal(id, Signal::kSpawn);
-    if (unit_of(id).tasks.tasks()[id.index].state == State::kOff) continue;
+    if (rtpu_of(id).tasks.tasks()[id.index].state == State::kOff) continue;
     SignalReport refused = report;
     refused.is_accepted = false;
     refused.why = Refusal::kFault;
-    return start_result(unit_of(id).tasks, refused);
+    return start_result(rtpu_of(id).tasks, refused);
   }
   return {};
 }
@@ -154,7 +154,7 @@ Result<void> VirtualRtpus::turn_on_all() {
     }
     report.is_accepted = false;
     if (report.why != Refusal::kNotYet) report.why = Refusal::kFault;
-    return start_result(unit_of(id).tasks, report);
+    return start_result(rtpu_of(id).tasks, report);
   }
   return {};
 }
@@ -162,12 +162,12 @@ Result<void> VirtualRtpus::turn_on_all() {
 RunEnd VirtualRtpus::run_to(Nanoseconds duration) noexcept {
   const Nanoseconds until = duration == kNever ? kNever : origin_ + duration;
   for (;;) {
-    for (const auto& unit : units_) unit->acts_now = !unit->is_dead && (unit->next <= now_ || is_due(*unit));
-    for (const auto& unit : units_)
-      if (unit->acts_now) unit->processor->end_jobs(now_);
+    for (const auto& rtpu : rtpus_) rtpu->acts_now = !rtpu->is_dead && (rtpu->next <= now_ || is_due(*rtpu));
+    for (const auto& rtpu : rtpus_)
+      if (rtpu->acts_now) rtpu->processor->end_jobs(now_);
     if (stop_->load(std::memory_order_relaxed)) return RunEnd::kStopped;
     if (now_ >= until) return RunEnd::kTime;
-    stop_units();
+    stop_rtpus();
     take_acts();
     if (!silences_.empty()) look_for_silence();
     take_edges();
@@ -184,39 +184,39 @@ RunEnd VirtualRtpus::run(Nanoseconds duration) noexcept {
   const RunEnd end = run_to(duration);
   if (end != RunEnd::kTime) return end;
   Nanoseconds last = now_;
-  for (const auto& unit : units_)
-    if (!unit->is_dead) last = std::max(last, unit->processor->finish(now_));
+  for (const auto& rtpu : rtpus_)
+    if (!rtpu->is_dead) last = std::max(last, rtpu->processor->finish(now_));
   now_ = last;
   return end;
 }
 
 // True if the rtpu has new input and is free to handle it.
-bool VirtualRtpus::is_due(const Unit& unit) const noexcept {
-  return !unit.is_dead && unit.control.is_due(now_) && !unit.processor->is_occupied(now_);
+bool VirtualRtpus::is_due(const Rtpu& rtpu) const noexcept {
+  return !rtpu.is_dead && rtpu.control.is_due(now_) && !rtpu.processor->is_occupied(now_);
 }
 
-// The reaction `stop` of a task: all tasks of the unit go OFF, and the others go on.
-void VirtualRtpus::stop_units() noexcept {
-  for (const auto& unit : units_) {
-    if (unit->is_dead || !unit->releases.settlement().task_stopped()) continue;
-    unit->releases.settlement().forget_stop();
-    unit->control.stop_all();
+// The reaction `stop` of a task: all tasks of the rtpu go OFF, and the others go on.
+void VirtualRtpus::stop_rtpus() noexcept {
+  for (const auto& rtpu : rtpus_) {
+    if (rtpu->is_dead || !rtpu->releases.settlement().task_stopped()) continue;
+    rtpu->releases.settlement().forget_stop();
+    rtpu->control.stop_all();
   }
 }
 
 // In the order of the script: before an act for another rtpu, the cycle boundary of the last rtpu carries out its acts.
 void VirtualRtpus::take_acts() noexcept {
-  Unit* last = nullptr;
+  Rtpu* last = nullptr;
   while (const ScriptAct* next = script_.take(now_ - origin_)) act(*next, last);
 }
 
-void VirtualRtpus::act(const ScriptAct& act, Unit*& last) noexcept {
-  Unit* const unit = act.kind == ScriptAct::Kind::kSignal ? &unit_of(act.task) : nullptr;
-  if (last != nullptr && last != unit) take_edge(*last);
-  last = unit;
+void VirtualRtpus::act(const ScriptAct& act, Rtpu*& last) noexcept {
+  Rtpu* const rtpu = act.kind == ScriptAct::Kind::kSignal ? &rtpu_of(act.task) : nullptr;
+  if (last != nullptr && last != rtpu) take_edge(*last);
+  last = rtpu;
   switch (act.kind) {
     case ScriptAct::Kind::kSignal:
-      if (!unit->is_dead) return unit->control.hand_over(act);
+      if (!rtpu->is_dead) return rtpu->control.hand_over(act);
       if (of_dead_.size() < kMostRefused)
         of_dead_.push_back({now_, act.task, act.signal, Refusal::kState, peers_.state(act.task)});
       return;
@@ -236,22 +236,22 @@ void VirtualRtpus::act(const ScriptAct& act, Unit*& last) noexcept {
 // Lowered, it is also for the tasks that hold it up.
 void VirtualRtpus::lower_flag(const ScriptAct& act) noexcept {
   peers_.raise(false);
-  for (const auto& unit : units_)
-    if (!unit->is_dead && unit->tasks.flag().is_raised()) unit->control.hand_over(act);
+  for (const auto& rtpu : rtpus_)
+    if (!rtpu->is_dead && rtpu->tasks.flag().is_raised()) rtpu->control.hand_over(act);
 }
 
 void VirtualRtpus::die(RtpuId rtpu) noexcept {
-  const auto found = std::find_if(units_.begin(), units_.end(), [rtpu](const auto& unit) { return unit->id == rtpu; });
-  if (found == units_.end() || (*found)->is_dead) return;
-  Unit& unit = **found;
-  unit.processor->cut(now_);
-  unit.is_dead = true;
-  unit.acts_now = false;
+  const auto found = std::find_if(rtpus_.begin(), rtpus_.end(), [rtpu](const auto& one) { return one->id == rtpu; });
+  if (found == rtpus_.end() || (*found)->is_dead) return;
+  Rtpu& rtpu = **found;
+  rtpu.processor->cut(now_);
+  rtpu.is_dead = true;
+  rtpu.acts_now = false;
   peers_.die(rtpu, now_);
   switches_.die(rtpu.index);
-  for (Task& task : unit.tasks.tasks()) {
-    if (!unit.tasks.is_mine(task.id) || task.state == State::kNotCreated) continue;
-    unit.releases.tap().record(TapKind::kState, now_, task.id, static_cast<std::uint64_t>(State::kError));
+  for (Task& task : rtpu.tasks.tasks()) {
+    if (!rtpu.tasks.is_mine(task.id) || task.state == State::kNotCreated) continue;
+    rtpu.releases.tap().record(TapKind::kState, now_, task.id, static_cast<std::uint64_t>(State::kError));
     task.profile.on_before = task.profile.on_by(now_);
     task.profile.on_since = kNever;
   }
@@ -271,69 +271,69 @@ void VirtualRtpus::look_for_silence() noexcept {
 void VirtualRtpus::take_edges() noexcept {
   for (int pass = 0; pass < kMostEdges; ++pass) {
     bool any = false;
-    for (const auto& unit : units_) any |= (is_due(*unit) || (pass == 0 && unit->acts_now)) && take_edge(*unit);
+    for (const auto& rtpu : rtpus_) any |= (is_due(*rtpu) || (pass == 0 && rtpu->acts_now)) && take_edge(*rtpu);
     if (!any) return;
   }
 }
 
 // True when one was due.
-bool VirtualRtpus::take_edge(Unit& unit) noexcept {
-  if (unit.is_dead || !unit.processor->edge_is_due(now_)) return false;
-  if (!unit.acts_now) unit.processor->end_jobs(now_);
-  unit.acts_now = true;
-  unit.processor->take_edge(now_);
+bool VirtualRtpus::take_edge(Rtpu& rtpu) noexcept {
+  if (rtpu.is_dead || !rtpu.processor->edge_is_due(now_)) return false;
+  if (!rtpu.acts_now) rtpu.processor->end_jobs(now_);
+  rtpu.acts_now = true;
+  rtpu.processor->take_edge(now_);
   return true;
 }
 
 // Releases, then starts. True when the instant is not over.
 bool VirtualRtpus::begin_jobs() noexcept {
-  for (const auto& unit : units_)
-    if (unit->acts_now) unit->processor->release_jobs(now_);
+  for (const auto& rtpu : rtpus_)
+    if (rtpu->acts_now) rtpu->processor->release_jobs(now_);
   bool goes_on = false;
-  for (const auto& unit : units_) {
-    if (!unit->acts_now) continue;
-    const bool again = unit->processor->dispatch(now_);
-    unit->next = again ? now_ : unit->processor->next_event(now_);
+  for (const auto& rtpu : rtpus_) {
+    if (!rtpu->acts_now) continue;
+    const bool again = rtpu->processor->dispatch(now_);
+    rtpu->next = again ? now_ : rtpu->processor->next_event(now_);
     goes_on |= again;
   }
-  return goes_on || std::any_of(units_.begin(), units_.end(), [this](const auto& unit) { return is_due(*unit); });
+  return goes_on || std::any_of(rtpus_.begin(), rtpus_.end(), [this](const auto& rtpu) { return is_due(*rtpu); });
 }
 
 Nanoseconds VirtualRtpus::next_event() noexcept {
   const Nanoseconds at = script_.next_at();
   Nanoseconds next = at == kNever ? kNever : origin_ + at;
-  for (const auto& unit : units_)
-    if (!unit->is_dead) next = std::min(next, unit->next);
+  for (const auto& rtpu : rtpus_)
+    if (!rtpu->is_dead) next = std::min(next, rtpu->next);
   for (const Silence& silence : silences_)
     if (peers_.presence(silence.task()).lives) next = std::min(next, silence.due());
   return next;
 }
 
 bool VirtualRtpus::is_anything_left() noexcept {
-  const auto is_left = [this](const auto& unit) {
-    if (unit->is_dead) return false;
-    const bool is_quiet = unit->processor->is_idle() && !unit->processor->is_occupied(now_);
-    return !is_quiet || unit->releases.members().is_any_on() || unit->tasks.sent().has_pending();
+  const auto is_left = [this](const auto& rtpu) {
+    if (rtpu->is_dead) return false;
+    const bool is_quiet = rtpu->processor->is_idle() && !rtpu->processor->is_occupied(now_);
+    return !is_quiet || rtpu->releases.members().is_any_on() || rtpu->tasks.sent().has_pending();
   };
-  return script_.next_at() != kNever || switches_.is_under_way() || std::any_of(units_.begin(), units_.end(), is_left);
+  return script_.next_at() != kNever || switches_.is_under_way() || std::any_of(rtpus_.begin(), rtpus_.end(), is_left);
 }
 
 void VirtualRtpus::shut_down() {
-  for (const auto& unit : units_) {
-    if (unit->is_dead) continue;
-    unit->clock.set(now_);
-    unit->releases.end(now_);
+  for (const auto& rtpu : rtpus_) {
+    if (rtpu->is_dead) continue;
+    rtpu->clock.set(now_);
+    rtpu->releases.end(now_);
   }
   switches_.end(now_);
-  for (const auto& unit : units_)
-    if (!unit->is_dead) unit->tasks.life().shut_down(now_);
+  for (const auto& rtpu : rtpus_)
+    if (!rtpu->is_dead) rtpu->tasks.life().shut_down(now_);
 }
 
 std::vector<RefusedSignal> VirtualRtpus::refused() {
   std::vector<RefusedSignal> all = of_dead_;
   const auto is_before = [](const RefusedSignal& a, const RefusedSignal& b) { return a.at < b.at; };
-  for (const auto& unit : units_)
-    for (const RefusedSignal& one : unit->releases.signals().refused())
+  for (const auto& rtpu : rtpus_)
+    for (const RefusedSignal& one : rtpu->releases.signals().refused())
       all.insert(std::upper_bound(all.begin(), all.end(), one, is_before), one);
   return all;
 }

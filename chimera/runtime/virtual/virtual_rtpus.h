@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "chimera/runtime/silence.h"
+#include "chimera/runtime/job/silence.h"
 #include "chimera/runtime/virtual/stepped_processor.h"
 #include "chimera/runtime/virtual/virtual_control.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
@@ -51,22 +51,22 @@ class VirtualRtpus {
   const SwitchReceipts& receipts() noexcept { return switches_.receipts(); }
 
  private:
-  struct Unit;
+  struct Rtpu;
 
   Result<void> spawn_all();
   Result<void> turn_on_all();
   SignalReport signal(TaskId task, Signal signal);
-  Unit& unit_of(TaskId task) noexcept;
+  Rtpu& rtpu_of(TaskId task) noexcept;
   void take_acts() noexcept;
-  void act(const ScriptAct& act, Unit*& last) noexcept;
+  void act(const ScriptAct& act, Rtpu*& last) noexcept;
   void lower_flag(const ScriptAct& act) noexcept;
   void die(RtpuId rtpu) noexcept;
   void look_for_silence() noexcept;
-  void stop_units() noexcept;
+  void stop_rtpus() noexcept;
   void take_edges() noexcept;
-  bool take_edge(Unit& unit) noexcept;
+  bool take_edge(Rtpu& rtpu) noexcept;
   bool begin_jobs() noexcept;
-  bool is_due(const Unit& unit) const noexcept;
+  bool is_due(const Rtpu& rtpu) const noexcept;
   Nanoseconds next_event() noexcept;
   bool is_anything_left() noexcept;
 
@@ -75,7 +75,7 @@ class VirtualRtpus {
   Script script_;
   HeapMemory memory_;  // behind switches_
   VirtualSwitches switches_;
-  std::vector<std::unique_ptr<Unit>> units_;  // with tasks, in the order of the rtpus
+  std::vector<std::unique_ptr<Rtpu>> rtpus_;  // with tasks, in the order of the rtpus
   std::vector<Silence> silences_;             // for the sake of standbys
   std::vector<RefusedSignal> of_dead_;        // signals for tasks of dead rtpus
   Nanoseconds now_, origin_;

@@ -1,32 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
-// A slow switch over two rtpus in virtual time: its steps in one order, and the way back, also when a unit dies.
+// A slow switch over two rtpus in virtual time: its steps in one order, and the way back, also when an rtpu dies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <vector>
 
 #include "chimera/runtime/testing/tool_scene.h"
-#include "chimera/runtime/testing/virtual_units.h"
+#include "chimera/runtime/testing/virtual_scene.h"
 
 namespace chimera::virtual_slow_switches_test {
 namespace {
 
 using namespace testing::tool_scene;
 using testing::act_at;
-using testing::VirtualUnits;
+using testing::VirtualScene;
 
 struct VirtualSlowSwitches : ::testing::TestWithParam<bool> {
   /// Runs for `duration` with these acts. Returns the receipts.
   std::span<const SwitchReceipt> go(Nanoseconds duration, std::vector<ScriptAct> acts) {
-    units.reset();
-    units = std::make_unique<VirtualUnits>(application(1), std::move(acts), GetParam());
-    units->run(duration);
-    return units->receipts();
+    rtpus.reset();
+    rtpus = std::make_unique<VirtualScene>(application(1), std::move(acts), GetParam());
+    rtpus->run(duration);
+    return rtpus->receipts();
   }
   void SetUp() override { shop = {}; }
-  void TearDown() override { units.reset(); }
+  void TearDown() override { rtpus.reset(); }
 
-  std::unique_ptr<VirtualUnits> units;
+  std::unique_ptr<VirtualScene> rtpus;
 };
 
 INSTANTIATE_TEST_SUITE_P(All, VirtualSlowSwitches, ::testing::Bool(),
@@ -48,17 +48,17 @@ TEST_P(VirtualSlowSwitches, UsersOnBothRtpusAreReinitialisedInOrder) {
   EXPECT_GE(shop.illegal + shop.illegal_of_law, 2);
   EXPECT_EQ(*std::ranges::max_element(shop.weighed), 3);
   EXPECT_EQ(shop.weighed.back(), 1);
-  EXPECT_TRUE(units->are_on(kSets[kWithLight]));
-  EXPECT_FALSE(units->peers().is_flag_up());
+  EXPECT_TRUE(rtpus->are_on(kSets[kWithLight]));
+  EXPECT_FALSE(rtpus->peers().is_flag_up());
 }
 
 // Light cycles on after the flag is up, until the arm has acted on it: its last cycle counts.
 TEST_P(VirtualSlowSwitches, TheStepFromATaskOfAnotherRtpuIsFromItsLastCycle) {
   shop.ramp = 1;
-  units = std::make_unique<VirtualUnits>(
+  rtpus = std::make_unique<VirtualScene>(
       application(0), std::vector<ScriptAct>{act_at(milliseconds(5), ScriptAct::Kind::kSwitch, 1)}, GetParam());
-  units->run(milliseconds(40));
-  const SwitchReceipt& receipt = units->receipts()[0];
+  rtpus->run(milliseconds(40));
+  const SwitchReceipt& receipt = rtpus->receipts()[0];
   ASSERT_EQ(receipt.end, SwitchEnd::kDone) << static_cast<int>(receipt.why);
   ASSERT_EQ(receipt.variables.size(), 1u);
   EXPECT_EQ(receipt.variables[0].step_of_on.size, 0) << "heavy takes over what light wrote last";
@@ -75,9 +75,9 @@ TEST_P(VirtualSlowSwitches, WhatFailsOnOneRtpuIsUndoneOnBoth) {
   EXPECT_EQ(shop.story, (std::vector<std::string>{"on light", "off light", "reinit arm", "reinit law", "on heavy",
                                                   "reinit arm", "reinit law", "on light"}));
   EXPECT_EQ(shop.weighed.back(), 1);
-  EXPECT_TRUE(units->are_on(kSets[kWithLight]));
+  EXPECT_TRUE(rtpus->are_on(kSets[kWithLight]));
   EXPECT_FALSE(receipts[0].not_back.is_valid());
-  EXPECT_FALSE(units->peers().is_flag_up());
+  EXPECT_FALSE(rtpus->peers().is_flag_up());
 }
 
 // The second rtpu dies at each tenth of a millisecond of the switch: living rtpus end with the constants of one side.
@@ -90,9 +90,9 @@ TEST_P(VirtualSlowSwitches, WhoeverDiesWhoLivesComesToOneSide) {
     ASSERT_TRUE(is_done || receipts[0].end == SwitchEnd::kAborted) << us;
     EXPECT_TRUE(is_done || receipts[0].why == NoSwitch::kMemberDied) << us;
     EXPECT_EQ(shop.weighed.back(), is_done ? 3 : 1) << us;
-    EXPECT_EQ(units->state(kArm), State::kOn);
-    EXPECT_TRUE(units->peers().is_flag_up()) << "nobody produces grip";
-    EXPECT_FALSE(units->set(0).flag().is_held());
+    EXPECT_EQ(rtpus->state(kArm), State::kOn);
+    EXPECT_TRUE(rtpus->peers().is_flag_up()) << "nobody produces grip";
+    EXPECT_FALSE(rtpus->set(0).flag().is_held());
   }
 }
 

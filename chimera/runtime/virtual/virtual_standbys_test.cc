@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <vector>
 
-#include "chimera/runtime/testing/virtual_units.h"
+#include "chimera/runtime/testing/virtual_scene.h"
 
 namespace chimera::virtual_standbys_test {
 namespace {
 
-using testing::VirtualUnits;
+using testing::VirtualScene;
 
 /// Orders to the components of a run, and their observations. One run at a time.
 struct Scene {
@@ -65,7 +65,7 @@ ScriptAct death_at(Nanoseconds at, std::uint32_t rtpu) {
 /// The primary, what reads it, and its two standbys, each on an rtpu of its own.
 struct VirtualStandbysTest : ::testing::TestWithParam<bool> {
   void go(Nanoseconds duration, std::vector<ScriptAct> acts = {}) {
-    units.reset();
+    rtpus.reset();
     auto app = std::make_unique<testing::TestApplication>();
     app->rtpus = {{"a", 0, Policy::kEdf}, {"b", 1, Policy::kEdf}, {"c", 2, Policy::kEdf}, {"d", 3, Policy::kEdf}};
     app->add("primary", testing::component<Primary>("primary")).rtpu = RtpuId(0u);
@@ -75,16 +75,16 @@ struct VirtualStandbysTest : ::testing::TestWithParam<bool> {
     app->add("source", testing::component<Source>("source")).rtpu = RtpuId(source_rtpu);
     app->make({kSource, kPrimary, kUser}, false);
     app->spec.standbys = pairs;
-    units = std::make_unique<VirtualUnits>(std::move(app), std::move(acts), GetParam());
-    units->run(duration);
+    rtpus = std::make_unique<VirtualScene>(std::move(app), std::move(acts), GetParam());
+    rtpus->run(duration);
   }
-  State state(TaskId task) const { return units->state(task); }
+  State state(TaskId task) const { return rtpus->state(task); }
   void SetUp() override { scene = {}; }
-  void TearDown() override { units.reset(); }
+  void TearDown() override { rtpus.reset(); }
 
   std::uint32_t source_rtpu = 1;
   std::vector<StandbySpec> pairs{{kPrimary, kSpare}, {kPrimary, kLast}};
-  std::unique_ptr<VirtualUnits> units;
+  std::unique_ptr<VirtualScene> rtpus;
 };
 
 INSTANTIATE_TEST_SUITE_P(All, VirtualStandbysTest, ::testing::Bool(),
@@ -99,10 +99,10 @@ TEST_P(VirtualStandbysTest, TakeOverFromATaskThatFailsElsewhere) {
   EXPECT_EQ(scene.illegal, std::vector<std::int64_t>{});
   // It goes ON at the instant of the fault and is released at that instant too: it loses no cycle.
   EXPECT_EQ(scene.u, (std::vector<double>{0, 1, 2, 3, 4, 104, 204, 304}));
-  units->rtpus().shut_down();
-  ASSERT_EQ(units->receipts().size(), 1u);
-  EXPECT_EQ(units->receipts()[0].by, kSpare);
-  EXPECT_FALSE(units->receipts()[0].was_death);
+  rtpus->rtpus().shut_down();
+  ASSERT_EQ(rtpus->receipts().size(), 1u);
+  EXPECT_EQ(rtpus->receipts()[0].by, kSpare);
+  EXPECT_FALSE(rtpus->receipts()[0].was_death);
 }
 
 TEST_P(VirtualStandbysTest, TakeOverFromARtpuThatDies) {
@@ -111,13 +111,13 @@ TEST_P(VirtualStandbysTest, TakeOverFromARtpuThatDies) {
   EXPECT_EQ(state(kSpare), State::kOn);
   EXPECT_EQ(scene.illegal, std::vector<std::int64_t>{});
   EXPECT_EQ(scene.u, (std::vector<double>{0, 1, 2, 3, 4, 104, 204, 304}));
-  ASSERT_EQ(units->receipts().size(), 1u);
-  const SwitchReceipt& receipt = units->receipts()[0];
+  ASSERT_EQ(rtpus->receipts().size(), 1u);
+  const SwitchReceipt& receipt = rtpus->receipts()[0];
   EXPECT_EQ(receipt.by, kSpare);
   EXPECT_EQ(receipt.in_place_of, kPrimary);
   EXPECT_TRUE(receipt.was_death);
   EXPECT_EQ(receipt.end, SwitchEnd::kDone);
-  EXPECT_EQ(receipt.at - units->rtpus().origin(), microseconds(3500)) << "as soon as it is seen";
+  EXPECT_EQ(receipt.at - rtpus->rtpus().origin(), microseconds(3500)) << "as soon as it is seen";
   ASSERT_EQ(receipt.variables.size(), 1u);
   EXPECT_EQ(receipt.variables[0].step_of_on.size, 0);
   EXPECT_EQ(receipt.variables[0].step_of_cycle.size, 100);
@@ -156,8 +156,8 @@ TEST_P(VirtualStandbysTest, APrimaryThatPublishesNothingForTooLongIsKilledAndThe
   scene.hangs_at = milliseconds(4).count;
   go(milliseconds(11));
   EXPECT_EQ(state(kPrimary), State::kError);
-  ASSERT_NE(units->peers().died(RtpuId(0u)), kNever);
-  EXPECT_EQ(units->peers().died(RtpuId(0u)) - units->rtpus().origin(), milliseconds(7));
+  ASSERT_NE(rtpus->peers().died(RtpuId(0u)), kNever);
+  EXPECT_EQ(rtpus->peers().died(RtpuId(0u)) - rtpus->rtpus().origin(), milliseconds(7));
   EXPECT_EQ(state(kSpare), State::kOn);
   EXPECT_EQ(scene.illegal, std::vector<std::int64_t>{});
   // Published last at 3 ms, with the cycle released then: that is older than 3 ms with the look at 7 ms, which kills.
@@ -169,7 +169,7 @@ TEST_P(VirtualStandbysTest, APrimaryThatIsSilentIsLeftAloneWhileNobodyCouldTakeO
   scene.hangs_at = milliseconds(4).count;
   go(milliseconds(11), {death_at(microseconds(500), 2)});
   EXPECT_EQ(state(kPrimary), State::kOn);
-  EXPECT_EQ(units->peers().died(RtpuId(0u)), kNever);
+  EXPECT_EQ(rtpus->peers().died(RtpuId(0u)), kNever);
 }
 
 TEST_P(VirtualStandbysTest, AHotOneIsReadFromTheDeathOnWhereItIs) {

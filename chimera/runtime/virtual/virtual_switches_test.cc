@@ -9,28 +9,28 @@
 #include <vector>
 
 #include "chimera/runtime/testing/switch_scene.h"
-#include "chimera/runtime/testing/virtual_units.h"
+#include "chimera/runtime/testing/virtual_scene.h"
 
 namespace chimera::virtual_switches_test {
 namespace {
 
 using namespace testing::switch_scene;
 using testing::act_at;
-using testing::VirtualUnits;
+using testing::VirtualScene;
 
 struct VirtualSwitchesTest : ::testing::TestWithParam<bool> {
   /// Runs for `duration` with these acts. Returns the receipts.
   std::span<const SwitchReceipt> go(Nanoseconds duration, std::vector<ScriptAct> acts = {}) {
-    units.reset();
-    units = std::make_unique<VirtualUnits>(application(limit, false), std::move(acts), GetParam());
-    units->run(duration);
-    return units->receipts();
+    rtpus.reset();
+    rtpus = std::make_unique<VirtualScene>(application(limit, false), std::move(acts), GetParam());
+    rtpus->run(duration);
+    return rtpus->receipts();
   }
   void SetUp() override { scene = {}; }
-  void TearDown() override { units.reset(); }
+  void TearDown() override { rtpus.reset(); }
 
   double limit = 0;
-  std::unique_ptr<VirtualUnits> units;
+  std::unique_ptr<VirtualScene> rtpus;
 };
 
 INSTANTIATE_TEST_SUITE_P(All, VirtualSwitchesTest, ::testing::Bool(),
@@ -46,9 +46,9 @@ TEST_P(VirtualSwitchesTest, TwoRtpusChangeAtOneInstant) {
   EXPECT_EQ(receipts[0].tasks.size(), 6u);
   EXPECT_EQ(receipts[0].variables.size(), 2u);
   EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "on observer", "on two", "off one"}));
-  EXPECT_TRUE(units->are_on(kSets[kObserved]));
+  EXPECT_TRUE(rtpus->are_on(kSets[kObserved]));
   EXPECT_EQ(scene.illegal, 0);
-  EXPECT_EQ(units->lost(), 0u);
+  EXPECT_EQ(rtpus->lost(), 0u);
 }
 
 TEST_P(VirtualSwitchesTest, WhoStaysSeesNothingOfAThousandSwitches) {
@@ -73,8 +73,8 @@ TEST_P(VirtualSwitchesTest, WhoStaysSeesNothingOfAThousandSwitches) {
     ASSERT_EQ(receipt.end, SwitchEnd::kDone) << n << " for " << static_cast<int>(receipt.why);
     for (const TaskPart& part : receipt.tasks) ASSERT_EQ(part.lost, 0u) << n;
   }
-  EXPECT_TRUE(units->are_on(kSets[present]));
-  EXPECT_EQ(units->lost(), 0u);
+  EXPECT_TRUE(rtpus->are_on(kSets[present]));
+  EXPECT_EQ(rtpus->lost(), 0u);
   EXPECT_EQ(scene.illegal, 0);
   EXPECT_TRUE(plant == scene.plant);
   EXPECT_TRUE(beacon == scene.beacon);
@@ -99,8 +99,8 @@ TEST_P(VirtualSwitchesTest, ATaskOfEitherRtpuAsks) {
   EXPECT_LE(receipts[0].asked, milliseconds(6));
   EXPECT_EQ(receipts[1].by, kPlant);
   EXPECT_EQ(receipts[1].before, kObserved);
-  EXPECT_TRUE(units->are_on(kSets[kBeside]));
-  EXPECT_EQ(units->lost(), 0u);
+  EXPECT_TRUE(rtpus->are_on(kSets[kBeside]));
+  EXPECT_EQ(rtpus->lost(), 0u);
   EXPECT_EQ(scene.illegal, 0);
 }
 
@@ -119,10 +119,10 @@ TEST_P(VirtualSwitchesTest, ATaskOfEitherRtpuAsksForTasks) {
   EXPECT_EQ(receipts[0].after, kObserved);
   EXPECT_EQ(receipts[1].by, kPlant);
   EXPECT_EQ(receipts[1].after, kDirect);
-  ASSERT_EQ(units->asked().refused().size(), 1u);
-  EXPECT_EQ(units->asked().refused()[0].request.by, kReader);
-  EXPECT_TRUE(units->are_on(kSets[kDirect]));
-  EXPECT_EQ(units->lost(), 0u);
+  ASSERT_EQ(rtpus->asked().refused().size(), 1u);
+  EXPECT_EQ(rtpus->asked().refused()[0].request.by, kReader);
+  EXPECT_TRUE(rtpus->are_on(kSets[kDirect]));
+  EXPECT_EQ(rtpus->lost(), 0u);
 }
 
 TEST_P(VirtualSwitchesTest, OfTheWishesThatComeMeanwhileTheLastIsTakenNext) {
@@ -136,7 +136,7 @@ TEST_P(VirtualSwitchesTest, OfTheWishesThatComeMeanwhileTheLastIsTakenNext) {
   ScriptAct first = act_at(microseconds(5950), ScriptAct::Kind::kSwitch, kObserved);
   const auto receipts = go(milliseconds(30), {first});
   ASSERT_EQ(receipts.size(), 1u) << "the wish of the second rtpu, for what is under way, takes that of the first back";
-  EXPECT_TRUE(units->are_on(kSets[kObserved]));
+  EXPECT_TRUE(rtpus->are_on(kSets[kObserved]));
 }
 
 // One that chatters in each cycle, of which the receipts that there is room for are kept.
@@ -145,9 +145,9 @@ TEST_P(VirtualSwitchesTest, WhoAsksAllTheTimeFillsNothing) {
   scene.in_plant = [](Cycle c) { c.request(c.count() % 10 < 5 ? "observed" : "beside"); };
   const auto receipts = go(seconds(1));
   EXPECT_EQ(receipts.size(), 16u);
-  EXPECT_GT(units->rtpus().receipts().left_out(), 50u);
+  EXPECT_GT(rtpus->rtpus().receipts().left_out(), 50u);
   for (const SwitchReceipt& receipt : receipts.first(15)) EXPECT_EQ(receipt.end, SwitchEnd::kDone);
-  EXPECT_EQ(units->lost(), 0u);
+  EXPECT_EQ(rtpus->lost(), 0u);
 }
 
 TEST_P(VirtualSwitchesTest, ARequestForWhatIsInForceOrNotThereLeavesNoReceipt) {
@@ -157,7 +157,7 @@ TEST_P(VirtualSwitchesTest, ARequestForWhatIsInForceOrNotThereLeavesNoReceipt) {
   };
   const auto receipts = go(milliseconds(30));
   EXPECT_EQ(receipts.size(), 0u);
-  EXPECT_EQ(units->set(1).tasks()[kReader.index].requests_refused, 1);
+  EXPECT_EQ(rtpus->set(1).tasks()[kReader.index].requests_refused, 1);
 }
 
 TEST_P(VirtualSwitchesTest, WhatFailsOnOneRtpuIsUndoneOnTheOther) {
@@ -167,7 +167,7 @@ TEST_P(VirtualSwitchesTest, WhatFailsOnOneRtpuIsUndoneOnTheOther) {
   EXPECT_EQ(receipts[0].why, NoSwitch::kOnFailed);
   EXPECT_EQ(receipts[0].task, kTwo);
   EXPECT_EQ(receipts[0].said.view(), "no current");
-  EXPECT_TRUE(units->are_on(kSets[kDirect]));
+  EXPECT_TRUE(rtpus->are_on(kSets[kDirect]));
   EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "on observer", "on two", "off observer"}));
 }
 
@@ -176,7 +176,7 @@ TEST_P(VirtualSwitchesTest, ADeathBeforeTheChangeAborts) {
                                               act_at(microseconds(5600), ScriptAct::Kind::kDie, 1)});
   EXPECT_EQ(receipts[0].end, SwitchEnd::kAborted);
   EXPECT_EQ(receipts[0].why, NoSwitch::kMemberDied);
-  EXPECT_EQ(units->state(kThree), State::kOff);
+  EXPECT_EQ(rtpus->state(kThree), State::kOff);
 }
 
 TEST_P(VirtualSwitchesTest, OneAtATime) {

@@ -59,7 +59,7 @@ const LinkedPort* same_resource(const LinkedPort& port, const TaskModel& other) 
   return nullptr;
 }
 
-/// Tasks that are never ON together use a resource in turn (runtime/switch/rivals.h). Tasks of one set open it at the
+/// Tasks that are never ON together use a resource in turn (runtime/plan/rivals.h). Tasks of one set open it at the
 /// same time.
 void check_users(Model& model, std::size_t a, std::size_t b) {
   const auto names_both = [&](const SetModel& set) { return set.has(a) && set.has(b); };

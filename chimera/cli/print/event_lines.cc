@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes events as lines, and joins deadlines that were missed one after the other.
+#include "chimera/cli/print/event_lines.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <ctime>
+#include <utility>
+
+#include "chimera/base/time.h"
+#include "chimera/cli/print/columns.h"
+#include "chimera/cli/print/fields.h"
+#include "chimera/cli/print/figures.h"
+#include "chimera/text/json.h"
+#include "chimera/text/nearest.h"
+
+namespace chimera::cli {
+namespace {
+
+constexpr std::array<std::string_view, 33> kKinds = {
+    "started",         "state", "fault", "refused", "signal",  "flag", "rtpu-ended", "rtpu-restarted", "rtpu-given-up",
+    "manager-started", "miss",  "blame", "hang",    "demoted", "note", "overrun",    "stale",          "lost",
+    "command",         "set",   "stop",  "ending",  "closed", "not-off",
+    "memory",          "rights", "face-died", "output-lost", "switch", "bump", "drill", "safe",
+    "takeover"};
+
+/// Kinds of events that one incident causes: the late task, the cause, the cycles over budget.
+constexpr std::array<std::string_view, 3> kOfAMiss = {"miss", "blame", "overrun"};
+constexpr std::int64_t kPause = milliseconds(100).count;  // that does not end an incident
+
+bool is_of_a_miss(std::string_view kind) { return std::ranges::find(kOfAMiss, kind) != kOfAMiss.end(); }
+
+std::string clock_text(std::int64_t wall_ns) {
+  const std::time_t seconds = wall_ns / 1'000'000'000;
+  std::tm parts{};
+  localtime_r(&seconds, &parts);
+  char text[48];
+  std::snprintf(text, sizeof text, "%02d:%02d:%02d.%03d", parts.tm_hour, parts.tm_min, parts.tm_sec,
+                static_cast<int>(wall_ns / 1'000'000 % 1000));
+  return text;
+}
+
+std::string line(std::int64_t number, std::int64_t wall_ns, const std::string& kind, const std::string& text) {
+  char head[32];
+  std::snprintf(head, sizeof head, "%6lld", static_cast<long long>(number));
+  return std::string(head) + "  " + clock_text(wall_ns) + "  " + fitted(kind, 15) + "  " + text + "\n";
+}
+
+}  // namespace
+
+EventLines::Event EventLines::read(const Json& event) {
+  const std::string task = text_of(event, "task");
+  return {whole_of(event, "number"),
+          whole_of(event, "at_ns"),
+          whole_of(event, "wall_ns"),
+          text_of(event, "kind"),
+          task.empty() ? text_of(event, "rtpu") : task,
+          text_of(event, "text")};
+}
+
+std::string EventLines::line_of(const Event& event) {
+  return line(event.number, event.wall_ns, event.kind, (event.who.empty() ? "" : event.who + ": ") + event.text);
+}
+
+// "miss x4": the tasks, the first cause, and how far it goes.
+std::string EventLines::line_of(const std::vector<Event>& incident) {
+  std::vector<std::string> tasks;
+  for (const Event& event : incident)
+    if (!event.who.empty() && std::ranges::find(tasks, event.who) == tasks.end()) tasks.push_back(event.who);
+  const auto cause = std::ranges::find(incident, "blame", &Event::kind);
+  const Event &first = incident.front(), &last = incident.back();
+  std::string text;
+  for (const std::string& task : tasks) text += (text.empty() ? "" : ", ") + task;
+  text += ": " + (cause == incident.end() ? first : *cause).text + "; " + std::to_string(incident.size()) +
+          " events to number " + std::to_string(last.number) + ", within " + duration_text(last.at_ns - first.at_ns);
+  return line(first.number, first.wall_ns, "miss x" + std::to_string(incident.size()), text);
+}
+
+std::span<const std::string_view> event_kinds() noexcept { return kKinds; }
+
+Result<std::vector<std::string>> read_kinds(std::string_view text) {
+  const std::vector<std::string> known(event_kinds().begin(), event_kinds().end());
+  std::vector<std::string> kinds;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find(',', at), text.size());
+    kinds.emplace_back(text.substr(at, end - at));
+    at = end + 1;
+    if (std::ranges::find(known, kinds.back()) != known.end()) continue;
+    const std::string near = nearest(kinds.back(), known);
+    std::string said = "--kind: no kind '" + kinds.back() + "'";
+    if (!near.empty()) return Error{ErrorCode::kBadInput, {said + "; did you mean '" + near + "'?"}, {}};
+    said += "; there are";
+    for (const std::string& kind : known) said += (kind == known.front() ? " " : ", ") + kind;
+    return Error{ErrorCode::kBadInput, std::string_view(said), {}};
+  }
+  return kinds;
+}
+
+bool EventLines::is_wanted(const Json& event) const {
+  return kinds_.empty() || std::ranges::find(kinds_, text_of(event, "kind")) != kinds_.end();
+}
+
+std::string EventLines::add(const Json& json) {
+  if (!is_wanted(json)) return "";
+  Event event = read(json);
+  if (each_) return line_of(event);
+  const bool is_late = is_of_a_miss(event.kind);
+  const bool goes_on = is_late && !incident_.empty() && event.at_ns - incident_.back().at_ns <= kPause;
+  std::string text = goes_on ? "" : end();
+  if (is_late)
+    incident_.push_back(std::move(event));
+  else
+    text += line_of(event);
+  return text;
+}
+
+std::string EventLines::end() {
+  const std::vector<Event> told = std::exchange(incident_, {});
+  if (told.empty()) return "";
+  return told.size() == 1 ? line_of(told[0]) : line_of(told);
+}
+
+std::string events_text(const Json& answer, std::int64_t since, EventLines lines) {
+  std::string text;
+  const std::int64_t first = whole_of(answer, "first");
+  if (since > 0 && first > since && whole_of(answer, "last") >= since)
+    text = "(" + std::to_string(first - since) + " older events are gone)\n";
+  for (const Json& event : answer["events"]) text += lines.add(event);
+  return text + lines.end();
+}
+
+}  // namespace chimera::cli

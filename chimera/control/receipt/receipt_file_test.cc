@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/control/receipt/receipt_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace chimera::control {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+struct ReceiptFileTest : ::testing::Test {
+  ReceiptFileTest() { EXPECT_NE(::mkdtemp(place), nullptr); }
+  ~ReceiptFileTest() override { std::filesystem::remove_all(place); }
+  std::string folder() const { return std::string(place) + "/chimera/drive"; }
+  static std::string receipt(int number, int run = 7, const std::string& more = "") {
+    return "{\"number\": " + std::to_string(number) + ", \"origin_ns\": " + std::to_string(run) + ", \"to\": \"a" +
+           more + "\"}";
+  }
+  static std::string text_of(const std::string& path) {
+    std::ostringstream all;
+    all << std::ifstream(path, std::ios::binary).rdbuf();
+    return all.str();
+  }
+
+  char place[40] = "/tmp/chimera_receipts_XXXXXX";
+};
+
+TEST_F(ReceiptFileTest, EachIsALineBehindTheOthersInAFolderThatIsMade) {
+  ReceiptFile file(folder());
+  EXPECT_EQ(file.last(10), Lines());
+  ASSERT_TRUE(file.file({receipt(1)}));
+  ASSERT_TRUE(file.file({receipt(2), receipt(3)}));
+  EXPECT_EQ(text_of(file.path()), receipt(1) + "\n" + receipt(2) + "\n" + receipt(3) + "\n");
+  EXPECT_EQ(file.last(10), (Lines{receipt(1), receipt(2), receipt(3)}));
+  EXPECT_EQ(file.last(2), (Lines{receipt(2), receipt(3)}));
+  EXPECT_EQ(file.last(0), Lines());
+}
+
+TEST_F(ReceiptFileTest, NumberAndRunTellReceiptsApart) {
+  EXPECT_EQ(receipt_key(receipt(1)), "{\"number\": 1, \"origin_ns\": 7, ");
+  EXPECT_EQ(receipt_key("{}"), "{}");
+  EXPECT_EQ(receipt_key(""), "");
+  EXPECT_EQ(receipt_key("{\"number\": 1, \"origin_ns\": 7}"), "{\"number\": 1, \"origin_ns\": 7}");
+}
+
+// A successor files what its predecessor may have filed, and may collect it with other times.
+TEST_F(ReceiptFileTest, WhatIsThereIsNotFiledAgain) {
+  ASSERT_TRUE(ReceiptFile(folder()).file({receipt(1), receipt(12)}));
+  ReceiptFile successor(folder());
+  ASSERT_TRUE(successor.file({receipt(1, 7, "gain"), receipt(2), receipt(12), receipt(1, 77)}));
+  EXPECT_EQ(successor.last(10), (Lines{receipt(1), receipt(12), receipt(2), receipt(1, 77)}));
+}
+
+TEST_F(ReceiptFileTest, WhatWasCutOffIsFiledWhole) {
+  ASSERT_TRUE(ReceiptFile(folder()).file({receipt(1)}));
+  std::ofstream(ReceiptFile(folder()).path(), std::ios::app) << receipt(2).substr(0, 20);
+  EXPECT_EQ(ReceiptFile(folder()).last(10), (Lines{receipt(1)}));
+  ASSERT_TRUE(ReceiptFile(folder()).file({receipt(2)}));
+  EXPECT_EQ(ReceiptFile(folder()).last(10), (Lines{receipt(1), receipt(2)}));
+}
+
+TEST_F(ReceiptFileTest, WhatIsNoReceiptIsNotGivenOut) {
+  ASSERT_TRUE(ReceiptFile(folder()).file({receipt(1)}));
+  std::ofstream(ReceiptFile(folder()).path(), std::ios::app) << "hello\n{\"number\": 2, \n{}\n";
+  EXPECT_EQ(ReceiptFile(folder()).last(10), (Lines{receipt(1)}));
+}
+
+TEST_F(ReceiptFileTest, AFullFileIsRenamedOnceAndNothingIsFiledTwice) {
+  const std::uint64_t two = 2 * (receipt(1).size() + 1);
+  for (int number = 1; number <= 5; ++number)
+    ASSERT_TRUE(ReceiptFile(folder(), two).file({receipt(number)})) << number;  // each as a new manager
+  EXPECT_EQ(text_of(ReceiptFile(folder()).path()), receipt(5) + "\n");
+  EXPECT_EQ(text_of(ReceiptFile(folder()).path_before()), receipt(3) + "\n" + receipt(4) + "\n");
+  EXPECT_EQ(ReceiptFile(folder()).last(2), (Lines{receipt(4), receipt(5)}));
+  ASSERT_TRUE(ReceiptFile(folder(), two).file({receipt(4), receipt(5)}));
+  EXPECT_EQ(ReceiptFile(folder()).last(10), (Lines{receipt(3), receipt(4), receipt(5)}));
+}
+
+TEST_F(ReceiptFileTest, WhatCannotBeWrittenIsNamedAndMayBeTriedAgain) {
+  ReceiptFile file(folder());
+  ASSERT_TRUE(file.file({receipt(1)}));
+  std::filesystem::rename(file.path(), file.path() + ".away");
+  std::filesystem::create_directory(file.path());
+  const auto refused = file.file({receipt(2)});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message.view(), "cannot be opened: Is a directory");
+  EXPECT_EQ(refused.error().where.view(), file.path());
+  std::filesystem::remove(file.path());
+  std::filesystem::rename(file.path() + ".away", file.path());
+  ASSERT_TRUE(file.file({receipt(1), receipt(2)}));
+  EXPECT_EQ(file.last(10), (Lines{receipt(1), receipt(2)}));
+}
+
+}  // namespace
+}  // namespace chimera::control

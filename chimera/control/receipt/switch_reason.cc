@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// Puts reasons of switches into words.
+#include "chimera/control/receipt/switch_reason.h"
+
+#include <cmath>
+
+#include "chimera/control/receipt/receipt_parts.h"
+#include "chimera/text/time_text.h"
+
+namespace chimera::control {
+namespace {
+
+/// "'speed' is 3 rad/s, and safe_when of 'hand' asks for speed < 0.1 rad/s".
+std::string unsafe_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  const SafeCondition& asked = asked_of(spec, receipt.after);
+  if (!asked.is_there() || receipt.variable != asked.variable) return reason_word(receipt.why);
+  const PortSpec* const port = port_of(spec.variables[asked.variable.index], spec);
+  const std::string unit = port == nullptr ? "" : unit_text(std::string(port->unit));
+  std::string name(spec.variables[asked.variable.index].name);
+  if (port != nullptr && port->max_count() > 1) name += "[" + std::to_string(asked.element) + "]";
+  const std::string is = std::isnan(receipt.value) ? " has no value" : " is " + number_text(receipt.value) + unit;
+  return "'" + name + "'" + is + ", and safe_when of " + set_text(receipt.after, spec) + " asks for " + name + " " +
+         sign_of(asked.comparison) + " " + number_text(asked.limit) + unit;
+}
+
+/// Names the transition that is not schedulable, and the task that would miss its deadline.
+std::string not_schedulable(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  const TaskId late = receipt.way.deadline.task;
+  if (!late.is_valid()) return reason_word(NoSwitch::kNotSchedulable);
+  const TaskSpec& task = spec.tasks[late.index];
+  const std::string from = receipt.before == kNoSet ? "what is ON" : quoted(spec.sets[receipt.before].name);
+  const Nanoseconds takes = receipt.way.deadline.takes;
+  return "the transition from " + from + " to " + set_text(receipt.after, spec) +
+         " is not schedulable on CPU " + std::to_string(spec.rtpus[task.rtpu.index].cpu) + ": a cycle of task " +
+         quoted(task.name) + " may take " +
+         (takes == kNever ? "longer than its deadline of " + time_text(task.deadline)
+                          : time_text(takes) + ", its deadline is " + time_text(task.deadline));
+}
+
+/// ", for 10 s": from the request to the end, rounded to three digits; the time of undoing is in it.
+std::string waited_text(const SwitchReceipt& receipt) {
+  if (receipt.asked == kNever || receipt.ended == kNever || receipt.ended <= receipt.asked) return "";
+  const std::int64_t waited = (receipt.ended - receipt.asked).count;
+  std::int64_t unit = 1;
+  while (waited / unit >= 1000) unit *= 10;
+  return ", for " + time_text(Nanoseconds{(waited + unit / 2) / unit * unit});
+}
+
+std::string gapless_text(const SwitchWay& way, const ApplicationSpec& spec) {
+  if (!way.gapless.is_valid()) return "on of an arriving task fits no gap";
+  return "on of task " + quoted(spec.tasks[way.gapless.index].name) + " needs a gap of " + time_text(way.needed) +
+         ", and its rtpu has none";
+}
+
+std::string absent_text(const SwitchWay& way, const ApplicationSpec& spec) {
+  if (!way.absent.is_valid()) return "an arriving task has the resource of another one";
+  const std::string text = "task " + quoted(spec.tasks[way.absent.index].name) + " is NOT-CREATED";
+  if (!way.rival.is_valid()) return text;
+  return text + ": task " + quoted(spec.tasks[way.rival.index].name) + " has its resource";
+}
+
+}  // namespace
+
+std::string set_text(std::uint32_t set, const ApplicationSpec& spec) {
+  return set == kNoSet ? "other tasks" : quoted(spec.sets[set].name);
+}
+
+std::vector<std::string> slow_words(const SwitchWay& way) {
+  std::vector<std::string> words;
+  if ((way.slow & kSlowForConstants) != 0) words.emplace_back("constants");
+  if ((way.slow & kSlowForGap) != 0) words.emplace_back("no-gap");
+  if ((way.slow & kSlowForDeadlines) != 0) words.emplace_back("not-schedulable");
+  if ((way.slow & kSlowForResource) != 0) words.emplace_back("resource");
+  if ((way.slow & kSlowForDevice) != 0) words.emplace_back("not-ready");
+  return words;
+}
+
+std::string slow_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  const SwitchWay& way = receipt.way;
+  std::string text;
+  const auto add = [&text](const std::string& why) { text += (text.empty() ? "" : "; ") + why; };
+  if ((way.slow & kSlowForConstants) != 0 && way.constant.task.is_valid())
+    add("constant " + quoted(spec.constants[way.constant.constant.index].name) + " of task " +
+        quoted(spec.tasks[way.constant.task.index].name) + ", which stays, changes");
+  if ((way.slow & kSlowForGap) != 0) add(gapless_text(way, spec));
+  if ((way.slow & kSlowForDeadlines) != 0) add(not_schedulable(receipt, spec));
+  if ((way.slow & kSlowForResource) != 0) add(absent_text(way, spec));
+  if ((way.slow & kSlowForDevice) != 0) add("on of an arriving task was not ready at once");
+  return text;
+}
+
+std::string asked_by(const SwitchRequest& request, const ApplicationSpec& spec) {
+  const std::string name = request.by.is_valid() ? std::string(spec.tasks[request.by.index].name) : "";
+  switch (request.cause) {
+    case SwitchCause::kScript: return "--at";
+    case SwitchCause::kRequest: return "task " + name;
+    case SwitchCause::kMiss: return "on_miss of " + name;
+    case SwitchCause::kOverrun: return "on_overrun of " + name;
+    case SwitchCause::kFault: return "on_fault of " + name;
+    case SwitchCause::kStandby: return "standby_for of " + name;
+  }
+  return "?";
+}
+
+const char* reason_word(NoSwitch why) noexcept {
+  switch (why) {
+    case NoSwitch::kNone: return "none";
+    case NoSwitch::kUnknownSet: return "unknown-configuration";
+    case NoSwitch::kNothingToDo: return "nothing-to-do";
+    case NoSwitch::kInError: return "in-error";
+    case NoSwitch::kNotCreated: return "not-created";
+    case NoSwitch::kUnderWay: return "under-way";
+    case NoSwitch::kNotSchedulable: return "not-schedulable";
+    case NoSwitch::kOnFailed: return "on-failed";
+    case NoSwitch::kStepTooLarge: return "step-too-large";
+    case NoSwitch::kNoGap: return "no-gap";
+    case NoSwitch::kNoValue: return "no-value";
+    case NoSwitch::kNotSafe: return "not-safe";
+    case NoSwitch::kDisturbed: return "disturbed";
+    case NoSwitch::kFlagRaised: return "flag-raised";
+    case NoSwitch::kRunEnded: return "run-ended";
+    case NoSwitch::kLate: return "late";
+    case NoSwitch::kMemberDied: return "member-died";
+    case NoSwitch::kDamaged: return "damaged";
+    case NoSwitch::kCancelled: return "cancelled";
+    case NoSwitch::kBadConstant: return "bad-constant";
+    case NoSwitch::kStepFailed: return "step-failed";
+    case NoSwitch::kNotReady: return "not-ready";
+    case NoSwitch::kNoAnswer: return "no-answer";
+  }
+  return "?";
+}
+
+std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  const std::string task = receipt.task.is_valid() ? quoted(spec.tasks[receipt.task.index].name) : "";
+  const std::string variable = receipt.variable.is_valid() ? quoted(spec.variables[receipt.variable.index].name) : "";
+  switch (receipt.why) {
+    case NoSwitch::kInError: return "task " + task + " is in ERROR: clear it first";
+    case NoSwitch::kNotCreated: return "task " + task + " is not there: spawn it first";
+    case NoSwitch::kUnderWay:
+      return receipt.said.view().empty() ? "another switch is under way" : std::string(receipt.said.view());
+    case NoSwitch::kOnFailed: return "on of task " + task + ": " + std::string(receipt.said.view());
+    case NoSwitch::kStepTooLarge: {
+      std::string text = "on of task " + task + " would move " + variable + " too far";
+      for (const VariablePart& part : receipt.variables)
+        if (part.handover.variable == receipt.variable)
+          text += ": by " + step_text(part.step_of_on, unit_text(part, spec));
+      return text;
+    }
+    case NoSwitch::kNoGap:
+      return task.empty() ? "the processor was never idle" + waited_text(receipt)
+                          : "the processor was never idle for as long as on of task " + task + " takes" +
+                                waited_text(receipt);
+    case NoSwitch::kNoValue: return "task " + task + " had no value of " + variable + waited_text(receipt);
+    case NoSwitch::kNotSafe: return unsafe_text(receipt, spec);
+    case NoSwitch::kDisturbed: return "task " + task + " went to another state during the switch";
+    case NoSwitch::kFlagRaised: return "the illegal-configuration flag was raised during the switch";
+    case NoSwitch::kRunEnded: return "the run ended";
+    case NoSwitch::kLate: return "an rtpu was too late to agree to the instant of the change";
+    case NoSwitch::kMemberDied: return "an rtpu died";
+    case NoSwitch::kDamaged: return "the order on the decision page is not what the manager wrote";
+    case NoSwitch::kCancelled: {
+      const std::string by(receipt.said.view());
+      return by.empty() ? "cancelled" : "cancelled by " + by;
+    }
+    case NoSwitch::kBadConstant:
+      return "task " + task + " cannot be initialised with the constants of " + quoted(spec.sets[receipt.after].name) +
+             ": " + std::string(receipt.said.view());
+    case NoSwitch::kStepFailed: return "a method of task " + task + " failed: " + std::string(receipt.said.view());
+    case NoSwitch::kNotReady:
+      return (task.empty() ? "an rtpu" : "task " + task) + " was not ready" + waited_text(receipt);
+    case NoSwitch::kNoAnswer: return "an rtpu did not answer" + waited_text(receipt);
+    default: return reason_word(receipt.why);
+  }
+}
+
+}  // namespace chimera::control

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// The reason why a switch goes the slow way, was refused or aborted, and the origin of its request: words of the
+// format, and sentences. docs/formats/receipt.md.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "chimera/runtime/plan/switch_receipt.h"
+
+namespace chimera::control {
+
+/// "'hand'"; of kNoSet "other tasks". Context of everything: setup.
+std::string set_text(std::uint32_t set, const ApplicationSpec& spec);
+
+/// The origin of a request, as receipts say it: "on_miss of pid".
+std::string asked_by(const SwitchRequest& request, const ApplicationSpec& spec);
+
+/// Why a switch goes the slow way: the words of the format, and a sentence; empty: it does not.
+std::vector<std::string> slow_words(const SwitchWay& way);
+std::string slow_text(const SwitchReceipt& receipt, const ApplicationSpec& spec);
+
+/// Why a switch was refused or aborted: the word of the format, and a sentence.
+const char* reason_word(NoSwitch why) noexcept;
+std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spec);
+
+}  // namespace chimera::control

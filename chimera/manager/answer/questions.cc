@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// Queues questions by connection, and starts, watches and ends the analyst.
+#include "chimera/manager/answer/questions.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+#include "chimera/platform/descriptor.h"
+#include "chimera/platform/process_state.h"
+#include "chimera/platform/shared_memory.h"
+#include "chimera/text/json.h"
+
+namespace chimera::manager {
+namespace {
+
+using control::RpcResponse;
+
+constexpr Nanoseconds kPatienceWithEnd = seconds(1);  // until a process that was sent SIGKILL has ended
+
+RpcResponse too_many(const char* what) { return RpcResponse::error(control::kTooFast, what, {{"retry_ms", 100}}); }
+
+RpcResponse given_up(const std::string& why) {
+  return RpcResponse::refused("analysis", why, "text", "ask `chimera check` or `chimera schedule` with the file");
+}
+
+/// A large text is sent directly from the memory of the analyst's answer.
+RpcResponse answer_in(int passed, std::size_t text_bytes) {
+  auto opened = FrozenBytes::open(passed);
+  if (!opened || opened->bytes().size() < text_bytes) return given_up("the answer of the analysis cannot be read");
+  const auto frozen = std::make_shared<const FrozenBytes>(*std::move(opened));
+  const std::string_view text(reinterpret_cast<const char*>(frozen->bytes().data()), text_bytes);
+  if (text_bytes > control::kPiece) return RpcResponse::in_pieces(std::make_shared<control::TextPieces>(frozen, text));
+  return RpcResponse::ready(std::make_shared<const std::string>(text));
+}
+
+}  // namespace
+
+Questions::~Questions() { end_analyst(); }
+
+void Questions::ask(Question question, std::uint64_t connection, control::Reply reply, Nanoseconds now) {
+  std::size_t own = 0, bytes = question.text.size();
+  for (const Waiting& one : waiting_) {
+    own += one.connection == connection ? 1 : 0;
+    bytes += one.question.text.size();
+  }
+  if (own >= kMaxQuestionsOfConnection) return reply(too_many("4 analyses of this connection are under way"));
+  if (waiting_.size() >= kMaxQuestions) return reply(too_many("64 analyses are under way"));
+  if (bytes > kMaxQuestionBytes) return reply(too_many("analyses of 16 MiB of text are under way"));
+  waiting_.push_back({std::move(question), connection, std::move(reply)});
+  pass_on(now);
+}
+
+void Questions::forget(std::uint64_t connection) {
+  if (is_under_way_ && waiting_.front().connection == connection) end_analyst();
+  std::erase_if(waiting_, [connection](const Waiting& one) { return one.connection == connection; });
+}
+
+Nanoseconds Questions::next_due() const noexcept {
+  if (!waiting_.empty() && !is_under_way_) return since_;
+  if (is_under_way_) return since_ + kAnalysisLimit;
+  return channel_.is_open() ? since_ + kAnalystIdle : kNever;
+}
+
+void Questions::serve(Nanoseconds now) {
+  if (channel_.is_open()) take_answer(now);
+  if (is_under_way_ && now - since_ >= kAnalysisLimit) {
+    end_analyst();
+    answer_first(given_up("the analysis was ended: it took longer than 30 s"), now);
+  }
+  if (channel_.is_open() && waiting_.empty() && now - since_ >= kAnalystIdle) end_analyst();
+  pass_on(now);
+}
+
+void Questions::take_answer(Nanoseconds now) {
+  QuestionMessage told;
+  int passed = -1;
+  const Channel::Got got = channel_.receive(bytes_of(told), passed);
+  if (got == Channel::Got::kNothing) return;
+  const OwnedDescriptor received(passed);
+  const bool is_asked = got == Channel::Got::kMessage && is_under_way_ && told.number == number_;
+  if (is_asked && told.what == QuestionMessage::What::kNoMemory) {
+    answer_first(
+        given_up("the analysis was given up: it needs more than 1 GiB of memory, or its answer more than 32 MiB"), now);
+  } else if (is_asked) {
+    answer_first(answer_in(passed, told.text_bytes), now);
+  } else if (got == Channel::Got::kClosed) {
+    const bool was_under_way = is_under_way_;
+    const std::string how = how_it_ended();
+    tell_("the analyst of descriptions " + how);
+    if (was_under_way) answer_first(given_up("the analysis failed: its process " + how), now);
+  }
+}
+
+void Questions::answer_first(const RpcResponse& answer, Nanoseconds now) {
+  is_under_way_ = false;
+  since_ = now;
+  Waiting first = std::move(waiting_.front());
+  waiting_.pop_front();
+  first.reply(answer);
+}
+
+/// The oldest question of the connection whose turn it is, so that many questions of one connection do not delay the
+/// others.
+std::deque<Questions::Waiting>::iterator Questions::next_question() {
+  auto best = waiting_.begin();
+  const auto rank = [this](std::uint64_t connection) { return std::pair(connection <= last_connection_, connection); };
+  for (auto at = waiting_.begin(); at != waiting_.end(); ++at)
+    if (rank(at->connection) < rank(best->connection)) best = at;
+  return best;
+}
+
+void Questions::pass_on(Nanoseconds now) {
+  if (is_under_way_ || waiting_.empty()) return;
+  if (!channel_.is_open() && !start(now)) return;
+  const auto next = next_question();
+  last_connection_ = next->connection;
+  std::rotate(waiting_.begin(), next, next + 1);  // the questions before it keep their order
+  since_ = now;
+  is_under_way_ = true;
+  ++number_;
+  if (send_first()) return;
+  tell_("the analyst of descriptions " + how_it_ended());  // it died after the last question: start another one
+  if (!start(now)) return;
+  is_under_way_ = true;
+  if (!send_first())
+    answer_first(given_up("the analysis could not be started: " + std::string(std::strerror(errno))), now);
+}
+
+bool Questions::start(Nanoseconds now) {
+  auto ends = Channel::pair();
+  const std::string parent = std::to_string(own_process_id());
+  const char* const words[] = {program_.c_str(), "--analyst", "--parent", parent.c_str()};
+  auto started = ends ? Process::start(program_.c_str(), words, std::array{ends->second.descriptor(), bundle_})
+                      : Result<Process>(ends.error());
+  if (!started) {
+    const std::string why = started.error().message.c_str();
+    while (!waiting_.empty()) answer_first(given_up("the analysis could not be started: " + why), now);
+    return false;
+  }
+  analyst_ = *std::move(started);
+  channel_ = std::move(ends->first);
+  return true;
+}
+
+bool Questions::send_first() {
+  const Question& question = waiting_.front().question;
+  const std::string both = question.file + question.text + "\n";
+  const auto frozen = FrozenBytes::create("question", std::as_bytes(std::span(both)));
+  const QuestionMessage asked{QuestionMessage::What::kQuestion, question.kind, number_, question.file.size(),
+                              question.text.size()};
+  return frozen && channel_.send(bytes_of(asked), frozen->descriptor());
+}
+
+void Questions::end_analyst() {
+  if (!analyst_.is_held()) return;
+  analyst_.signal(SIGKILL);
+  (void)how_it_ended();
+}
+
+/// Waits for the end of an analyst that has ended or was killed, and says how it ended.
+std::string Questions::how_it_ended() {
+  ProcessEnd end;
+  channel_ = Channel();
+  is_under_way_ = false;
+  const bool is_known = analyst_.wait(end, kPatienceWithEnd.count);
+  analyst_ = Process();
+  if (!is_known) return "hangs";
+  if (!end.by_signal) return "ended with status " + std::to_string(end.code);
+  const char* name = ::sigabbrev_np(end.code);
+  return "ended by signal " + std::to_string(end.code) + (name == nullptr ? "" : std::string(" (SIG") + name + ")");
+}
+
+}  // namespace chimera::manager

@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: Apache-2.0
+// Orders a switch from the rtpus and makes one receipt from their parts.
+#include "chimera/manager/switch/switch_coordinator.h"
+
+#include <algorithm>
+#include <ctime>
+#include <utility>
+
+#include "chimera/control/receipt/receipt_json.h"
+#include "chimera/control/receipt/receipt_text.h"
+#include "chimera/control/receipt/switch_reason.h"
+
+namespace chimera::manager {
+namespace {
+
+constexpr Nanoseconds kGrace = milliseconds(500);  // time in which the rtpus abort by themselves
+
+/// "14:03:07", of the wall clock.
+std::string time_of_day(Nanoseconds at) {
+  const auto seconds_since = static_cast<std::time_t>(wall_ns(at) / 1'000'000'000);
+  std::tm broken_down{};
+  char text[16] = "?";
+  if (::localtime_r(&seconds_since, &broken_down) != nullptr) std::strftime(text, sizeof text, "%T", &broken_down);
+  return text;
+}
+
+/// False for a cause that no manager would write: the predecessor may have damaged its journal.
+bool is_cause(const BegunSwitch& begun, const ApplicationSpec& spec) {
+  const bool is_of_task = begun.cause > SwitchCause::kScript && begun.cause <= SwitchCause::kFault;
+  return is_of_task ? begun.by.index < spec.tasks.size() : begun.cause == SwitchCause::kScript && !begun.by.is_valid();
+}
+
+bool is_way(const SwitchWay& way, const ApplicationSpec& spec) {
+  const auto is_task = [&](TaskId task) { return !task.is_valid() || task.index < spec.tasks.size(); };
+  const ConstantUsers::Found& found = way.constant;
+  return way.slow <= kSlowReasons && is_task(found.task) && is_task(way.deadline.task) && is_task(way.gapless) &&
+         is_task(way.absent) && is_task(way.rival) &&
+         (!found.task.is_valid() || found.constant.index < spec.constants.size());
+}
+
+/// Upper bound of the gaps of the rtpu while the tasks `on` cycle: the longest time between two releases of the tasks
+/// with the shortest period.
+Nanoseconds longest_gap(const ApplicationSpec& spec, const TaskBits& on, RtpuId rtpu) {
+  std::vector<const TaskSpec*> fastest;
+  for (std::size_t t = 0; t < spec.tasks.size(); ++t) {
+    const TaskSpec& task = spec.tasks[t];
+    if (!on.has(TaskId(t)) || task.rtpu != rtpu || task.aperiodic) continue;
+    if (!fastest.empty() && task.period < fastest[0]->period) fastest.clear();
+    if (fastest.empty() || task.period == fastest[0]->period) fastest.push_back(&task);
+  }
+  if (fastest.empty()) return kNever;
+  const std::int64_t period = fastest[0]->period.count;
+  std::int64_t longest = 0;
+  for (const TaskSpec* each : fastest) {
+    std::int64_t next = period;
+    for (const TaskSpec* other : fastest) {
+      const std::int64_t behind = ((other->offset - each->offset).count % period + period) % period;
+      if (behind > 0) next = std::min(next, behind);
+    }
+    longest = std::max(longest, next);
+  }
+  return Nanoseconds{longest};
+}
+
+std::string asker_text(const BegunSwitch& begun, const ApplicationSpec& spec) {
+  if (begun.cause == SwitchCause::kScript) return begun.asked_by.text();
+  return control::asked_by({begun.order.after, begun.cause, begun.by}, spec);
+}
+
+}  // namespace
+
+// True if one of the tasks in `tasks` shares a resource with `task`.
+static bool has_rival_in(const ManagerState& state, TaskId task, const TaskBits& tasks) {
+  for (std::size_t t = 0; t < state.spec().tasks.size(); ++t)
+    if (tasks.has(TaskId(t)) && state.rivals.are(task, TaskId(t))) return true;
+  return false;
+}
+
+TaskStatus last_status(const ManagerState& state, TaskId task) {
+  TaskStatus status = state.peers.status(task);
+  SwitchAgreement agreement(state.page.switching, state.keeper.origin);
+  const PlanWord plan = agreement.plan();
+  const RtpuId rtpu = state.spec().tasks[task.index].rtpu;
+  const auto order = agreement.order(plan, state.spec().sets.size(), state.spec().tasks.size());
+  const bool was_member = order && ((order->members >> rtpu.index) & 1u) != 0;
+  if (!was_member || !state.peers[rtpu].is_there()) return status;
+  const SwitchProgress& progress = state.peers[rtpu].block().head().switching;
+  if (progress.adopted.load(std::memory_order_acquire) == plan.number) return status;  // SwitchProgress
+  if (plan.phase != SwitchPhase::kCommitted) {  // it may have carried out a part of a slow one
+    if (order->slow != 0 && status.state <= State::kOn)
+      status.state = order->on.has(task) ? State::kOn : std::min(status.state, State::kOff);
+    if (order->slow != 0 && has_rival_in(state, task, order->on)) status.state = State::kNotCreated;
+    return status;
+  }
+  const bool is_after = order->target.has(task);
+  if (is_after && status.state == State::kOff) status.state = State::kOn;
+  if (!is_after && status.state == State::kOn) status.state = State::kOff;
+  return status;
+}
+
+void abort_open_plan_of(ManagerState& state, RtpuId rtpu) {
+  SwitchAgreement agreement(state.page.switching, state.keeper.origin);
+  const PlanWord plan = agreement.plan();
+  if (!plan.is_open()) return;
+  const auto order = agreement.order(plan, state.spec().sets.size(), state.spec().tasks.size());
+  const bool is_member = order && ((order->members >> rtpu.index) & 1u) != 0;
+  if (is_member && agreement.abort(plan.number)) state.announce();
+}
+
+SwitchCoordinator::SwitchCoordinator(ManagerState& state, ReceiptArchive& archive)
+    : state_(state),
+      archive_(archive),
+      journal_(state.own.block().journal()),
+      members_(state),
+      orders_(members_) {
+  orders_.prepare(state.spec(), false, memory_);
+  orders_.begin(state.keeper.origin);
+  slow_.prepare(state.spec(), memory_);
+  take_over();
+}
+
+/// Forgets a switch that was never announced. If only its last try was not announced, continues with the tries before.
+void SwitchCoordinator::take_over() {
+  auto begun = journal_.begun();
+  if (!begun) return;
+  const PlanWord plan = agreement().plan();
+  const std::size_t n_sets = state_.spec().sets.size();
+  const bool is_damaged = begun->order.after != set_of(state_.spec(), begun->order.target) ||
+                          (begun->before >= n_sets && begun->before != kNoSet) ||
+                          begun->asked_by.role > control::Role::kConfigure ||
+                          begun->cancelled_by.role > control::Role::kConfigure || !is_cause(*begun, state_.spec()) ||
+                          !is_way(begun->way, state_.spec());
+  const bool is_announced = plan.number == begun->order.number;
+  if (is_damaged || (!is_announced && begun->tries <= 1)) return journal_.forget();
+  if (!is_announced) {
+    begun->order.number = plan.number;
+    --begun->tries;
+  }
+  present_ = Present{*begun, {}};
+  state_.announce();
+}
+
+std::string SwitchCoordinator::under_way() const {
+  if (!present_) return "";
+  return "switch " + std::to_string(present_->begun.number) + " to " +
+         control::set_text(present_->begun.order.after, state_.spec()) + ", asked for by " +
+         asker_text(present_->begun, state_.spec());
+}
+
+std::string SwitchCoordinator::progress() const {
+  const std::string until = ", until " + time_of_day(present_->begun.order.until);
+  switch (agreement().plan().phase) {
+    case SwitchPhase::kPrepared: return "arming" + until;
+    case SwitchPhase::kProposed: return "agreeing" + until;
+    case SwitchPhase::kCommitted: return "committed";
+    case SwitchPhase::kAborted: return "aborted";
+  }
+  return "?";
+}
+
+bool SwitchCoordinator::is_free() const noexcept {
+  const PlanWord open = agreement().plan();
+  return !present_ && !open.is_open() && (open.number == 0 || orders_.are_over(open.number, UINT16_MAX));
+}
+
+/// Judges the request. If the switch may begin, `end` is kDone, because no error has occurred yet.
+void SwitchCoordinator::assess(const TaskBits& target, SwitchOutcome& outcome) {
+  SwitchReceipt& receipt = outcome.receipt;
+  const PlanAnswer answer = orders_.judge(target);
+  receipt.before = orders_.set_in_force();
+  receipt.after = set_of(state_.spec(), target);
+  receipt.why = answer.why;
+  receipt.task = answer.task;
+  receipt.way = orders_.way();
+  if (present_) {
+    receipt.said.assign(under_way() + ", is under way: " + progress());
+  } else if (!is_free()) {
+    receipt.said.assign("the rtpus are not done with the last switch");
+  } else if (!state_.logic.is_settled()) {
+    receipt.said.assign("tasks are being brought up");
+    outcome.remedy = "`chimera status` shows which; ask again when they are ON";
+  }
+  if (!receipt.said.view().empty()) {
+    receipt.why = NoSwitch::kUnderWay;
+    receipt.task = {};
+  }
+  const bool is_in_force = receipt.why == NoSwitch::kNothingToDo;
+  const bool may_begin = receipt.why == NoSwitch::kNone;
+  if (!may_begin) receipt.way.slow = 0;
+  receipt.end = may_begin ? SwitchEnd::kDone : is_in_force ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
+  const std::string task = receipt.task.is_valid() ? state_.name(receipt.task) : "";
+  if (receipt.why == NoSwitch::kInError) outcome.remedy = "`chimera clear " + task + "`";
+  if (receipt.why == NoSwitch::kNotCreated) outcome.remedy = "`chimera spawn " + task + "`";
+}
+
+ForeseenSwitch SwitchCoordinator::foresee(const TaskBits& target) {
+  SwitchOutcome outcome;
+  assess(target, outcome);
+  const bool has_plan = outcome.receipt.end == SwitchEnd::kDone;
+  ForeseenSwitch foreseen;
+  foreseen.receipt = outcome.receipt;
+  foreseen.remedy = outcome.remedy;
+  if (!has_plan) return foreseen;
+  foreseen.plan = orders_.plan();
+  foreseen.expected = expected();
+  find_late_off(foreseen);
+  return foreseen;
+}
+
+/// Skips slow switches: they do not wait longer for a gap.
+void SwitchCoordinator::find_late_off(ForeseenSwitch& foreseen) const {
+  if (foreseen.receipt.way.slow != 0) return;
+  const TaskBits after = target_of(foreseen.plan);
+  for (const TaskId task : foreseen.plan.leaving) {
+    const TaskSpec& spec = state_.spec().tasks[task.index];
+    const Profile profile = state_.profile(task);
+    const bool was_called = profile.execution[static_cast<int>(Method::kOff)].count != 0;
+    const Nanoseconds needed = IdleGap::needed(spec, profile, Method::kOff);
+    if (was_called || !members_.needs_gaps(task) || needed <= longest_gap(state_.spec(), after, spec.rtpu)) continue;
+    foreseen.late_off = task;
+    foreseen.needed = needed;
+    return;
+  }
+}
+
+/// Typical time of the method; for a method that was never called, the guess of IdleGap.
+Nanoseconds SwitchCoordinator::method_time(TaskId task, Method method) const {
+  const Nanoseconds budget = state_.spec().tasks[task.index].budget;
+  const Nanoseconds guess = budget > Nanoseconds{} ? budget : IdleGap::kUnknownMethod;
+  const Profile profile = state_.profile(task);
+  return profile.execution[static_cast<int>(method)].count == 0 ? guess : profile.of_late(method);
+}
+
+/// Estimated time to the change, if only the flag must be waited for. Requires: orders_ has judged.
+Nanoseconds SwitchCoordinator::expected() {
+  Nanoseconds sum;
+  const std::uint8_t slow = orders_.way().slow;
+  if (slow == 0) {
+    for (const TaskId task : orders_.plan().arriving) sum = sum + method_time(task, Method::kOn);
+    return sum + orders_.lead();
+  }
+  const Method methods[] = {Method::kCycle, Method::kOff, Method::kKill, Method::kInit, Method::kReinit, Method::kOn};
+  static_assert(std::size(methods) == static_cast<std::size_t>(SlowAct::kOn) + 1);
+  for (const SlowStep& step : slow_.plan(orders_.plan(), orders_.constants_in_force(), slow))
+    if (step.act != SlowAct::kCheck) sum = sum + method_time(step.task, methods[static_cast<int>(step.act)]);
+  return (slow & kSlowForConstants) != 0 ? sum + flag_lead(state_.spec(), orders_.on()) : sum;
+}
+
+void SwitchCoordinator::ask(const SwitchRequest& request, const TaskBits& target, Asker asked_by, Nanoseconds wait,
+                            Nanoseconds now, Switched switched) {
+  look(now);
+  auto outcome = std::make_shared<SwitchOutcome>();
+  assess(target, *outcome);
+  outcome->receipt.asked = now;
+  outcome->receipt.cause = request.cause;
+  outcome->receipt.by = request.by;
+  BegunSwitch begun;
+  begun.number = journal_.next();
+  begun.cause = request.cause;
+  begun.by = request.by;
+  begun.asked_by = asked_by;
+  begun.asked = now;
+  if (outcome->receipt.end == SwitchEnd::kNothingToDo) return switched(*outcome);
+  if (outcome->receipt.end == SwitchEnd::kRefused) {
+    outcome->receipt.number = begun.number;
+    std::vector<Switched> one;
+    one.push_back(std::move(switched));
+    return file(std::move(outcome), begun, now, std::move(one));
+  }
+  orders_.make(begun, target, now + wait);
+  journal_.begin(begun);
+  present_ = Present{begun, {}};
+  present_->switched.push_back(std::move(switched));
+  orders_.announce(begun);
+  state_.tell("switch", TaskId{}, RtpuId{}, under_way() + ": begun", now);
+}
+
+/// Notes in the journal who cancelled before it aborts the plan, because a successor may have to report it.
+bool SwitchCoordinator::cancel(Asker cancelled_by, Switched switched) {
+  if (!present_) return false;
+  BegunSwitch cancelled = present_->begun;
+  cancelled.cancelled_by = cancelled_by;
+  journal_.change(cancelled);
+  if (!orders_.abort(cancelled)) {
+    journal_.change(present_->begun);
+    return false;
+  }
+  present_->begun = cancelled;
+  present_->switched.push_back(std::move(switched));
+  return true;
+}
+
+Nanoseconds SwitchCoordinator::next_due() const noexcept {
+  const bool is_open = present_ && agreement().plan().is_open();  // if it is not open, the rtpus ring
+  return is_open ? present_->begun.order.until + kGrace : kNever;
+}
+
+bool SwitchCoordinator::is_tried_again(const SwitchReceipt& receipt, Nanoseconds now) {
+  const bool is_cancelled = present_->begun.cancelled_by.role != control::Role::kNone;
+  if (is_cancelled || state_.is_ending()) return false;
+  if (!orders_.make_next_try(present_->begun, receipt.why, now)) return false;
+  journal_.change(present_->begun);
+  orders_.announce(present_->begun);
+  return true;
+}
+
+/// Aborts an open plan that the journal does not contain: no manager follows it.
+void SwitchCoordinator::look(Nanoseconds now) {
+  const PlanWord plan = agreement().plan();
+  if (!present_ && plan.is_open() && agreement().abort(plan.number)) state_.announce();
+  if (!present_) return;
+  const bool is_due = now >= present_->begun.order.until + kGrace || state_.is_ending();
+  if (is_due) (void)orders_.abort(present_->begun);
+  if (!orders_.is_over(present_->begun)) return;
+  auto outcome = collect(present_->begun, now);
+  if (is_tried_again(outcome->receipt, now)) return;
+  const Present over = *std::exchange(present_, std::nullopt);
+  tell(*outcome, now);
+  file(std::move(outcome), over.begun, now, over.switched);
+}
+
+std::shared_ptr<SwitchOutcome> SwitchCoordinator::collect(const BegunSwitch& over, Nanoseconds now) const {
+  auto outcome = std::make_shared<SwitchOutcome>();
+  SwitchReceipt& receipt = outcome->receipt;
+  outcome->tasks.resize(state_.spec().tasks.size());
+  outcome->variables.resize(state_.spec().variables.size());
+  outcome->reinitialised.resize(state_.spec().tasks.size());
+  receipt.tasks = outcome->tasks;
+  receipt.variables = outcome->variables;
+  receipt.reinitialised = outcome->reinitialised;
+  orders_.collect(over, state_.is_ending() ? NoSwitch::kRunEnded : NoSwitch::kMemberDied, now, receipt);
+  outcome->tasks.resize(receipt.tasks.size());
+  outcome->variables.resize(receipt.variables.size());
+  outcome->reinitialised.resize(receipt.reinitialised.size());
+  if (over.cancelled_by.role != control::Role::kNone && receipt.end == SwitchEnd::kAborted) {
+    receipt.why = NoSwitch::kCancelled;
+    receipt.said.assign(over.cancelled_by.text());
+  }
+  return outcome;
+}
+
+void SwitchCoordinator::file(std::shared_ptr<SwitchOutcome> outcome, const BegunSwitch& of, Nanoseconds now,
+                             std::vector<Switched> switched) {
+  outcome->json = control::receipt_json(outcome->receipt, state_.spec(), state_.keeper.origin,
+                                        {asker_text(of, state_.spec()), wall_ns(of.asked)});
+  archive_.add(of.number, outcome->json, now, [outcome, switched = std::move(switched)] {
+    for (const Switched& one : switched) one(*outcome);
+  });
+}
+
+void SwitchCoordinator::tell(const SwitchOutcome& outcome, Nanoseconds now) {
+  const ApplicationSpec& spec = state_.spec();
+  const std::string text = control::receipt_text(outcome.receipt, spec, state_.keeper.origin);
+  state_.tell("switch", TaskId{}, RtpuId{}, text.substr(0, text.find('\n')), now);
+  for (const std::string& line : control::bump_lines(outcome.receipt, spec))
+    state_.tell("bump", TaskId{}, RtpuId{}, line, now);
+}
+
+}  // namespace chimera::manager

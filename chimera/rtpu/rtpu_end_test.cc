@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/rtpu/rtpu_end.h"
+
+#include <gtest/gtest.h>
+
+#include "chimera/rtpu/testing/test_rtpus.h"
+
+namespace chimera {
+namespace {
+
+using testing::component;
+
+struct Giver {
+  Out<double> x{"x", "1", initial = 0.0};
+  void cycle(Cycle) { *x = 1; }
+};
+struct Taker {
+  In<double> x{"x", "1"};
+  void cycle(Cycle) {}
+};
+
+constexpr TaskId kGiver{0u}, kTaker{1u};
+
+// The taker, in its own rtpu, must go OFF before the giver.
+struct RtpuEndTest : ::testing::Test {
+  RtpuEndTest() {
+    app.rtpus = {{"gives", 0, Policy::kEdf}, {"takes", 1, Policy::kEdf}};
+    app.add("giver", component<Giver>("giver")).rtpu = RtpuId(0u);
+    app.add("taker", component<Taker>("taker")).rtpu = RtpuId(1u);
+    app.make({kGiver, kTaker}, false);
+    rtpus = std::make_unique<testing::TestRtpus>(app);
+    rtpus->run(milliseconds(1));
+    rtpus->bring_up({kGiver, kTaker});
+  }
+  testing::TestRtpu& rtpu(std::size_t u) { return *rtpus->rtpus[u]; }
+  RtpuEnd& end_of(std::size_t u) { return rtpu(u).edge->rtpu_end(); }
+  PeerPhase phase(std::size_t u) { return rtpu(u).segment.block.head().phase; }
+
+  testing::TestApplication app;
+  std::unique_ptr<testing::TestRtpus> rtpus;
+};
+
+TEST_F(RtpuEndTest, KillsItsTasksAndSaysSo) {
+  EXPECT_FALSE(end_of(1).is_told());
+  end_of(1).tell(false);
+  rtpus->change();
+  rtpus->run(milliseconds(1100));  // its rtpu waits one second for the giver
+  EXPECT_TRUE(end_of(1).is_over());
+  EXPECT_EQ(rtpu(1).state(kTaker), State::kNotCreated);
+  EXPECT_EQ(phase(1), PeerPhase::kEnded);
+  EXPECT_FALSE(end_of(0).is_over());
+  EXPECT_EQ(rtpu(0).state(kGiver), State::kOn) << "the other rtpu goes on";
+}
+
+TEST_F(RtpuEndTest, WaitsForTheConsumersOfOtherRtpus) {
+  end_of(0).tell(false);
+  rtpus->change();
+  rtpus->run(milliseconds(500));
+  EXPECT_FALSE(end_of(0).is_over());
+  EXPECT_EQ(phase(0), PeerPhase::kEnding);
+  EXPECT_EQ(rtpu(0).state(kGiver), State::kOn);
+  end_of(1).tell(false);
+  rtpus->change();
+  rtpus->run(milliseconds(5));
+  EXPECT_TRUE(end_of(0).is_over());
+}
+
+TEST_F(RtpuEndTest, WaitsForNobodyWhenAJobOfItsOwnHangs) {
+  rtpu(0).edge->hanging().note(TaskWord(kGiver, Method::kCycle), seconds(1));
+  end_of(0).tell(false);
+  rtpus->change();
+  rtpus->run(milliseconds(5));
+  EXPECT_TRUE(end_of(0).is_over());
+}
+
+TEST_F(RtpuEndTest, LeavesItsSuccessorWhatWasOnWhenItEndsAloneAndWaitsForNobody) {
+  end_of(1).tell(true);
+  rtpus->change();
+  rtpus->run(milliseconds(5));
+  EXPECT_TRUE(end_of(1).is_over());
+  EXPECT_EQ(rtpu(1).state(kTaker), State::kOn) << "as the others are shown";
+  EXPECT_EQ(rtpu(1).tasks->tasks()[kTaker.index].state, State::kNotCreated);
+}
+
+}  // namespace
+}  // namespace chimera

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// Builds the common half of an executor and handles the cycle boundaries of its context.
+#include "chimera/runtime/cycle/releases.h"
+
+#include "chimera/base/assert.h"
+
+namespace chimera {
+namespace {
+
+// How long before its deadline a job of the task must start. `abort` refuses a start at the deadline itself.
+Nanoseconds start_margin(const TaskSpec& spec) noexcept {
+  if (spec.min_time > Nanoseconds{}) return spec.min_time;
+  return spec.on_miss == OnMiss::kAbort ? Nanoseconds{1} : Nanoseconds{INT64_MIN / 2};
+}
+
+bool is_built(OnMiss reaction, bool can_demote, bool can_switch) noexcept {
+  return (can_switch || reaction != OnMiss::kSwitch) && (can_demote || reaction != OnMiss::kDemote);
+}
+
+QueueStorage storage_for(std::size_t n, SetupMemory& memory) {
+  return {{memory.take<ClassMember>(n), memory.take<TaskClass>(n), memory.take<std::uint32_t>(n)},
+          memory.take<QueueTask>(n),
+          memory.take<LooseJob>(n),
+          memory.take<std::uint32_t>(n),
+          memory.take<std::uint32_t>(n)};
+}
+
+}  // namespace
+
+bool may_request(const ApplicationSpec& spec) noexcept {
+  const auto reacts = [](const TaskSpec& task) {
+    return task.on_miss == OnMiss::kSwitch || task.on_overrun == OnMiss::kSwitch ||
+           task.on_fault_set != UINT16_MAX;
+  };
+  const bool has_choice = spec.sets.size() > 1 || (!spec.sets.empty() && spec.tasks.size() > 1);
+  return has_choice || std::any_of(spec.tasks.begin(), spec.tasks.end(), reacts);
+}
+
+std::size_t kept_of_unscripted(const ApplicationSpec& spec) noexcept {
+  return may_request(spec) || !spec.standbys.empty() ? 16 : 0;
+}
+
+Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
+    : set_(set), guest_(options.guest), stop_(options.stop != nullptr ? options.stop : &kNoStop),
+      records_(set.setup_memory().take<JobRecord>(set.tasks().size())),
+      tap_(set.tasks(), options.tap, options.rtpu, options.threads != nullptr, set.setup_memory()),
+      in_loop_(set.tasks(), &queue_, options.preemptive),
+      threads_(options.threads != nullptr ? *options.threads : in_loop_),
+      queue_(options.policy, set.spec().tasks, storage_for(records_.size(), set.setup_memory())),
+      misses_(set.tasks(), records_, tap_,
+              guest_ != nullptr ? &cause_.emplace(set.tasks(), threads_, set.setup_memory()) : nullptr, clock),
+      jobs_(records_, tap_, misses_, cause_ ? &*cause_ : nullptr, clock, tap_.is_on() || guest_ != nullptr),
+      members_(set.tasks(), records_, queue_, tap_, guest_),
+      settlement_({set, records_, tap_, members_, misses_, cause_ ? &*cause_ : nullptr, guest_}),
+      switching_({set, queue_, threads_, members_, settlement_, tap_, misses_, clock}),
+      signals_(set, options, tap_, settlement_, threads_, switching_),
+      recovery_({set, settlement_, switching_, signals_, queue_, threads_, guest_}) {
+  const std::size_t n_switches = options.script.count(ScriptAct::Kind::kSwitch);
+  const bool is_alone = set.others() == nullptr;
+  CHIMERA_ASSERT(is_alone ? options.switch_peers == nullptr : n_switches == 0);
+  const bool takes_requests = (is_alone || options.switch_peers != nullptr) && may_request(set.spec());
+  const std::size_t n_receipts = n_switches + kept_of_unscripted(set.spec());
+  if (is_alone && n_receipts > 0) {
+    LocalSwitches& switches = switches_.emplace();
+    switches.prepare(set.spec(), 1, n_receipts, options.asked, set.setup_memory());
+    switches.join(0, set, !threads_.preempt());
+    signals_.order_by(switches);
+  }
+  SwitchPeers* const peers = switches_ ? &switches_->of(0) : options.switch_peers;
+  switching_.prepare(peers);
+  const bool takes_lists = options.asked != nullptr || options.switch_peers != nullptr;
+  if (takes_requests)
+    set.sent().allow_requests(set.setup_memory().take<TaskLists>(takes_lists ? set.tasks().size() : 0));
+  recovery_.prepare(peers);
+  for (Task& task : set.tasks()) {
+    const TaskSpec& spec = *task.spec;
+    const bool can = options.preemptive || !set.is_mine(task.id);
+    const bool switches = takes_requests || !set.is_mine(task.id);
+    CHIMERA_ASSERT(is_built(spec.on_miss, can, switches) && is_built(spec.on_overrun, can, switches));
+    CHIMERA_ASSERT(switches || spec.on_fault_set == UINT16_MAX);
+    JobRecord& record = records_[task.id.index];
+    record.task = &task;
+    record.start_margin = start_margin(spec);
+    record.is_plain = spec.tolerated_of == 0;
+    record.budget = spec.budget > Nanoseconds{} ? spec.budget : kNever;
+  }
+  set.methods().run_by({&clock, options.threads, options.writer});
+}
+
+void Releases::begin(Nanoseconds origin) noexcept {
+  origin_ = origin;
+  queue_.set_origin(origin);
+  if (switches_) switches_->begin(origin);
+  switching_.begin(origin);
+  signals_.begin(origin);
+  members_.follow_all(origin);
+}
+
+void Releases::take_edge(Nanoseconds now, bool puts_off) noexcept {
+  const bool is_in_row = puts_off && !queue_.is_empty() && queue_.next_release() > now;
+  const bool is_for_others = signals_.next_act_in_row() <= now || set_.sent().has_pending() ||
+                             (guest_ != nullptr && guest_->is_due(now));
+  if (is_in_row && !is_for_others) return;
+  signals_.act(now);
+  if (guest_ != nullptr) {
+    guest_->take(signals_, now);
+    signals_.step(now);  // take() heard the bell for changes since the step in act(): it does not ring again
+  }
+  signals_.carry_out_pending(now);
+  recovery_.act(now);
+  signals_.look_ahead(recovery_.due(), recovery_.wake());
+  members_.follow_all(now);
+  settlement_.publish();
+}
+
+bool Releases::decide_start(const Job& job, Nanoseconds now) noexcept {
+  const bool starts = misses_.decide_start(job, now);
+  if (settlement_.is_unsettled(job.task)) settle_job(job.task, now);
+  return starts;
+}
+
+void Releases::settle_job(TaskId task, Nanoseconds now) noexcept {
+  look_again();
+  settlement_.settle_job(task, now);
+}
+
+}  // namespace chimera

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks each element of a safety port for being finite and within its range.
+#include "chimera/runtime/job/safety.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+namespace chimera {
+namespace {
+
+double element(const chimera_port& port, std::uint32_t type, std::uint32_t i) noexcept {
+  if (type == CHIMERA_FLOAT64) return static_cast<const double*>(port.value)[i];
+  if (type == CHIMERA_FLOAT32) return static_cast<double>(static_cast<const float*>(port.value)[i]);
+  if (type == CHIMERA_INT32) return static_cast<double>(static_cast<const std::int32_t*>(port.value)[i]);
+  return static_cast<double>(static_cast<const std::int64_t*>(port.value)[i]);
+}
+
+// Cycle path: this text is made only when a value is refused, which ends the cycle in a fault anyway.
+bool refuse(const Task& task, const Output& output, std::uint32_t i, double value, char* text) noexcept {
+  const char* port = task.component->ports[output.spec->declared].name;
+  if (!std::isfinite(value)) {
+    std::snprintf(text, CHIMERA_FAULT_TEXT, "safety port %s: element %u is %s; the last good value stands", port, i,
+                  std::isnan(value) ? "NaN" : "infinite");
+  } else {
+    std::snprintf(text, CHIMERA_FAULT_TEXT,
+                  "safety port %s: element %u is %g, outside %g to %g; the last good value stands", port, i, value,
+                  output.spec->min, output.spec->max);
+  }
+  return false;
+}
+
+bool is_safe(const Task& task, const Output& output, char* text) noexcept {
+  const PortSpec& spec = *output.spec;
+  for (std::uint32_t i = 0; i < output.port->count; ++i) {
+    const double value = element(*output.port, spec.type, i);
+    const bool in_range = !spec.has_range || (value >= spec.min && value <= spec.max);
+    if (!std::isfinite(value) || !in_range) return refuse(task, output, i, value, text);
+  }
+  return true;
+}
+
+}  // namespace
+
+bool is_safe(const Task& task, char* text) noexcept {
+  for (const Output& output : task.outputs)
+    if (output.spec->safety && !is_safe(task, output, text)) return false;
+  return true;
+}
+
+}  // namespace chimera

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hands signals of tasks to their targets, and keeps the last request for a configuration.
+#include "chimera/runtime/life/sent_signals.h"
+
+#include <utility>
+
+namespace chimera {
+
+bool SentSignals::ring(TaskId id) noexcept {
+  Task& task = tasks_[id.index];
+  const bool counts = task.spec->server && task.state == State::kOn && task.events < UINT32_MAX;
+  if (counts) ++task.events;
+  if (task.spec->server) ++(counts ? task.profile.events : task.profile.events_lost);
+  return counts;
+}
+
+void SentSignals::deliver(Task& task) noexcept {
+  for (const SentSignal& sent : task.outbox) {
+    Task& target = tasks_[sent.target.index];
+    if (sent.signal == Signal::kWakeup && is_mine(sent.target)) {
+      (void)ring(sent.target);
+      continue;
+    }
+    const bool goes_to_manager = sent.signal == Signal::kOn && others_ != nullptr && others_->has_manager();
+    if (others_ != nullptr && (!is_mine(sent.target) || goes_to_manager)) {
+      const bool is_sent = others_->post(sent.signal, sent.target, task.id, false);
+      if (!is_sent && sent.signal == Signal::kWakeup) ++task.profile.events_lost;
+      continue;
+    }
+    defer(target, sent.signal);
+  }
+  if (task.requested_set == kListsRequested) request({UINT32_MAX, SwitchCause::kRequest, task.id, *lists_of(task.id)});
+  else if (task.requested_set != kNoRequest) request({task.requested_set, SwitchCause::kRequest, task.id});
+  task.forget_sent();
+}
+
+void SentSignals::request(const SwitchRequest& request) noexcept {
+  if (!request_) ++n_pending_;
+  request_ = request;
+}
+
+SwitchRequest SentSignals::take_request() noexcept {
+  if (request_) --n_pending_;
+  return std::exchange(request_, {});
+}
+
+void SentSignals::defer(Task& task, Signal signal) noexcept {
+  if (task.pending.try_push(signal)) ++n_pending_;
+  else if (signal == Signal::kKill) task.pending[task.pending.size() - 1] = Signal::kKill;
+}
+
+bool SentSignals::take_pending(Task& task, Signal& signal) noexcept {
+  if (task.pending.empty()) return false;
+  signal = task.pending[0];
+  for (std::size_t i = 1; i < task.pending.size(); ++i) task.pending[i - 1] = task.pending[i];
+  task.pending.pop_back();
+  --n_pending_;
+  return true;
+}
+
+}  // namespace chimera

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plans the table of a context and finds the groups in it.
+#include "chimera/runtime/state/context_table.h"
+
+#include <algorithm>
+
+#include "chimera/base/assert.h"
+
+namespace chimera {
+
+Result<void> ContextTable::prepare(const ApplicationSpec& spec, const ContextPlace& place, SetupMemory& memory) {
+  const auto everything = PeerLayout::of_everything(spec, memory);
+  if (!everything) return everything.error();
+  everything_ = own_ = *everything;
+  if (place.rtpu.is_valid()) {
+    const auto own = PeerLayout::of(spec, place.rtpu.index, memory);
+    if (!own) return own.error();
+    own_ = *own;
+  }
+  const std::size_t bytes = own_.table().region_bytes();
+  table_ = place.table.empty() ? memory.take_bytes(bytes, kCacheLine) : place.table;
+  CHIMERA_ASSERT(table_.size() >= bytes);
+  if (place.rtpu.is_valid()) return {};  // operator variables are the manager's
+  operators_ = memory.take<GroupReader>(spec.operators.size());
+  for (std::size_t o = 0; o < operators_.size(); ++o) {
+    operators_[o] = reader(own_.operator_group(o));
+    set_operator(o, spec.operators[o].value, Nanoseconds{});
+  }
+  return {};
+}
+
+void ContextTable::place_outputs(TaskId task, TaskMemory& memory) const noexcept {
+  const GroupId first = own_.outputs(task, 0), second = own_.outputs(task, 1);
+  memory.place(group(first), group(second), own_.place(first).payload_bytes, own_.variables(first));
+}
+
+std::span<std::byte> ContextTable::group(GroupId group) const noexcept {
+  const GroupPlace& place = own_.place(group);
+  return table_.subspan(place.offset, group_bytes(place.payload_bytes));
+}
+
+void ContextTable::set_operator(std::size_t index, std::span<const std::byte> value, Nanoseconds now) noexcept {
+  CHIMERA_ASSERT(index < operators_.size() && value.size() <= operators_[index].payload_bytes());
+  GroupWriter to = writer(own_.operator_group(index));  // takes up where the last one stopped
+  std::copy(value.begin(), value.end(), to.staging());
+  to.publish(now, 1);
+}
+
+VariableReader ContextTable::reader_of(const PortOf& producer, std::uint32_t half) const noexcept {
+  const GroupId id = own_.outputs(producer.task, half);
+  return {reader(id), own_.variables(id)[producer.index].offset, producer.index};
+}
+
+}  // namespace chimera
