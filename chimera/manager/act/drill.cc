@@ -85,8 +85,8 @@ void Drill::judge(DrillPart& part) const {
   if (part.verdict != DrillVerdict::kWaiting) return;
   const TaskStatus status = state_.peers.status(part.task);
   const RtpuId rtpu = state_.spec().tasks[part.task.index].rtpu;
-  const RtpuRecord& rtpu = state_.rtpus[rtpu.index];
-  if (status.state != State::kOn || !rtpu.is_alive || rtpu.incarnation != part.incarnation) {
+  const RtpuRecord& record = state_.rtpus[rtpu.index];
+  if (status.state != State::kOn || !record.is_alive || record.incarnation != part.incarnation) {
     part.verdict = DrillVerdict::kLeft;
     return;
   }

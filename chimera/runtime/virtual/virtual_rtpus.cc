@@ -243,15 +243,15 @@ void VirtualRtpus::lower_flag(const ScriptAct& act) noexcept {
 void VirtualRtpus::die(RtpuId rtpu) noexcept {
   const auto found = std::find_if(rtpus_.begin(), rtpus_.end(), [rtpu](const auto& one) { return one->id == rtpu; });
   if (found == rtpus_.end() || (*found)->is_dead) return;
-  Rtpu& rtpu = **found;
-  rtpu.processor->cut(now_);
-  rtpu.is_dead = true;
-  rtpu.acts_now = false;
+  Rtpu& dead = **found;
+  dead.processor->cut(now_);
+  dead.is_dead = true;
+  dead.acts_now = false;
   peers_.die(rtpu, now_);
   switches_.die(rtpu.index);
-  for (Task& task : rtpu.tasks.tasks()) {
-    if (!rtpu.tasks.is_mine(task.id) || task.state == State::kNotCreated) continue;
-    rtpu.releases.tap().record(TapKind::kState, now_, task.id, static_cast<std::uint64_t>(State::kError));
+  for (Task& task : dead.tasks.tasks()) {
+    if (!dead.tasks.is_mine(task.id) || task.state == State::kNotCreated) continue;
+    dead.releases.tap().record(TapKind::kState, now_, task.id, static_cast<std::uint64_t>(State::kError));
     task.profile.on_before = task.profile.on_by(now_);
     task.profile.on_since = kNever;
   }
