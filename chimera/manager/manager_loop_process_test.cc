@@ -214,7 +214,7 @@ TEST(ManagerLoop, CountersThatCannotBeTrueAreToldAsThatAndNotAsNumbers) {
   ASSERT_TRUE(fake.until_on("law"));
   fake.rtpu(1).block().profile(fake.task("law")).overrun = 6'510'615'555'426'900'570u;
   ASSERT_TRUE(fake.until([&] { return !fake.told("fault").empty(); }));
-  EXPECT_EQ(fake.told("fault"), "law: its counters are wrong: something in its unit has overwritten them\n");
+  EXPECT_EQ(fake.told("fault"), "law: its counters are wrong: something in its rtpu has overwritten them\n");
   EXPECT_EQ(fake.told("overrun"), "");
 }
 
