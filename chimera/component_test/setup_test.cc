@@ -46,7 +46,7 @@ TEST(MadeUp, GivesEveryInputAndConstant) {
   EXPECT_TRUE(verdict.configuration.has_value()) << verdict.report.text();
 }
 
-TEST(Arrange, SettlesWhatIsOpenInOutputsThatNobodyReads) {
+TEST(Arrange, ChoosesUnitAndExtentOfOutputsWithoutReaders) {
   const Verdict verdict = arrange({}, component({port("y", CHIMERA_OUT_VAR, "U/s", "[n<=64]")}), our_units());
   ASSERT_TRUE(verdict.configuration.has_value()) << verdict.report.text();
   EXPECT_EQ(verdict.configuration->spec().tasks[0].ports[0].max_count(), 1u);

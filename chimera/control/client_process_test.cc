@@ -221,7 +221,7 @@ struct LimitTest : ClientTest {
       "it; try again, or tell the user who started it";
 };
 
-TEST_F(LimitTest, HoldsForAConnectionThatNobodyTakes) {
+TEST_F(LimitTest, HoldsForAConnectionThatIsNotAccepted) {
   std::vector<int> fds;  // no server accepts them: the queue fills
   for (int i = 0; i < 1000; ++i) {
     fds.push_back(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
@@ -244,7 +244,7 @@ TEST_F(LimitTest, HoldsForAConnectionThatNobodyTakes) {
   for (const int fd : fds) ::close(fd);
 }
 
-TEST_F(LimitTest, HoldsForACallThatNobodyAnswers) {
+TEST_F(LimitTest, HoldsForACallThatIsNotAnswered) {
   auto client = Client::connect_to(path);
   ASSERT_TRUE(client);
   const RpcResponse late = client->call("hello", Json::object(), milliseconds(200));
@@ -344,7 +344,7 @@ TEST_F(FindTest, AmongSeveralOneMustBeNamed) {
   EXPECT_EQ(said("subject"), "subject.sock");
 }
 
-TEST_F(FindTest, ASocketThatNobodyListensAtIsNone) {
+TEST_F(FindTest, IgnoresASocketWithoutAListener) {
   place("subject");
   server.reset();
   ::close(listening);

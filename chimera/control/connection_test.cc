@@ -45,7 +45,7 @@ class ConnectionTest : public ::testing::Test {
   std::optional<Connection> connection_;
 };
 
-TEST_F(ConnectionTest, WhatIsSaidMeanwhileGoesBehindALineThatIsMadeInPieces) {
+TEST_F(ConnectionTest, QueuesOutputBehindALineThatIsMadeInPieces) {
   int made = 0;
   connection_->queue("before\n", now_);
   connection_->queue_in_pieces("<", std::make_shared<Counted>(3, 2, made), ">\n", now_);

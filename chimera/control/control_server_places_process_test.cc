@@ -161,7 +161,7 @@ TEST_F(DoorPlaces, ALineThatDoesNotEndWithinFiveSecondsIsClosedInAnyCase) {
   EXPECT_EQ(server->connections(), 0u);
 }
 
-TEST_F(DoorPlaces, AHalfLineIsNoFaultWhileNobodyReadsIt) {
+TEST_F(DoorPlaces, AHalfLineIsNoFaultWhileTheServerDoesNotReadIt) {
   const int fd = more();
   backend.ballast = 2'000'000;
   serve();
@@ -177,7 +177,7 @@ TEST_F(DoorPlaces, AHalfLineIsNoFaultWhileNobodyReadsIt) {
   EXPECT_NE(ask(fd, request("hello").substr(20)).find("\"jsonrpc\""), std::string::npos);
 }
 
-TEST_F(DoorPlaces, WhoTakesNothingForFiveSecondsIsToldOf) {
+TEST_F(DoorPlaces, ReportsAClientThatReadsNothingForFiveSeconds) {
   const int fd = more();
   backend.ballast = 900'000;
   serve();

@@ -187,7 +187,7 @@ TEST_F(DoorTest, QuestionsOfConnectionsAreAnsweredInTurnAndEachInItsOrder) {
   ::close(b);
 }
 
-TEST_F(DoorTest, TheSubjectIsToldThatAConnectionIsOver) {
+TEST_F(DoorTest, TheBackendForgetsAConnectionThatIsClosed) {
   const int fd = plain();
   serve();
   EXPECT_TRUE(backend.forgotten.empty());
@@ -286,7 +286,7 @@ struct StrangerTest : DoorTest {
   }
 };
 
-TEST_F(StrangerTest, IsToldThatItHasNoRightAndNothingElse) {
+TEST_F(StrangerTest, GetsOnlyTheAnswerThatItHasNoRole) {
   const auto got = as_stranger(path, 65534, request("hello") + request("flag", R"({"up":true})"), [&] { serve(); });
   EXPECT_EQ(got, R"({"error":{"code":-32004,"data":{"has":"nothing","needs":"observe"},"message":"you have no role )"
                  R"(in this subsystem: you are neither its user nor in a group that has a role"},"id":null,)"

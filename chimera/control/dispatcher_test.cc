@@ -103,7 +103,7 @@ TEST_F(DispatcherTest, WhatTheRoleMayNotDoNeverReachesTheBackend) {
             "\n");
 }
 
-TEST_F(DispatcherTest, AnUnknownMethodIsToldTheNearest) {
+TEST_F(DispatcherTest, AnUnknownMethodIsAnsweredWithTheNearestName) {
   const std::uint64_t one = connect(Role::kObserve);
   say(one, "stauts");
   run_turns();
@@ -138,7 +138,7 @@ TEST_F(DispatcherTest, AReplyThatIsDroppedIsAnAnswer) {
             "\"jsonrpc\":\"2.0\"}\n");
 }
 
-TEST_F(DispatcherTest, AReplyAfterTheEndOfTheConnectionOrOfTheDispatcherIsNobodys) {
+TEST_F(DispatcherTest, DropsAReplyAfterTheEndOfTheConnectionOrTheDispatcher) {
   const std::uint64_t gone = connect(Role::kObserve), stays = connect(Role::kObserve);
   say(gone, "status");
   say(stays, "status");

@@ -73,7 +73,7 @@ TEST_F(PlacesTest, WhoDoesNothingGivesWayTheLowestRankFirstThenHalfLinesThenTheL
   EXPECT_EQ(refusal(0, Rank::kOwner), "the 64 of all users are all in use");
 }
 
-TEST_F(PlacesTest, NobodyGivesWayToALowerRank) {
+TEST_F(PlacesTest, AConnectionNeverGivesWayToALowerRank) {
   crowd(10, Rank::kObserve, Standing::kListens);
   crowd(30, Rank::kOperate, Standing::kIdle);
   EXPECT_EQ(refusal(1, Rank::kObserve), "the 40 of the roles up to operate are all in use");

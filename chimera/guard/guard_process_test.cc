@@ -166,7 +166,7 @@ TEST_F(GuardTest, WritesTheFramesOfAnRtpuThatIsDeadAndNotBefore) {
   EXPECT_GT(last.died, Nanoseconds{});
 }
 
-TEST_F(GuardTest, WhatAnRtpuSaidBeforeItDiedCountsThoughNobodyHadListened) {
+TEST_F(GuardTest, WritesFramesPostedBeforeTheDeathAndReadAfterIt) {
   start();
   const Device device;
   const auto life = begin();
@@ -192,7 +192,7 @@ TEST_F(GuardTest, WhatWasTakenBackIsNotWritten) {
   EXPECT_EQ(device.heard() + given_up.heard(), "");
 }
 
-TEST_F(GuardTest, GoesOnWithoutAKeeperUntilNobodyNeedsIt) {
+TEST_F(GuardTest, GoesOnWithoutAKeeperUntilTheLastRtpuIsDead) {
   start();
   const Device device;
   const auto life = begin();

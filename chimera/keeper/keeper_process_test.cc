@@ -203,7 +203,7 @@ TEST_F(KeeperProcess, AFaceThatHasLookedSeesHowTheOthersEnd) {
   EXPECT_TRUE(nobody_is_left());
 }
 
-TEST_F(KeeperProcess, SomebodyElsesSignalIsNotTheFaces) {
+TEST_F(KeeperProcess, ASignalToTheKeeperIsNoCommandOfTheFace) {
   start(1);
   ASSERT_TRUE(wait_for("face begin"));
   ASSERT_TRUE(wait_for("1.1 peer 0 1"));
@@ -222,7 +222,7 @@ TEST_F(KeeperProcess, EndsWithoutAFaceToo) {
   EXPECT_TRUE(nobody_is_left());
 }
 
-TEST_F(KeeperProcess, WhoeverDoesNotFinishIsKilledAfterItsLimit) {
+TEST_F(KeeperProcess, KillsAPeerThatDoesNotFinishWithinItsLimit) {
   ::setenv("CHIMERA_TEST_DEAF", "1", 1);
   start(2, true, milliseconds(200));
   ASSERT_TRUE(wait_for("face begin"));
@@ -261,7 +261,7 @@ TEST_F(KeeperProcess, AFaceThatDiesAgainAndAgainEndsEverything) {
   EXPECT_TRUE(nobody_is_left());
 }
 
-TEST_F(KeeperProcess, NobodyIsLeftWhenTheKeeperItselfIsKilled) {
+TEST_F(KeeperProcess, NoProcessIsLeftWhenTheKeeperIsKilled) {
   start(2);
   ASSERT_TRUE(wait_for("face begin"));
   ASSERT_TRUE(wait_for("2.1 peer 1 1"));
@@ -280,7 +280,7 @@ TEST_F(KeeperProcess, AManagerThatDiesAgainAndAgainIsStartedMoreAndMoreSlowly) {
   EXPECT_EQ(code_of_keeper(), 5);
 }
 
-TEST(Keeper, RefusesProgramsThatCannotBeStartedAndLeavesNobody) {
+TEST(Keeper, RefusesProgramsThatCannotBeStartedAndLeavesNoProcess) {
   const PeerPlan peers{.rtpu_program = "/nowhere/chimera-rtpu",
                        .manager_program = "/bin/true",
                        .n_rtpus = 1,

@@ -315,7 +315,7 @@ TEST_F(ManagerBackendTest, SubscribersOfEventsMissNone) {
   backend_->close(7);
 }
 
-TEST_F(ManagerBackendTest, SubscribersOfEventsThatAreGoneAreToldHowMany) {
+TEST_F(ManagerBackendTest, ASubscriberGetsTheNumberOfLostEvents) {
   ASSERT_TRUE(backend_->open(7, {{"to", "events"}, {"since", 1}}).is_good());
   for (std::size_t i = 0; i < kEventsKept + 5; ++i) state().tell("command", TaskId{}, RtpuId{}, "x", now());
   const auto news = backend_->pull(7);
@@ -433,7 +433,7 @@ TEST_F(ServedTest, StatusTellsTheServerAndForHowLongTheTaskWasOn) {
   EXPECT_EQ(good("status")["tasks"][1]["on_ns"], 0) << "what it was ON for has not been told";
 }
 
-TEST_F(ServedTest, ARingThatNobodyWouldAnswerIsRefusedAndRingsNothing) {
+TEST_F(ServedTest, RefusesARingForATaskThatCannotAnswer) {
   EXPECT_EQ(refusal("ring", {{"tasks", {"lamp", "sensor"}}}),
             "-32000 sensor is not behind a server: it has no doorbell "
             "{\"kind\":\"no-server\",\"remedy\":\"give it 'server:' in the description\",\"where\":\"sensor\"}");

@@ -50,7 +50,7 @@ TEST(ManagerLoop, ARefusedCommandChangesNothing) {
   EXPECT_EQ(fake.loop().state().state(fake.task("law")), State::kOn);
 }
 
-TEST(ManagerLoop, ADeadRtpuIsToldWithItsLastWordsAndStartedAgainWithWhatWasOn) {
+TEST(ManagerLoop, ReportsADeadRtpuWithItsMethodAndRestartsItsTasks) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -90,7 +90,7 @@ TEST(ManagerLoop, AManagerKilledAtAnyTimeIsFollowedByOneThatGoesOn) {
   EXPECT_TRUE(got->is_accepted()) << got->refusal.text();
 }
 
-TEST(ManagerLoop, WhatHappenedWhileThereWasNoManagerIsToldByTheNext) {
+TEST(ManagerLoop, TheNextManagerReportsEventsFromTheGap) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -158,7 +158,7 @@ TEST(ManagerLoop, WhatWasOnInAnRtpuWhoseMemoryCannotBeReadIsKnownToTheNextManage
   EXPECT_EQ(fake.loop().state().state(fake.task("law")), State::kOff) << "as it was";
 }
 
-TEST(ManagerLoop, AnRtpuThatLivesAndCannotBeReadIsToldWithWhatHelps) {
+TEST(ManagerLoop, ReportsALivingRtpuWithOverwrittenMemoryAndItsRemedy) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -194,7 +194,7 @@ TEST(ManagerLoop, TellsTheNoteOfATaskInItsWords) {
   EXPECT_EQ(fake.told("fault"), "");
 }
 
-TEST(ManagerLoop, FailuresOfTimeAreToldAsOneEventWithTheirCount) {
+TEST(ManagerLoop, ReportsFailuresOfTimeAsOneEventWithTheirCount) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -208,7 +208,7 @@ TEST(ManagerLoop, FailuresOfTimeAreToldAsOneEventWithTheirCount) {
   EXPECT_EQ(fake.told("overrun"), "law: 2 cycles over budget\n");
 }
 
-TEST(ManagerLoop, CountersThatCannotBeTrueAreToldAsThatAndNotAsNumbers) {
+TEST(ManagerLoop, ReportsImpossibleCountersAsAFaultAndNotAsNumbers) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));

@@ -77,7 +77,7 @@ TEST(ChromeTrace, NamesEveryKindOfRecord) {
   EXPECT_EQ(trace["otherData"]["missed_records"], 6);
 }
 
-TEST(ChromeTrace, SortsWhatIsToldLaterAndShowsDeadlines) {
+TEST(ChromeTrace, SortsLateRecordsAndShowsDeadlines) {
   const TapRecord records[] = {record(TapKind::kRun, 3'000, 0, CHIMERA_CYCLE, 500),
                                record(TapKind::kRelease, 2'000, 0, 7, 5'000),
                                record(TapKind::kRun, 4'000, 1, CHIMERA_CYCLE, 10),

@@ -38,13 +38,13 @@ TEST_F(GroupClaimsTest, WhatADeadProcessHoldsIsFree) {
   EXPECT_NE(decision.claims[0], 0u) << "not its own any more";
 }
 
-TEST_F(GroupClaimsTest, AWordThatNobodyWouldWriteHoldsNothing) {
+TEST_F(GroupClaimsTest, AnInvalidClaimHoldsNoGroup) {
   decision.claims[0] = ~std::uint64_t{0};
   EXPECT_TRUE(first.take(0));
   EXPECT_FALSE(first.take(kMaxGroups));
 }
 
-TEST_F(GroupClaimsTest, NobodyHasOneWhenTheRunEnds) {
+TEST_F(GroupClaimsTest, NoClaimSucceedsWhileTheRunEnds) {
   keeper.ending = 1;
   EXPECT_FALSE(first.take(0));
 }

@@ -244,7 +244,7 @@ TEST_F(EdgeTest, AChangedConstantReinitialisesItsUsersInOtherRtpusAndOnlyThen) {
   EXPECT_NEAR(second().output(kFollower), 5 * first().output(kSource), 5.1);
 }
 
-TEST_F(EdgeTest, ANoteIsToldAtOnceAndTheTaskGoesOn) {
+TEST_F(EdgeTest, ANoteIsReportedAtOnceAndTheTaskStaysOn) {
   all_on();
   rtpus->take(PostKind::kEvent);
   Follower::note_at = first().output(kSource) + 2;
@@ -258,7 +258,7 @@ TEST_F(EdgeTest, ANoteIsToldAtOnceAndTheTaskGoesOn) {
   EXPECT_STREQ(shown_of_follower().note, "as asked");
 }
 
-TEST_F(EdgeTest, AFaultIsToldWithItsTextInTheFaultGroup) {
+TEST_F(EdgeTest, AFaultIsReportedWithItsTextInTheFaultGroup) {
   all_on();
   rtpus->take(PostKind::kEvent);
   Follower::fail_at = first().output(kSource) + 2;

@@ -239,7 +239,7 @@ TEST_F(SwitchLinksTest, ASuccessorAbortsWhatItsPredecessorTookPartIn) {
   EXPECT_EQ(state(kThree), State::kOff);
 }
 
-TEST_F(SwitchLinksTest, AnOrderThatNobodyWroteIsAborted) {
+TEST_F(SwitchLinksTest, AnOrderWithAChangedWordIsAborted) {
   const std::uint16_t number = rtpus->switch_to(kObserved);
   rtpus->decision.switching.order[3] ^= 4096;
   rtpus->run(milliseconds(10));

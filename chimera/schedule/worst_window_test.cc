@@ -38,7 +38,7 @@ TEST(WorstWindow, BeginsBehindTheLongestJobInAnExecutive) {
   EXPECT_EQ(letters(kSet, {.policy = Policy::kRm, .dispatch = Dispatch::kExecutive}, 9), "BBBBAAAAC");
 }
 
-TEST(WorstWindow, ShowsWhereNobodyRunsAndStopsWhenFull) {
+TEST(WorstWindow, ShowsIdleTimeAndStopsWhenFull) {
   EXPECT_EQ(letters({work(5, 1, 0)}, {.policy = Policy::kEdf}, 7), "A....A.");
   std::vector<WindowTask> room(3);
   std::vector<WindowRun> runs(2);

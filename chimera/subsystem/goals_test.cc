@@ -124,7 +124,7 @@ TEST_F(GoalsTest, AMuteRtpuIsNoAnswerAndItsTasksMayBeOn) {
   EXPECT_EQ(step(Tick{}), "answer 2 no: no answer from rtpu servo\n");
 }
 
-TEST_F(GoalsTest, ARequestIsKeptOnceAndOneOfNobodyIsNone) {
+TEST_F(GoalsTest, KeepsARequestOnceAndIgnoresUnknownTasks) {
   command(Signal::kOff, {kPid});
   EXPECT_EQ(step(Requested{kReserve, Signal::kOn, kTraj}), "");
   EXPECT_EQ(step(Requested{kReserve, Signal::kOn, kTraj}), "");

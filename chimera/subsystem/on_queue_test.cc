@@ -78,7 +78,7 @@ TEST_F(OnQueueTest, GoalsToTurnOnWaitUntilEverythingIsSpawned) {
   EXPECT_EQ(advance(), "send spare: on traj\n");
 }
 
-TEST_F(OnQueueTest, LeavesOutAGoalWhoseTaskFailedMeanwhile) {
+TEST_F(OnQueueTest, LeavesOutAGoalWhoseTaskFailed) {
   are_on({kTraj, kPid});
   for (TaskId task : {kArm, kReserve}) goals.add(task, kGoalOn);
   is(kReserve, State::kNotCreated);

@@ -144,7 +144,7 @@ TEST_F(OnTransactionTest, OfGoalsTakesUpWhatAnEarlierManagerTurnedOn) {
   EXPECT_EQ(report(kArm, State::kOff), "refused: pid: no sensor\ngoal arm 0\ngoal pid 0\n");
 }
 
-TEST_F(OnTransactionTest, OfATaskIsToldWithItsSender) {
+TEST_F(OnTransactionTest, ReportsTheSenderOfASignal) {
   transaction.begin({0, {kTraj}, kArm, false});
   (void)advance();
   EXPECT_EQ(report(kTraj, State::kOn), "goal traj 0\nsignal: on sent by arm: traj is ON\n");

@@ -260,7 +260,7 @@ TEST_F(SubsystemTest, ATaskWhoseStandbyDidNotComeIsTurnedOnAgain) {
   EXPECT_EQ(report(kPid, State::kOff), "goal pid 2\nsend servo: on arm pid\n");
 }
 
-TEST_F(SubsystemTest, WhoWaitsForADeadRtpuIsToldWhy) {
+TEST_F(SubsystemTest, ACommandToADeadRtpuIsAnsweredWithTheCause) {
   command(Signal::kOff, {kPid});
   EXPECT_EQ(die(kServo),
             "rtpu-ended: servo ended by signal 11 (SIGSEGV) in pid.cycle\n"
@@ -341,7 +341,7 @@ TEST_F(SubsystemTest, TheNextManagerGoesOnWithATransaction) {
   EXPECT_EQ(report(kPid, State::kOn), "goal arm 0\ngoal traj 0\ngoal pid 0\nstarted: arm traj pid are ON\n");
 }
 
-TEST_F(SubsystemTest, TheNextManagerDealsWithADeathThatNobodySaw) {
+TEST_F(SubsystemTest, TheNextManagerHandlesADeathWithoutAManager) {
   rebirth();
   for (TaskId task : {kArm, kTraj, kPid}) seen(task, State::kOn);
   seen(kReserve, State::kOff);

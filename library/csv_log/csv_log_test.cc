@@ -177,7 +177,7 @@ TEST_F(CsvLogTest, NamesItsColumnsByVariableElementAndUnit) {
   EXPECT_EQ(text(), "t(s),q[0][0](rad),q[0][1](rad),speed[0][0](m.s-1),speed[0][1](m.s-1),ratio[0][0],ratio[0][1]\n");
 }
 
-TEST_F(CsvLogTest, ADiskThatFailsIsTold) {
+TEST_F(CsvLogTest, ReportsAWriteErrorOfTheDisk) {
   path = "/proc/self/mem";  // no memory is mapped at its start, so a write fails with EIO
   start(10);
   ASSERT_TRUE(rig.cycle());

@@ -36,7 +36,7 @@ TEST(Edge, IsTrueForOneCycleAtTheEdgesThatCount) {
   }
 }
 
-TEST(Edge, LastsAsLongAsItIsTold) {
+TEST(Edge, APulseLastsForItsConfiguredTime) {
   Pulses rig("rising", 3e-3);
   ASSERT_TRUE(rig.init() && rig.on());
   EXPECT_EQ(rig.run("011111000"), "011100000");

@@ -146,7 +146,7 @@ TEST(Encoder, AWindowTakesTheMeanOfUnevenCounts) {
   }
 }
 
-TEST(Encoder, ACountOf32BitsWrapsByItselfAndOthersWhereTheyAreTold) {
+TEST(Encoder, ACountOf32BitsWrapsByItselfAndOthersAtWrap) {
   Count<std::int32_t> rig;
   rig.begin();
   EXPECT_EQ(rig.see(2147483640), 0);

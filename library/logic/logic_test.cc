@@ -80,7 +80,7 @@ TEST(Logic, CountsEveryElementOfAList) {
   EXPECT_FALSE(rig.get<bool>("out"));
 }
 
-TEST(Logic, WaitsForAnInputThatNobodyHasWritten) {
+TEST(Logic, AbortsItsCycleWhileAnInputIsUnwritten) {
   Combined rig("or", 2);
   rig.set("in", true, 0, 0);
   ASSERT_TRUE(rig.init());

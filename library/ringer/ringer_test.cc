@@ -6,7 +6,7 @@
 namespace chimera {
 namespace {
 
-TEST(Ringer, RingsABurstEverySoManyCycles) {
+TEST(Ringer, RingsABurstOncePerEveryCycles) {
   Rig rig("ringer");
   rig.set("target", Text<64>("valve"));
   rig.set("every", std::int64_t{3});

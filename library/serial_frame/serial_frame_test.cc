@@ -195,7 +195,7 @@ TEST_F(SerialFrameTest, TheSafeFrameIsIdleBehindWhatEndsACutFrame) {
   EXPECT_LT(rig.safe_frame(0).descriptor, 0);
 }
 
-TEST_F(SerialFrameTest, ALineThatIsFullWaitsForNobodyAndLosesNoFrameInTheMiddle) {
+TEST_F(SerialFrameTest, AFullLineDoesNotBlockAndLosesWholeFramesOnly) {
   rig.set("timeout", 3600.0);
   start(1, 16);
   for (int i = 0; i < 3000; ++i) ASSERT_TRUE(rig.cycle());  // the device does not read

@@ -167,7 +167,7 @@ TEST(CameraTargets, RefusesALinkThatIsNoneAndACameraThatStandsNowhere) {
   EXPECT_EQ(rig.init().text, "centre and phase must be finite");
 }
 
-TEST(PoseMonitor, JudgesNothingThatNobodyHasWritten) {
+TEST(PoseMonitor, RefusesToJudgeUnwrittenPoses) {
   Rig rig("pose_monitor");
   ASSERT_TRUE(rig.init());
   ASSERT_TRUE(rig.on());

@@ -43,7 +43,7 @@ TEST_F(WatchdogTest, SaysWhichManyAreLateAndWhenTheyAreRenewed) {
   EXPECT_TRUE(alive());
 }
 
-TEST_F(WatchdogTest, GivesWhatNobodyHasWrittenTheSameTimeFromOn) {
+TEST_F(WatchdogTest, GivesAnUnwrittenInputMaxAgeFromOn) {
   start("report");
   renew(1);
   for (int ms = 1; ms <= 10; ++ms) ASSERT_TRUE(rig.cycle());

@@ -43,7 +43,7 @@ class Demote : public ::testing::Test {
   const Profile& profile(const char* name = "bad") { return app.task(name).profile; }
 };
 
-TEST_F(Demote, AfterItsBudgetAJobRunsWhenNobodyElseDoes) {
+TEST_F(Demote, AfterItsBudgetAJobRunsInIdleTime) {
   add_bad(40, 6, 2).on_overrun = OnMiss::kDemote;
   app.add("a", milliseconds(10), milliseconds(5));
   run(40);
@@ -71,7 +71,7 @@ TEST_F(Demote, AnOverrunIsRecordedOnceWhenItHappens) {
   EXPECT_EQ(overruns_recorded(), 2);
 }
 
-TEST_F(Demote, AfterItsDeadlineAJobRunsWhenNobodyElseDoes) {
+TEST_F(Demote, AfterItsDeadlineAJobRunsInIdleTime) {
   TaskSpec& spec = add_bad(40, 6, 0);
   spec.deadline = milliseconds(3);
   spec.on_miss = OnMiss::kDemote;

@@ -68,7 +68,7 @@ class Late : public ::testing::Test {
 
 // One miss of a task is told in 100 ms at most; this job ends later than that. Nor are the releases that it was in the
 // way of told as misses of their own.
-TEST_F(Late, IsToldOnce) {
+TEST_F(Late, ALongMissIsReportedOnce) {
   std::atomic<int> told_under_way{0};
   listener.on_miss = [&](TaskId task, const MissCause::Verdict&) {
     if (task == app.id("late") && stays) ++told_under_way;
@@ -173,7 +173,7 @@ TEST_F(Late, TakesSignalsAlsoWhenItAlwaysIs) {
   EXPECT_LE(profile().cycles, came_in + 1) << "one may have begun that had not counted itself yet";
 }
 
-TEST_F(Late, IsNobodyWhoEndsInTime) {
+TEST_F(Late, AJobThatEndsInTimeIsNoMiss) {
   has_seen = true;
   run();
   EXPECT_EQ(listener.of(app.id("late")).empty(), profile().missed == 0);

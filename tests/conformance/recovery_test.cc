@@ -342,7 +342,7 @@ TEST_P(RecoveryTest, AHotStandbyIsOffForAllOthersAndWhatItSendsIsNotSent) {
   EXPECT_FALSE(was_up());
 }
 
-TEST_P(RecoveryTest, AHotStandbyRestsWhileNobodyOfItsGroupIsOn) {
+TEST_P(RecoveryTest, AHotStandbyRestsWhileItsPrimaryIsOff) {
   make_hot(standbys_);
   go(milliseconds(12), {signal(milliseconds(3), Signal::kOff, kFirst), signal(milliseconds(8), Signal::kOn, kFirst)});
   EXPECT_EQ(scene.ons_of_spare, 2);

@@ -195,7 +195,7 @@ TEST_P(Requests, ForWhatIsInForceOrUnderWayHaveNoEffect) {
   EXPECT_EQ(scene.answers, (std::vector<bool>{true, true, true}));
 }
 
-TEST_P(Requests, ThatComeMeanwhileAreTakenNextAndTheLastOfThemStands) {
+TEST_P(Requests, DuringASwitchTheLastRequestIsCarriedOutNext) {
   scene.on_of_high = [](Cycle c) {
     c.spend(microseconds(1500));
     return ok();

@@ -207,7 +207,7 @@ TEST_P(SafeWhen, ThatNeverHoldsEndsTheSwitchWithTheValue) {
   EXPECT_LE(receipt.ended, seconds(10) + milliseconds(5));
 }
 
-TEST_P(SafeWhen, WhatNobodyProducesIsNotSafe) {
+TEST_P(SafeWhen, AVariableWithoutAProducerIsNotSafe) {
   const SwitchReceipt receipt = go({"third", 0, Relation::kUnequal, 100}, seconds(11));
   EXPECT_EQ(receipt.why, NoSwitch::kNotSafe);
   EXPECT_TRUE(std::isnan(receipt.value));

@@ -151,7 +151,7 @@ TEST(Servers, EveryRingOfAnotherTaskIsAnsweredByOneJob) {
   EXPECT_EQ(app.task("S").events, 0u);
 }
 
-TEST(Servers, ARingIsRefusedWhereNobodyWouldAnswerIt) {
+TEST(Servers, RefusesARingForATaskWithoutAServer) {
   Application app;
   app.add("A", milliseconds(4), milliseconds(1));
   add_served(app, "S", kDeferrable, 1, 6);

@@ -269,7 +269,7 @@ TEST_P(Switches, AStepOfOnBeyondTheLimitUndoesEverything) {
   EXPECT_EQ(state(kTwo), chimera::State::kOff);
 }
 
-TEST_P(Switches, AStepOfTheFirstCycleBeyondTheLimitIsTold) {
+TEST_P(Switches, ReportsAStepOfTheFirstCycleBeyondTheLimit) {
   limit_ = 0.5;
   scene.first_cycle_of_two = 0.6;
   const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600))});
@@ -315,7 +315,7 @@ TEST_P(Switches, OneAtATimeAndWhatIsInForceIsNothingToDo) {
 }
 
 // `on` of two takes longer than was to be expected: jobs that were released meanwhile end as they would have without.
-TEST_P(Switches, AnOnThatOverrunsItsGapLeavesTheJobsReleasedMeanwhileAsTheyWere) {
+TEST_P(Switches, AnOnThatOverrunsItsGapDoesNotChangeReleasedJobs) {
   go(milliseconds(20), {});
   const Log u = scene.u;
   scene = {};
@@ -347,7 +347,7 @@ TEST_P(Switches, AReleaseBeforeTheChangeIsMadeBeforeTheChange) {
   EXPECT_EQ(state(kOne), chimera::State::kOff);
 }
 
-TEST_P(Switches, WhatMovesAMemberMeanwhileUndoesIt) {
+TEST_P(Switches, ASignalToAMemberAbortsTheSwitch) {
   scene.on_takes = microseconds(600);
   const ScriptAct kill{milliseconds(6), ScriptAct::Kind::kSignal, Signal::kKill, kObserver};
   const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600)), kill});

@@ -78,7 +78,7 @@ struct VirtualRtpusTest : ::testing::Test {
   std::unique_ptr<RtpusRun> run;
 };
 
-TEST_F(VirtualRtpusTest, AJobReadsAtItsStartWhatOthersPublishedByThen) {
+TEST_F(VirtualRtpusTest, AJobReadsAtItsStartTheLatestPublications) {
   for (const bool preemptive : {false, true}) {
     SCOPED_TRACE(preemptive ? "preemptive" : "executive");
     renew(preemptive);

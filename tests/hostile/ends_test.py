@@ -73,7 +73,7 @@ class Ends(unittest.TestCase):
     def failures(self, said):
         return sorted(line.removeprefix("FAILED: ") for line in said.splitlines() if line.startswith("FAILED: "))
 
-    def test_off_and_kill_that_fail_at_ctrl_c_are_told_by_task_method_and_cause(self):
+    def test_failed_off_and_kill_at_ctrl_c_are_reported_by_task_method_and_cause(self):
         ends = {("executive", "off", "throw"): "off failed: thrown on demand",
                 ("executive", "off", "sleep"): "t1.off did not return within 2 s",
                 ("preemptive", "kill", "segv"): "u2 ended by signal 11 (SIGSEGV) in t2.kill",

@@ -165,7 +165,7 @@ class Files(unittest.TestCase):
             self.assertEqual(run.returncode, 0, (out, err))
             self.assertIn(b"ended by the operator", out)
 
-    def test_a_component_that_hides_one_of_the_library_is_told(self):
+    def test_a_component_that_hides_one_of_the_library_is_reported(self):
         self.stranger(name="t_source")
         text = ONE.replace("NAME", "t_source")
         for words in (("check", "FILE"), ("run", "FILE", "--virtual", "--for", "10 ms")):

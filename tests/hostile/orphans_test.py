@@ -123,7 +123,7 @@ class Orphans(unittest.TestCase):
 
 
 class Watched(unittest.TestCase):
-    def test_memory_that_grows_and_rights_that_are_given_up_are_told(self):
+    def test_growing_memory_and_lost_rights_are_reported(self):
         with Rig(tasks("leak", "ordinary", "unlocked", rate="1 kHz")) as system:
             before = system.rtpu("second")["resident_bytes"]
             self.assertGreater(before, 1 << 20)

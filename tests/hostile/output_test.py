@@ -215,14 +215,14 @@ class Limits(unittest.TestCase):
                 text = said.read()
                 return system.wait(), text
 
-    def test_a_limit_of_files_is_told(self):
+    def test_a_low_limit_of_files_is_reported(self):
         for most in (0, 64 << 10):
             with self.subTest(most):
                 code, said = self.run_limited((resource.RLIMIT_FSIZE, most))
                 self.assertEqual(code, 1, said)
                 self.assertIn(f"is limited to {most >> 10} KiB, expected at least 4096 KiB: ulimit -f", said)
 
-    def test_a_low_stack_is_told(self):
+    def test_a_low_stack_is_reported(self):
         for most in (64 << 10, 128 << 10) if is_sanitized() else (16 << 10, 32 << 10, 64 << 10):
             with self.subTest(most):
                 code, said = self.run_limited((resource.RLIMIT_STACK, most))
@@ -230,7 +230,7 @@ class Limits(unittest.TestCase):
                 self.assertIn(f"the stack is limited to {most >> 10} KiB", said)
 
     @unittest.skipIf(is_sanitized(), "the sanitizers reserve terabytes of addresses")
-    def test_little_memory_is_told(self):
+    def test_little_memory_is_reported(self):
         for megabytes in (11, 12, 14, 16, 18):
             with self.subTest(megabytes):
                 code, said = self.run_limited((resource.RLIMIT_AS, megabytes << 20))

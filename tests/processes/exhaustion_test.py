@@ -57,7 +57,7 @@ class Exhaustion(unittest.TestCase):
             return range(1, MOST)
         return sorted({(1 if once else 2) + i * ABOUT[program] // ROUNDS for i in range(ROUNDS)})
 
-    def test_row_19_the_nth_call_fails_and_is_told(self):
+    def test_row_19_the_nth_failed_call_is_reported(self):
         for program, once in itertools.product(ABOUT, (False, True)):
             for n in self.numbers(program, once):
                 with self.subTest(program=program, n=n, once=once):

@@ -52,7 +52,7 @@ class OtherCommit(unittest.TestCase):
             self.refused(lambda: against.Other("--all", root))
             self.assertFalse((root / "build").exists())
 
-    def test_a_folder_without_git_is_told(self):
+    def test_a_folder_without_git_is_refused(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertIn("no git checkout", self.refused(lambda: against.Other("HEAD", pathlib.Path(folder)))[0])
 

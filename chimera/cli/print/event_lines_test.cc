@@ -47,7 +47,7 @@ const Json kBurst = {
       event(4, 13, "set", "", "kp 0.4 V.s/rad"), event(5, 14, "miss", "pi", "1 deadline missed (2 in all)"),
       event(6, 300, "miss", "pi", "1 deadline missed (3 in all)")}}};
 
-TEST(EventLines, MissesOneBehindTheOtherAreOneLineAndWhatSomebodyDidIsSeen) {
+TEST(EventLines, PrintMissesInARowAsOneLineAndKeepOperatorEventsApart) {
   setenv("TZ", "UTC", 1);
   tzset();
   EXPECT_EQ(

@@ -197,7 +197,7 @@ TEST_F(Attend, IsASuccessWhenEveryExpectationHolds) {
   EXPECT_EQ(told["expectations"][0]["holds"], true);
 }
 
-TEST_F(Attend, HasTheReceiptsOfItsRunWhoeverAsked) {
+TEST_F(Attend, PrintsTheReceiptsOfItsOwnRunForRequestsOfAllClients) {
   const auto receipt = [](int number, int origin) { return Json{{"number", number}, {"origin_ns", origin}}; };
   backend_.receipts = {receipt(8, 4), receipt(3, 5), receipt(4, 5)};  // the first is of the run before
   request_.run.json = true;
@@ -260,7 +260,7 @@ TEST_F(Attend, TheReactionStopOfATaskIsNoSuccess) {
   EXPECT_NE(out_.find(", ended by the reaction `stop` of task 'pid'\n"), std::string::npos) << out_;
 }
 
-TEST_F(Attend, WhatFailsWhenAllIsTurnedOffIsToldAndIsNoSuccess) {
+TEST_F(Attend, AFaultInKillAtTheEndIsPrintedAndFailsTheRun) {
   backend_.fault_at_end = "884 rows were not written";
   EXPECT_EQ(attend(), kRefused);
   EXPECT_NE(out_.find("\npid: last fault in kill at "), std::string::npos) << out_;
@@ -270,7 +270,7 @@ TEST_F(Attend, WhatFailsWhenAllIsTurnedOffIsToldAndIsNoSuccess) {
       << out_;
 }
 
-TEST_F(Attend, ARestartIsToldAndFailsAStrictRunOnly) {
+TEST_F(Attend, ARestartIsPrintedAndFailsAStrictRunOnly) {
   backend_.servo["restarts"] = 1;
   backend_.events = {{{"number", 1},
                       {"at_ns", backend_.started_ns.as_int64() + 30'000'000},

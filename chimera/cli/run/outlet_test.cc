@@ -41,7 +41,7 @@ TEST(Outlet, WhatIsPrintedArrivesInOrder) {
   EXPECT_EQ(pipe.read(21), "line 0\nline 1\nline 2\n");
 }
 
-TEST(Outlet, NobodyWaitsForAReaderAndTheLossIsKnown) {
+TEST(Outlet, AWriterNeverWaitsForAReaderAndTheLossIsKnown) {
   Pipe pipe;
   const std::string line(999, 'x');
   Outlet outlet(pipe.ends[1]);

@@ -123,7 +123,7 @@ TEST_F(SwitchJournalTest, WhoIsKilledBetweenTwoStoresHasDoneItOrNot) {
 }
 
 // The manager is killed at any time in a random life with a slow disk. At the end each number has one receipt.
-TEST_F(SwitchJournalTest, EachNumberHasOneReceiptWhoeverIsKilled) {
+TEST_F(SwitchJournalTest, EachNumberHasOneReceiptThoughManagersAreKilled) {
   const auto seed = std::random_device{}();
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);

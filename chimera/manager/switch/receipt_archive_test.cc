@@ -81,7 +81,7 @@ TEST_F(ReceiptArchiveTest, AStalledDiskIsWaitedForATenthOfASecond) {
   EXPECT_EQ(filed().size(), 1u);
 }
 
-TEST_F(ReceiptArchiveTest, WhatCannotBeFiledIsToldKeptAndTriedAgain) {
+TEST_F(ReceiptArchiveTest, KeepsAReceiptThatCannotBeFiledAndTriesAgain) {
   std::filesystem::create_directories(control::ReceiptFile(folder()).path());  // a folder in the place of the file
   add(1);
   ASSERT_TRUE(until([this] { return archive->fault() != ""; }));

@@ -394,7 +394,7 @@ TEST_F(SwitchCoordinatorTest, ACauseOrATaskThatCannotBeIsForgotten) {
 }
 
 // The page has its number, but the journal has no entry: no manager wrote it.
-TEST_F(SwitchCoordinatorTest, APlanThatNobodyOrderedIsAborted) {
+TEST_F(SwitchCoordinatorTest, APlanWithoutAJournalEntryIsAborted) {
   SwitchOrder order;
   order.number = 7;
   order.members = 0b11;

@@ -133,7 +133,7 @@ TEST_F(SwitchWishesTest, WhatAPredecessorHasOrderedIsNotOrderedAgain) {
   EXPECT_EQ(plan().number, 1);
 }
 
-TEST_F(SwitchWishesTest, ThatCannotBeAreToldOnce) {
+TEST_F(SwitchWishesTest, ReportsARefusedRequestOnce) {
   fake.rtpu(1).fail(fake.task("law"), "as told");
   ASSERT_TRUE(fake.until([&] { return fake.loop().state().state(fake.task("law")) == State::kError; }));
   wish(0, kRun, "sensor");
@@ -186,7 +186,7 @@ TEST_F(SwitchWishesTest, ForTasksAreWorkedOutFromWhatIsOn) {
   EXPECT_EQ(plan().number, 1) << "it is under way";
 }
 
-TEST_F(SwitchWishesTest, ForTasksThatAreNoLegalSetAreToldOnce) {
+TEST_F(SwitchWishesTest, ReportsARequestForAnIllegalSetOnce) {
   wish_for({.plus = {}, .minus = bits_of(std::vector{fake.task("sensor")})});
   rounds();
   EXPECT_EQ(plan().number, 0);

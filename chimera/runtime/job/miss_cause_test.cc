@@ -84,7 +84,7 @@ TEST_F(MissCauseTest, ForgetsJobsThatEndedBeforeTheReleaseBeforeTheMiss) {
   EXPECT_EQ(judged(kFirst, 30).culprit, kFirst);
 }
 
-TEST_F(MissCauseTest, SaysNobodyWhenTheProcessorWasAway) {
+TEST_F(MissCauseTest, BlamesNoTaskWhenTheProcessorWasAway) {
   cause.ended(kFirst, milliseconds(1), milliseconds(20));
   cause.ended(kSecond, milliseconds(2), milliseconds(21));
   cause.missed(kFirst, milliseconds(10));
@@ -94,7 +94,7 @@ TEST_F(MissCauseTest, SaysNobodyWhenTheProcessorWasAway) {
   EXPECT_EQ(verdict.used, milliseconds(7)) << "of 11 ms that it waited, 4 were used";
 }
 
-TEST_F(MissCauseTest, BlamesWhoeverUsedTooMuchEvenWhenTheProcessorWasAwayToo) {
+TEST_F(MissCauseTest, BlamesATaskThatUsedTooMuchThoughTheProcessorWasAway) {
   cause.ended(kSecond, microseconds(2001), milliseconds(20));
   cause.missed(kFirst, milliseconds(10));
   EXPECT_EQ(judged(kFirst, 40).culprit, kSecond);
@@ -123,7 +123,7 @@ TEST_F(MissCauseTest, WaitsFromTheFirstReleaseThatWasMissed) {
   EXPECT_EQ(judged(kFirst, 35).used, milliseconds(25));
 }
 
-TEST_F(MissCauseTest, BlamesTheTaskItselfWhenNobodyUsedAnything) {
+TEST_F(MissCauseTest, BlamesTheTaskItselfWhenNoTaskUsedTime) {
   const MissCause::Verdict verdict = judged(kFirst, 21);
   EXPECT_EQ(verdict.culprit, kFirst) << "no release of it was missed";
   EXPECT_EQ(verdict.used, Nanoseconds{});
@@ -152,7 +152,7 @@ TEST_F(MissCauseTest, SaysThatAJobWaitsInASystemCall) {
   EXPECT_FALSE(judged(kSecond, 120).is_blocked) << "it is another one that waits";
 }
 
-TEST_F(MissCauseTest, BlamesWhoeverTookHalfOfTheTimeEvenWhenTheJobWaitsByNow) {
+TEST_F(MissCauseTest, BlamesTheTaskThatTookHalfOfTheTimeThoughTheJobIsBlocked) {
   under_way.blocked = kFirst;
   cause.ended(kSecond, microseconds(7001), milliseconds(15));
   cause.missed(kFirst, milliseconds(10));

@@ -137,7 +137,7 @@ TEST_F(MissPolicyTest, LosesPatienceByDroppedReleasesToo) {
   EXPECT_EQ(profile().missed_in_a_row, 0u);
 }
 
-TEST_F(MissPolicyTest, WithoutSomebodyToReportToNoCauseIsLookedFor) {
+TEST_F(MissPolicyTest, WithoutAListenerNoCauseIsSearched) {
   MissPolicy alone(bare.tasks, bare.records, bare.context_tap, nullptr, bare.clock);
   alone.drop({kFirst, milliseconds(10), 1});
   EXPECT_EQ(bare.records[0].left, 0);

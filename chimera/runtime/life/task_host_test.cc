@@ -70,7 +70,7 @@ struct KeptFrames final : SafeFrames {
   std::string kept;
 };
 
-TEST_F(TaskHostTest, NobodyWritesSafeFramesOfAContextThatIsAlone) {
+TEST_F(TaskHostTest, RefusesSafeFramesInAContextWithoutAGuard) {
   EXPECT_EQ(host().safe_frame(context(), 0, 1, 0), CHIMERA_FAULT);
   EXPECT_EQ(host().safe_bytes(context(), 0, "x", 1), CHIMERA_OK);
 }
@@ -98,7 +98,7 @@ TEST_F(TaskHostTest, SafeFramesStandUntilOffOrKillHasEndedWell) {
   }
 }
 
-TEST_F(TaskHostTest, AJobIsExpiredPastItsDeadlineOrWhenItIsToldToGiveUp) {
+TEST_F(TaskHostTest, AJobIsExpiredPastItsDeadlineOrOnGiveUp) {
   task().call.deadline_ns = milliseconds(5).count;
   clock.set(milliseconds(5));
   EXPECT_EQ(host().expired(context()), 0) << "at the deadline itself";
@@ -132,7 +132,7 @@ TEST_F(TaskHostTest, ASignalGoesToTheTaskOfThatNameOrToTheOwnTask) {
   EXPECT_TRUE(task().has_news);
 }
 
-TEST_F(TaskHostTest, ASignalThatNobodyCanTakeIsRefused) {
+TEST_F(TaskHostTest, RefusesASignalWithoutAReceiver) {
   EXPECT_EQ(send(kOff, "nobody"), CHIMERA_FAULT);
   EXPECT_EQ(send(kOff, ""), CHIMERA_FAULT);
   EXPECT_EQ(send(kWakeup + 1, "served"), CHIMERA_FAULT);
@@ -159,7 +159,7 @@ TEST_F(TaskHostTest, ANoteIsCutAndCounted) {
   EXPECT_TRUE(task().has_news);
 }
 
-TEST_F(TaskHostTest, ARequestForAConfigurationIsKeptWhereSomebodyTakesIt) {
+TEST_F(TaskHostTest, KeepsARequestForAConfigurationIfRequestsAreAllowed) {
   const NamedSet sets[] = {{"near", {}}, {"far", {}}};
   const_cast<ApplicationSpec&>(set->spec()).sets = sets;
   EXPECT_EQ(host().request(context(), "far"), CHIMERA_FAULT);
@@ -177,7 +177,7 @@ TEST_F(TaskHostTest, ARequestForAConfigurationIsKeptWhereSomebodyTakesIt) {
   EXPECT_EQ(task().requests_refused, 2u);
 }
 
-TEST_F(TaskHostTest, ARequestForTasksIsKeptWhereSomebodyTakesLists) {
+TEST_F(TaskHostTest, KeepsARequestForTasksIfListsAreAllowed) {
   const std::string mine(task().spec->name);
   const std::string on = "--on " + mine;
   set->sent().allow_requests({});

@@ -125,7 +125,7 @@ TEST_F(TaskSetBackground, AStalledOneIsLeftAloneAndTheTaskCanBeMadeAnew) {
   EXPECT_EQ(for_ever.letters, "ikd");
 }
 
-TEST_F(TaskSetBackground, AFaultIsToldAtKillAndNotAskedForAgain) {
+TEST_F(TaskSetBackground, AFaultIsReportedAtKillOnly) {
   make();
   told.throws = true;
   set->methods().run_by({nullptr, nullptr, &writer});

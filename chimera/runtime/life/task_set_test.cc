@@ -180,7 +180,7 @@ TEST_F(CounterAndReader, ARespawnedProducerTakesOverWhatItsPredecessorLeft) {
   EXPECT_EQ(number(*set, "n"), 6);
 }
 
-TEST_F(CounterAndReader, WhatNobodyHasPublishedIsInheritedFromNobody) {
+TEST_F(CounterAndReader, AnInitialValueIsNotInherited) {
   ASSERT_TRUE(set->life().start({}));
   const auto counter = [&] { return static_cast<Counter*>(set->tasks()[0].instance); };
   EXPECT_EQ(counter()->inherited_, kNever) << "an initial value is no publication";
@@ -210,7 +210,7 @@ TEST_F(CounterAndReader, ClearDoesNotMakeWhatStoodYounger) {
   EXPECT_EQ(static_cast<Counter*>(set->tasks()[0].instance)->inherited_, milliseconds(500) - microseconds(10));
 }
 
-TEST(TaskSet, ASuccessorIsToldTheAgeAndWhetherItIsFreshByThePeriodOfItsPredecessor) {
+TEST(TaskSet, ASuccessorKnowsTheAgeAndFreshnessByThePeriodOfItsPredecessor) {
   struct Case {
     Nanoseconds period, age;
     bool is_aperiodic, is_fresh;
@@ -338,7 +338,7 @@ TEST(TaskSet, OperatorVariablesHoldTheirInitialValue) {
   EXPECT_EQ(number(*set, "seen"), 2.5);
 }
 
-TEST(TaskSet, RefusesAVariableThatNobodyProduces) {
+TEST(TaskSet, RefusesAVariableWithoutAProducer) {
   TestApplication app;
   app.add("reader", component<Reader>("reader"));
   app.make();

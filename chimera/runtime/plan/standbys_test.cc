@@ -51,7 +51,7 @@ class StandbysTest : public ::testing::Test {
   Nanoseconds now_;
 };
 
-TEST_F(StandbysTest, NobodyTakesOverFromATaskThatIsOnOrTurnedOff) {
+TEST_F(StandbysTest, NoTakeoverWhenThePrimaryIsOnOrTurnedOff) {
   at(1);
   EXPECT_EQ(standbys_.n_groups(), 1u);
   EXPECT_FALSE(standbys_.next(0).is_valid());

@@ -81,7 +81,7 @@ TEST_P(VirtualSlowSwitches, WhatFailsOnOneRtpuIsUndoneOnBoth) {
 }
 
 // The second rtpu dies at each tenth of a millisecond of the switch: living rtpus end with the constants of one side.
-TEST_P(VirtualSlowSwitches, WhoeverDiesWhoLivesComesToOneSide) {
+TEST_P(VirtualSlowSwitches, LivingRtpusAgreeOnOneSideWhenTheOtherDies) {
   for (std::int64_t us = 0; us < 5000; us += 100) {
     shop = {};
     const auto receipts = go(milliseconds(20), {act_at(milliseconds(5), ScriptAct::Kind::kSwitch, 1),

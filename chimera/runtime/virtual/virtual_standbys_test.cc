@@ -164,7 +164,7 @@ TEST_P(VirtualStandbysTest, APrimaryThatPublishesNothingForTooLongIsKilledAndThe
   EXPECT_EQ(scene.u, (std::vector<double>{0, 1, 2, 3, 4, 4, 4, 4, 104, 204, 304}));
 }
 
-TEST_P(VirtualStandbysTest, APrimaryThatIsSilentIsLeftAloneWhileNobodyCouldTakeOver) {
+TEST_P(VirtualStandbysTest, LeavesASilentPrimaryAloneWhenItsStandbyIsDead) {
   pairs = {{kPrimary, kSpare, milliseconds(3), false}};
   scene.hangs_at = milliseconds(4).count;
   go(milliseconds(11), {death_at(microseconds(500), 2)});

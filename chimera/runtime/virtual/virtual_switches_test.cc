@@ -125,7 +125,7 @@ TEST_P(VirtualSwitchesTest, ATaskOfEitherRtpuAsksForTasks) {
   EXPECT_EQ(rtpus->lost(), 0u);
 }
 
-TEST_P(VirtualSwitchesTest, OfTheWishesThatComeMeanwhileTheLastIsTakenNext) {
+TEST_P(VirtualSwitchesTest, ALaterRequestForTheRunningSwitchTakesBackAnEarlierOne) {
   scene.in_plant = [](Cycle c) {
     if (c.count() == 6) c.request("beside");  // under way: observed
   };
