@@ -209,7 +209,7 @@ class Comparison {
   std::vector<Candidate> candidates_;
 };
 
-/// What a row promises: a bound on the ratio or on the figure itself, or nothing (reported only).
+/// Promise of a row: a bound on the ratio or on the figure itself, or nothing (reported only).
 struct Goal {
   enum Of { kNothing, kRatio, kFigure } of = kNothing;
   bool at_most = true;

@@ -98,7 +98,7 @@ inline std::unique_ptr<Transport> register_side(const Channel& channel, bool) {
   return std::make_unique<ByRegister>(std::move(own), std::move(other));
 }
 
-/// What both processes see: whose turn it is. 0: nobody's.
+/// Word that both processes read: the process whose turn it is. 0: neither.
 using Turn = std::atomic<int>;
 constexpr int kEnd = -1;
 

@@ -48,7 +48,7 @@ struct Line {
   void say() {
     if (::write(device, frame, size) < 0) throw std::runtime_error("the device cannot speak");
   }
-  /// What a program without components does: reads what there is, writes its frame.
+  /// Cycle of a program without components: reads the bytes that are there and writes its frame.
   void bare() {
     [[maybe_unused]] const ssize_t got = ::read(ours, heard, sizeof heard);
     if (::write(ours, frame, size) < 0) throw std::runtime_error("the line is full");
@@ -201,7 +201,7 @@ void scale_points(std::uint64_t n) {
   }
 }
 
-/// What is done beside the cycles, where libmodbus waits for the device: four requests.
+/// Measures the work beside the cycles: four requests, in which libmodbus waits for the device.
 void modbus_exchange() {
   const ModbusDevice one, other;
   ArmRig rig("modbus_io");

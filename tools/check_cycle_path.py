@@ -67,7 +67,7 @@ def run(*command):
 
 
 class Graph:
-    """Functions of object files and what each refers to. Local functions are told apart by their file."""
+    """Functions of object files and what each refers to. Functions that are local to a file are kept apart."""
 
     def __init__(self):
         self.refers = {}

@@ -148,7 +148,8 @@ def unsafe(name, descriptor):
     tells = [port["name"] for port in ports if port.get("safe_state") and port["kind"] == "out-var"]
     moves = name in SIMULATED_HARDWARE or any(not port.get("safe_state") for port in resources)
     if moves and not tells:
-        yield "its code has hardware and no safe_state: on an output that tells, or on a resource that moves nothing"
+        yield ("its code has hardware and no safe_state: on an output that says it is safe, or on a resource that "
+               "moves nothing")
 
 
 def pictures(folder, text):

@@ -123,7 +123,7 @@ TEST_F(ClientTest, ConnectsAnewAfterItsSubscriptionsWereLostOrDropped) {
   EXPECT_FALSE(client.is_connected());
   EXPECT_TRUE(client.call("status").is_good());
   EXPECT_FALSE(*client.next(milliseconds(50))) << "of a subscription that was dropped nothing comes";
-  EXPECT_EQ(Client::at(folder + "/nobody.sock").call("status").code, kNoConnection);
+  EXPECT_EQ(Client::at(folder + "/absent.sock").call("status").code, kNoConnection);
 }
 
 /// Reads a line of each connection: of the first it closes without an answer, of the second it answers.
@@ -239,7 +239,7 @@ TEST_F(LimitTest, HoldsForAConnectionThatIsNotAccepted) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     start();
   });
-  EXPECT_TRUE(Client::connect_to(path)) << "in turn, when there is somebody who takes them";
+  EXPECT_TRUE(Client::connect_to(path)) << "in turn, when a server accepts them";
   later.join();
   for (const int fd : fds) ::close(fd);
 }
@@ -264,7 +264,7 @@ TEST_F(LimitTest, ALongOneIsWaitedForAsLongAsTheManagerShowsASignOfLife) {
     EXPECT_EQ(late.message, "no answer within 2 s; `chimera status` says what was done");
   });
   EXPECT_GE(time, milliseconds(1990));
-  EXPECT_TRUE(client->call("hello").is_good()) << "what it asked for meanwhile is passed over";
+  EXPECT_TRUE(client->call("hello").is_good()) << "the client skips the late answer";
 }
 
 TEST_F(ClientTest, WhateverTheOtherEndSaysItGoesOn) {

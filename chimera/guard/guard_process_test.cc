@@ -283,7 +283,7 @@ TEST_F(GuardTest, EndsTheRtpuOfAPrimaryWhoseOutputsAreTooOldWhileAStandbyCanTake
     ProcessEnd how;
     return !primary->process.has_ended(how);
   };
-  EXPECT_TRUE(stays(milliseconds(80))) << "nobody could take over";
+  EXPECT_TRUE(stays(milliseconds(80))) << "no standby could take over";
   standby->block.set_status(TaskId(std::size_t{2}), {State::kError, false, 0});
   EXPECT_TRUE(stays(milliseconds(80)));
   LinuxClock clock;

@@ -232,7 +232,7 @@ TEST_F(KeeperProcess, KillsAPeerThatDoesNotFinishWithinItsLimit) {
   ASSERT_TRUE(wait_for("0.1 is stubborn"));
   ASSERT_TRUE(wait_for("2.1 is stubborn"));
   ::kill(keeper_, SIGINT);  // not reaped yet: still its process id
-  EXPECT_EQ(code_of_keeper(), 1) << "nobody has judged the run";
+  EXPECT_EQ(code_of_keeper(), 1) << "no face has judged the run";
   EXPECT_TRUE(nobody_is_left());
 }
 

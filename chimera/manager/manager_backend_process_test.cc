@@ -362,7 +362,7 @@ TEST_F(ManagerBackendTest, TheTapIsReadAgainOnlyWhenAllThatWasReadIsTaken) {
     const Json& records = news->at("records");
     last = records[records.size() - 1][0].as_int64();
     if (pulled.size() < 3) continue;
-    EXPECT_GT(last, pulled[pulled.size() - 3].count) << "what is told is not older and older";
+    EXPECT_GT(last, pulled[pulled.size() - 3].count) << "the age of the records does not grow";
   }
 }
 

@@ -168,7 +168,8 @@ TEST(ManagerLoop, ReportsALivingRtpuWithOverwrittenMemoryAndItsRemedy) {
   ASSERT_TRUE(fake.until([&] { return !fake.told("fault").empty(); }));
   EXPECT_EQ(fake.told("fault"),
             "its memory cannot be read, something in it has overwritten it (not a state variable table: the first 8 "
-            "bytes are not CHIMTBL1): it can be told nothing until it is started again, as it is when killed\n");
+            "bytes are not CHIMTBL1): the manager cannot send commands to it; `kill -KILL " +
+                std::to_string(fake.loop().state().rtpus[1].pid) + "` restarts it\n");
   fake.kill_rtpu(1, SIGKILL);
   EXPECT_TRUE(fake.until([&] { return fake.loop().state().rtpus[1].restarts == 1; }));
   EXPECT_TRUE(fake.until_on("law"));
@@ -214,7 +215,7 @@ TEST(ManagerLoop, ReportsImpossibleCountersAsAFaultAndNotAsNumbers) {
   ASSERT_TRUE(fake.until_on("law"));
   fake.rtpu(1).block().profile(fake.task("law")).overrun = 6'510'615'555'426'900'570u;
   ASSERT_TRUE(fake.until([&] { return !fake.told("fault").empty(); }));
-  EXPECT_EQ(fake.told("fault"), "law: its counters are wrong: something in its unit has overwritten them\n");
+  EXPECT_EQ(fake.told("fault"), "law: its counters are wrong: something in its rtpu has overwritten them\n");
   EXPECT_EQ(fake.told("overrun"), "");
 }
 

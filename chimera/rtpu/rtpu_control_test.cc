@@ -292,7 +292,7 @@ TEST_F(EdgeTest, TheEndTurnsConsumersOffBeforeTheirProducersOverAllRtpus) {
   first().edge->rtpu_end().tell(false);
   rtpus->change();
   rtpus->run(milliseconds(3));
-  EXPECT_EQ(first().state(kKiller), State::kOff) << "nobody comes before it";
+  EXPECT_EQ(first().state(kKiller), State::kOff) << "no task goes OFF before it";
   EXPECT_EQ(first().state(kSource), State::kOn) << "the follower in the other rtpu is still ON";
   second().edge->rtpu_end().tell(false);
   rtpus->change();

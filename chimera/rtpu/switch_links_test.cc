@@ -95,7 +95,7 @@ TEST_F(SwitchLinksTest, ARequestIsAWordThatStaysUntilItIsDealtWith) {
   EXPECT_NE(rtpus->rtpus[1]->segment.block.head().wish.read().at, Nanoseconds{});
   wanted = "direct";
   rtpus->run(milliseconds(5));
-  EXPECT_EQ(wish().number, 2) << "it takes the wish back that nobody has dealt with";
+  EXPECT_EQ(wish().number, 2) << "it takes back the request that the manager has not handled";
   EXPECT_EQ(wish().set, kDirect);
   rtpus->manager->block.memory().wishes[1] = wish_dealt_with(1, 2);
   rtpus->run(milliseconds(5));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dies, hangs or writes everywhere, in the method it is told to, while a file exists.
+// Dies, hangs or overwrites memory, in the configured method, while a file exists.
 #include <sys/mman.h>
 #include <sys/syscall.h>
 #include <unistd.h>

@@ -25,7 +25,7 @@ class Demote : public ::testing::Test {
     ASSERT_TRUE(runner->start());
     runner->run(milliseconds(ms));
   }
-  /// Who had the processor: "bad 0-2, a 2-5".
+  /// Tasks that had the processor, with times in ms: "bad 0-2, a 2-5".
   std::string slices() {
     std::string text;
     for (const TapRecord& r : runner->records()) {
@@ -51,7 +51,7 @@ TEST_F(Demote, AfterItsBudgetAJobRunsInIdleTime) {
   EXPECT_EQ(profile().demoted, 1u);
   EXPECT_EQ(profile().overrun, 1u);
   EXPECT_EQ(profile().cycles, 1u);
-  EXPECT_EQ(profile().preempted, 0u) << "whoever is below all others gives way uncounted";
+  EXPECT_EQ(profile().preempted, 0u) << "a demoted job gives way uncounted";
   EXPECT_EQ(profile().execution[CHIMERA_CYCLE].max, milliseconds(6));
   EXPECT_EQ(profile("a").missed, 0u);
 }

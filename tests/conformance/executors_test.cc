@@ -74,7 +74,7 @@ TEST_P(Executors, TellHowOldIsWhatAnOutVarHeldAtOn) {
   go(60);
   const std::vector<Call> on = app.calls_of("a", Method::kOn), cycles = app.calls_of("a", Method::kCycle);
   ASSERT_EQ(on.size(), 3u);
-  EXPECT_EQ(on[0].inherited, -1) << "nobody had published it";
+  EXPECT_EQ(on[0].inherited, -1) << "no job had published it";
   EXPECT_EQ(on[1].inherited, milliseconds(21).count) << "off published it last";
   EXPECT_EQ(on[2].inherited, 0);
   ASSERT_EQ(cycles.size(), 4u);

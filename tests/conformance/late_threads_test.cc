@@ -66,8 +66,7 @@ class Late : public ::testing::Test {
   int cycles_ = 0;  // of "late"
 };
 
-// One miss of a task is told in 100 ms at most; this job ends later than that. Nor are the releases that it was in the
-// way of told as misses of their own.
+// The listener hears of a miss within 100 ms; this job ends later. The releases that it drops are no further misses.
 TEST_F(Late, ALongMissIsReportedOnce) {
   std::atomic<int> told_under_way{0};
   listener.on_miss = [&](TaskId task, const MissCause::Verdict&) {
@@ -99,7 +98,7 @@ TEST_F(Late, DoesNotRaiseTheFlagWhenTheMissIsTolerated) {
     has_seen = true;
   };
   run(milliseconds(600));
-  EXPECT_GE(listener.of(app.id("late")).size(), 1u) << "it is told all the same";
+  EXPECT_GE(listener.of(app.id("late")).size(), 1u) << "the miss is reported though the job is alone";
   EXPECT_FALSE(has_flag && is_the_only_one_late());
   EXPECT_GE(profile().tolerated, 1u);
 }
@@ -132,7 +131,7 @@ TEST_F(Late, StopsTheRunWhileItIsUnderWay) {
   executor->at_edge([&] { before = executor->counts().supervised; });
   (void)LinuxClock().wait_until(LinuxClock().now() + milliseconds(300));
   executor->at_edge([&] {
-    EXPECT_LT(executor->counts().supervised - before, 100u) << "nobody is released: no reason to look again and again";
+    EXPECT_LT(executor->counts().supervised - before, 100u) << "without releases there is no reason to poll";
   });
   executor->at_edge([this] { executor->releases().settlement().forget_stop(); });
   has_seen = true;

@@ -96,7 +96,7 @@ TEST(PreemptiveThreads, AJobThatSleepsIsChargedForWhatItComputed) {
   EXPECT_LE(p.execution[CHIMERA_CYCLE].sum, p.response.sum - milliseconds(5) * static_cast<std::int64_t>(p.cycles));
 }
 
-// Also where nobody looks at a job that is alone before it ends.
+// Holds also for a job that is alone: the executor does not check such a job before its end.
 TEST(PreemptiveThreads, EveryJobOverItsBudgetIsRecordedOnce) {
   Application app;
   app.add("over", milliseconds(10), milliseconds(2)).budget = milliseconds(1);

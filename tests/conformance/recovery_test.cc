@@ -13,7 +13,7 @@
 namespace chimera::toy {
 namespace {
 
-/// What the components of a run do, and what they saw. One run at a time.
+/// Actions of the components of a run, and the values that they read. One run at a time.
 struct Scene {
   std::function<Outcome(Cycle)> cycle_of_first, on_of_first, clear_of_first, cycle_of_spare, on_of_spare;
   std::vector<double> u;         // that the reader read
@@ -338,7 +338,7 @@ TEST_P(RecoveryTest, AHotStandbyIsOffForAllOthersAndWhatItSendsIsNotSent) {
   EXPECT_GE(scene.spare_cycles.size(), 9u);
   EXPECT_EQ(runner_->receipts().size(), 0u);
   EXPECT_TRUE(set_->flag().is_on_set_legal());
-  EXPECT_EQ(scene.u.back(), 10) << "nobody reads it";
+  EXPECT_EQ(scene.u.back(), 10) << "no task reads the standby";
   EXPECT_FALSE(was_up());
 }
 

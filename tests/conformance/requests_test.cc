@@ -13,7 +13,7 @@
 namespace chimera::toy::requests_test {
 namespace {
 
-/// What the components of a run do. One run at a time.
+/// Actions of the components of a run. One run at a time.
 struct Scene {
   std::function<void(Cycle)> first, second;  // in the cycles of the two that ask
   std::function<Outcome(Cycle)> on_of_high, cycle_of_low;
@@ -102,7 +102,7 @@ class Requests : public ::testing::TestWithParam<Kind> {
 INSTANTIATE_TEST_SUITE_P(All, Requests, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
                          [](const auto& one) { return kind_name(one.param); });
 
-// `high` has its first cycle half a second after the change: nobody waits for it who asks.
+// `high` has its first cycle half a second after the change. The next request does not wait for it.
 TEST_P(Requests, DoNotWaitForFirstCycles) {
   change_ = [](testing::TestApplication& app) {
     app.tasks[kHigh.index].period = app.tasks[kHigh.index].deadline = seconds(1);
@@ -182,7 +182,7 @@ TEST_P(Requests, TheLastOfAMethodCounts) {
 
 TEST_P(Requests, ForWhatIsInForceOrUnderWayHaveNoEffect) {
   scene.on_of_high = [](Cycle c) {
-    c.spend(microseconds(1500));  // the releases that come meanwhile go before the change
+    c.spend(microseconds(1500));  // the releases during `on` come before the change
     return ok();
   };
   scene.first = [](Cycle c) {
@@ -368,7 +368,7 @@ TEST_P(Requests, OfTheReactionOnFaultLeaveTheTaskInErrorBehind) {
   EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
   EXPECT_EQ(receipts[0].cause, SwitchCause::kFault);
   EXPECT_EQ(receipts[0].by, kLow);
-  EXPECT_EQ(receipts[0].before, kNoSet) << "a member was in ERROR by then";
+  EXPECT_EQ(receipts[0].before, kNoSet) << "a member was already in ERROR";
   EXPECT_LT(receipts[0].at, milliseconds(4));
   EXPECT_EQ(set_->tasks()[kLow.index].state, chimera::State::kError);
   EXPECT_TRUE(is_on(kHigh));
@@ -383,7 +383,7 @@ TEST_P(Requests, AreNotMadeByAFaultThatLeavesFlag) {
   const ScriptAct clear{milliseconds(6), ScriptAct::Kind::kSignal, Signal::kClear, kSecond};
   EXPECT_TRUE(go(milliseconds(5), {clear}).empty());
   EXPECT_EQ(set_->tasks()[kSecond.index].state, chimera::State::kError);
-  EXPECT_TRUE(set_->flag().is_on_set_legal()) << "nobody reads what it writes";
+  EXPECT_TRUE(set_->flag().is_on_set_legal()) << "no task reads its output";
   EXPECT_TRUE(set_->flag().is_up());
   EXPECT_EQ(runner_->run(milliseconds(7)), RunEnd::kTime);
   EXPECT_FALSE(set_->flag().is_up()) << "no longer in ERROR";

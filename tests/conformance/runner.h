@@ -14,7 +14,7 @@
 
 namespace chimera::toy {
 
-/// What a job computing means on the virtual twin of the clock: it steps.
+/// Computing on the virtual twin of the clock: the clock steps.
 class TwinClock final : public JobClock {
  public:
   explicit TwinClock(VirtualClock& clock) noexcept : clock_(clock) {}

@@ -19,8 +19,8 @@ struct Device {
   std::vector<std::string> story;
   std::string fails;      // the method that answers with a fault: "init drill"
   int users = 0;
-  int not_ready = 0;      // so often `on` of the drill answers not yet
-  int hand_not_ready = 0, arm_not_ready = 0;  // the same of the hand and the arm
+  int not_ready = 0;      // number of times that `on` of the drill answers not yet
+  int hand_not_ready = 0, arm_not_ready = 0;  // of the hand and of the arm
   std::uint64_t hand_fails_at = 0;  // cycle of the hand that is a fault; 0: none
 };
 Device device;

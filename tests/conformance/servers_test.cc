@@ -157,7 +157,7 @@ TEST(Servers, RefusesARingForATaskWithoutAServer) {
   add_served(app, "S", kDeferrable, 1, 6);
   std::vector<int> answers;
   app.toy("A").during = [&answers](const chimera_call& call) {
-    for (const char* target : {"A", "S", "nobody"})
+    for (const char* target : {"A", "S", "absent"})
       answers.push_back(call.host->signal(call.context, CHIMERA_SIGNAL_WAKEUP, target));
     return CHIMERA_OK;
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The slow way of a switch on every executor of one context: constants of two tools that change under a task that
-// stays, the flag meanwhile, and the way back from each step.
+// The slow switch on every executor of one context: constants of two tools that change under a task that stays, the
+// flag during the switch, and the way back from each step.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -13,7 +13,7 @@
 namespace chimera::toy::slow_switch_test {
 namespace {
 
-/// What the components of a run do, and what they saw. One run at a time.
+/// Actions of the components of a run, and the values that they read. One run at a time.
 struct Tools {
   std::vector<std::string> story;
   std::string fails;          // the method that answers with a fault: "on heavy"
@@ -244,7 +244,7 @@ TEST_P(SlowSwitches, WhoDoesNotComeBackIsNamed) {
   EXPECT_EQ(receipts[0].task, kArm);
   EXPECT_EQ(receipts[0].not_back, kArm);
   EXPECT_EQ(set_->tasks()[kLight.index].state, chimera::State::kOn);
-  EXPECT_TRUE(set_->flag().is_up()) << "nobody produces force";
+  EXPECT_TRUE(set_->flag().is_up()) << "no task produces force";
 }
 
 TEST_P(SlowSwitches, ASignalToAMemberAndTheFlagTakeItBack) {

@@ -16,10 +16,10 @@
 namespace chimera::toy {
 namespace {
 
-/// What a task published, and when that job was released.
+/// Release of each job in ns, and the value that it published.
 using Log = std::vector<std::tuple<std::int64_t, double>>;
 
-/// What the components of a run do, and what they saw. One run at a time.
+/// Actions of the components of a run, and the values that they read. One run at a time.
 struct Scene {
   Log plant, beacon, u;
   std::vector<std::string> story;  // "on two", "off one" in the order of the calls
@@ -27,7 +27,7 @@ struct Scene {
   double first_cycle_of_two = 0;   // added to the first cycle's law
   bool on_of_two_fails = false, two_sends = false;
   Nanoseconds on_takes = microseconds(30);
-  Nanoseconds long_beacon_at = kNever, long_beacon;  // one cycle of it takes so long
+  Nanoseconds long_beacon_at = kNever, long_beacon;  // from this instant one cycle takes this time
 };
 Scene scene;
 
@@ -43,7 +43,7 @@ struct Plant {
   }
 };
 
-struct Beacon {  // knows nobody
+struct Beacon {  // is connected to no task
   Out<double> b{"b", "1", initial = 0.0};
   void cycle(Cycle c) {
     if (c.now() >= scene.long_beacon_at) c.spend(std::exchange(scene.long_beacon, {}));
@@ -63,7 +63,7 @@ struct One {
   void off(Cycle c) {
     scene.story.emplace_back("off one");
     c.spend(microseconds(20));
-    *u = 1e6;  // nobody may see this
+    *u = 1e6;  // no task may read this
   }
 };
 
@@ -141,7 +141,7 @@ class Switches : public ::testing::TestWithParam<Kind> {
   const TaskPart& part(const SwitchReceipt& receipt, TaskId task) const {
     return *std::ranges::find(receipt.tasks, task, &TaskPart::task);
   }
-  /// What stands in the groups of those who were ON: header and values of the latest publication.
+  /// Groups of the tasks of the first set: header and values of the latest publication.
   std::vector<std::byte> groups() const {
     std::vector<std::byte> bytes;
     for (const TaskId id : direct_) {
@@ -193,7 +193,7 @@ TEST_P(Switches, ArmBesideThePredecessorCommitAtOneInstantAndTurnOffBehindIt) {
   EXPECT_EQ(set_->tasks()[kOne.index].profile.cycles, 6u);   // at 0 to 5 ms
 }
 
-// The laws of both sets come to the same value, so that whoever stays must publish the same bits with and without.
+// The laws of both sets compute equal values: tasks that stay must publish equal bits with and without the switches.
 TEST_P(Switches, TenThousandAtRandomInstantsLoseNothingAndDoNotTouchWhoStays) {
   std::vector<ScriptAct> acts;
   std::mt19937 random(7);
@@ -285,7 +285,7 @@ TEST_P(Switches, ReportsAStepOfTheFirstCycleBeyondTheLimit) {
   EXPECT_EQ(u->step_of_cycle.limit, 0.5);
 }
 
-// One cycle of the beacon takes 1.4 ms within the switch: whoever else is ON starts late, and the receipt says so.
+// One cycle of the beacon takes 1.4 ms within the switch: other tasks start late, and the receipt has their delay.
 TEST_P(Switches, TheReceiptHasTheLongestDelayOfAStart) {
   scene.long_beacon_at = microseconds(5700);
   scene.long_beacon = microseconds(1400);
@@ -314,7 +314,7 @@ TEST_P(Switches, OneAtATimeAndWhatIsInForceIsNothingToDo) {
   EXPECT_EQ(state(kOne), chimera::State::kOn);
 }
 
-// `on` of two takes longer than was to be expected: jobs that were released meanwhile end as they would have without.
+// `on` of two takes longer than expected: jobs that were released during it publish the values of a run without it.
 TEST_P(Switches, AnOnThatOverrunsItsGapDoesNotChangeReleasedJobs) {
   go(milliseconds(20), {});
   const Log u = scene.u;

@@ -29,10 +29,10 @@ struct Call {
   std::uint32_t dropped = 0;
   bool illegal = false;
   double in = 0;
-  std::int64_t inherited = -1;  // ns: the age of what its output held at the last on; -1: nobody had published it
+  std::int64_t inherited = -1;  // ns: age of the output at the last `on`; -1: never published
 };
 
-/// What a task does and what happened to it. Outputs its number of cycles.
+/// Script of a task. The task publishes its number of cycles.
 struct Toy {
   std::string name;
   std::vector<Call>* calls = nullptr;

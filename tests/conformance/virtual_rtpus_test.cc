@@ -51,7 +51,7 @@ struct VirtualRtpusTest : ::testing::Test {
     return *run;
   }
   chimera::State state(const std::string& name) { return peers->state(app.id(name)); }
-  /// What the task read in the cycle that was released then.
+  /// Value that the task read in the cycle of this release.
   double read_at(const std::string& name, Nanoseconds release) {
     for (const Call& call : app.calls_of(name, Method::kCycle))
       if (call.now == release) return call.in;
@@ -207,7 +207,7 @@ TEST_F(VirtualRtpusTest, OfADeadRtpuTheLastValuesStandAndItsTasksAreInError) {
     const auto states = records_of(TapKind::kState);
     EXPECT_EQ(states.back(), "rtpu 0 at 4500000 " + std::to_string(static_cast<int>(chimera::State::kError)));
     run->shut_down();
-    EXPECT_TRUE(app.calls_of("producer", Method::kOff).empty()) << "nobody is there to call it";
+    EXPECT_TRUE(app.calls_of("producer", Method::kOff).empty()) << "its rtpu is dead";
     EXPECT_EQ(app.calls_of("consumer", Method::kOff).size(), 1u);
   }
 }

@@ -92,7 +92,7 @@ DEFECTS = (
      "if (spec.stand_in(task, by) && is_on(by)) return true;", "(void)by, (void)task;"),
     ("an on that fits no gap is tried for ten seconds", "switch/switch_way.cc",
      "if (needed <= longest_gap) continue;", "if (true || needed <= longest_gap) continue;"),
-    ("a takeover that is kept no more is told in the place of a younger one", "takeover.h",
+    ("an overwritten takeover is reported in the place of a younger one", "takeover.h",
      "    if (takeover.number < oldest()) return;\n", ""),
     ("all devices have ten seconds together on the way back", "switch/slow_steps.cc",
      "  back_until_ = kNever;  // the next device has as long\n", ""),

@@ -39,9 +39,9 @@ RIGHT = [("hello", {}), ("status", {}), ("describe", {}), ("get", {"variables": 
          ("events", {"since": 0, "limit": 10}), ("why", {"variable": "count"}), ("unsubscribe", {"subscription": 1}),
          ("subscribe", {"to": "values", "period_ms": 20, "variables": ["count"], "since": 0}),
          ("check", {"text": "subsystem: a", "file": "a.yaml"}), ("schedule", {"text": "subsystem: a"}),
-         ("signal", {"signal": "on", "tasks": ["nobody"]}), ("ring", {"tasks": ["nobody"]}),
+         ("signal", {"signal": "on", "tasks": ["absent"]}), ("ring", {"tasks": ["absent"]}),
          ("set", {"values": {"nothing": 2}}), ("flag", {"up": False}), ("save", {})]
-ODD = [None, True, False, "", "count", "nobody", [], {}, [[]], {"a": {}}, 0, -1, 1, 2 ** 31, 2 ** 63, 2 ** 64, -2 ** 63,
+ODD = [None, True, False, "", "count", "absent", [], {}, [[]], {"a": {}}, 0, -1, 1, 2 ** 31, 2 ** 63, 2 ** 64, -2 ** 63,
        1e308, 1.5, "\ud800", "\u0000", "\u202e", "é" * 50, "x" * 5000, ["count"] * 300]
 SIGNS = [b"\x00", b"\xff", b"\xc0\x80", b"\xed\xa0\x80", b"\xf4\x90\x80\x80", b"{", b"}", b"[", b"]", b'"', b"\\", b",",
          b":", b"\\ud800", b"1e400", b"NaN", b"-", b"\r", b"\xef\xbb\xbf", b"\n"]

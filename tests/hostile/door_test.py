@@ -71,7 +71,7 @@ class ControlServer(unittest.TestCase):
     def closings(self):
         return self.system.texts("closed")
 
-    @unittest.skipUnless(os.getuid() == 0, "only root can become somebody else")
+    @unittest.skipUnless(os.getuid() == 0, "only root can become another user")
     def test_four_users_who_may_look_do_not_shut_out_the_owner(self):
         crowds = [subprocess.Popen(["/usr/bin/python3", "-c", HOLD, str(self.system.socket), "16", ""], user=user,
                                    group=65534, extra_groups=[OBSERVERS.gr_gid], stdin=subprocess.PIPE,

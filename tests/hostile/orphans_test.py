@@ -43,7 +43,7 @@ def rt_rights():
 def descriptors(pid):
     found = {}
     for fd in os.listdir(f"/proc/{pid}/fd"):
-        with contextlib.suppress(FileNotFoundError):  # closed meanwhile
+        with contextlib.suppress(FileNotFoundError):  # closed since the listing
             found[int(fd)] = os.readlink(f"/proc/{pid}/fd/{fd}")
     return found
 

@@ -45,7 +45,7 @@ holds act put "$place/p" "$place/one"
 holds act remove "$place/p"
 holds [ "$before" = "$(picture "$place/p")" ]
 
-# An upgrade: what is gone is removed with its folder, what somebody changed is kept.
+# An upgrade removes files that the new version lacks, with their folder, and keeps files that the user changed.
 holds act put "$place/p" "$place/one"
 echo changed >"$place/p/share/chimera/e.yaml"
 echo new >"$place/p/lib/chimera/mine.so"

@@ -18,7 +18,7 @@ def help_of(program, words):
 
 
 def said_by_help(program, words=()):
-    """Maps "" and every command ("new component") to its options and subcommands, as `--help` tells them."""
+    """Maps "" and every command ("new component") to its options and subcommands in `--help`."""
     text = help_of(program, words)
     options = set(re.findall(r"^\s+(?:-\w,\s*)?(--[a-z-]+)", text, re.MULTILINE))
     heading = re.search(r"^SUBCOMMANDS:\n|^Subcommands:\n", text, re.MULTILINE | re.IGNORECASE)

@@ -24,7 +24,7 @@ inline void fill(std::byte* place, std::uint64_t writer, std::uint64_t publicati
   for (std::size_t i = 0; i < kTrialWords; ++i) words[i] = word_of(writer, publication, i);
 }
 
-/// Of a group that was never written the words are zero.
+/// True if one publication wrote header and words. A group that was never written has zero words.
 inline bool is_whole(const chimera_slot& header, const TrialWords& words, std::uint64_t writer) {
   if (header.published_ns != static_cast<std::int64_t>(header.sequence)) return false;
   for (std::size_t i = 0; i < kTrialWords; ++i)

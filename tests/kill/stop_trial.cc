@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kWriters = 2;
 constexpr std::size_t kReaders = 2;
-constexpr int kLateWrites = 3;  // of a writer that nobody reads any more
+constexpr int kLateWrites = 3;  // of a writer without readers
 
 struct alignas(64) WriterScore {
   std::atomic<std::uint64_t> begun, finished;

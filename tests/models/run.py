@@ -58,7 +58,7 @@ CASES = [
     ("slow_switch", "BACK_EARLY"),
 ]
 
-# Of real units: runs of so many switches, which together have all these events.
+# Number of recorded runs of real rtpus, switches in each run, and the events that all runs together must have.
 RECORDED, PLANS = 40, 3
 SEEN = {"prepared by the manager", "armed", "proposed", "agreed", "committed", "adopted", "over", "aborted",
         "aborted by the manager", "died", "died by the manager", "filed by the manager"}
@@ -108,7 +108,7 @@ def moved(events, what, before):
     return events[:to] + [events[at]] + events[to:at] + events[at + 1:]
 
 
-# Runs that break a rule, made from one in which nobody died and a switch was committed.
+# Runs that break a rule, made from a run without a death in which a switch was committed.
 BROKEN = {
     "committed before the last has agreed": lambda events: moved(events, "committed", "agreed"),
     "proposed before all are armed": lambda events: moved(events, "proposed", "armed"),

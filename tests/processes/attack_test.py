@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A second user without rights tries everything it can reach: nothing succeeds and no task loses anything. And the
-roles of those who were given one. Needs root, to become somebody else."""
+roles of those who were given one. Needs root, to become another user."""
 import grp
 import json
 import os
@@ -138,7 +138,7 @@ request = {"jsonrpc": "2.0", "id": 1, "method": sys.argv[2], "params": json.load
 try:
     s.sendall(json.dumps(request).encode() + b"\n")
 except BrokenPipeError:
-    pass  # a stranger is told before it asks
+    pass  # the server refuses a stranger before it asks
 said = b""
 while not said.endswith(b"\n"):
     said += s.recv(65536) or b"\n"
@@ -149,7 +149,7 @@ print(json.dumps("good" if error["code"] in (-32000, -32005, -32602)
 '''
 
 
-@unittest.skipUnless(os.getuid() == 0, "only root can become somebody else")
+@unittest.skipUnless(os.getuid() == 0, "only root can become another user")
 class Attack(unittest.TestCase):
     def as_stranger(self, code, *arguments, groups=()):
         done = subprocess.run(["/usr/bin/python3", "-c", code, *map(str, arguments)], user=NOBODY, group=STRANGERS,

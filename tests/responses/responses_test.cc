@@ -39,7 +39,7 @@ Plot titled(const std::string& title, const std::string& note) {
   return plot;
 }
 
-/// What `signal(t)` is and what becomes of it, every `ms` milliseconds until so many seconds.
+/// Input `signal(t)` and output of the filter, every `ms` milliseconds until `until` seconds.
 template <class Signal>
 std::vector<Curve> in_and_out(SignalRig& rig, double until, std::int64_t ms, Signal signal) {
   rig.set("x", 0.0);

@@ -15,7 +15,7 @@ namespace chimera::brute {
 using Tick = std::int64_t;
 inline constexpr Tick kFar = INT64_MAX / 4;
 
-/// What the world does to one set.
+/// Releases, demands and server events of one simulation of a set.
 struct Scenario {
   std::vector<Tick> first;     ///< first release of each task; server: its first event
   std::vector<Tick> until;     ///< of each task: no release, or event, from here on; empty: all go on

@@ -115,7 +115,7 @@ class Trial {
   bool is_promised(std::size_t i) const { return verdicts_[i].guarantee == Guarantee::kYes; }
   std::string name(std::size_t i) const { return "seed " + std::to_string(seed_) + ": task " + std::to_string(i); }
 
-  /// Nobody who was promised its deadline misses it, and every bound holds.
+  /// Each guaranteed task meets its deadline, and every bound holds.
   std::string promises(const std::vector<Seen>& seen) {
     for (std::size_t i = 0; i < seen.size(); ++i) {
       misses_ |= !is_promised(i) && seen[i].missed;
@@ -135,7 +135,7 @@ class Trial {
     return true;
   }
 
-  /// What is called exact is reached when all is released together; a failing demand misses there.
+  /// An exact response is reached if all tasks are released together; a failing demand misses its deadline then.
   std::string precision(const std::vector<Seen>& seen, Tick horizon) {
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const WorkVerdict& verdict = verdicts_[i];

@@ -62,7 +62,7 @@ void Process::meet(std::uint32_t manager) {
   if (is_alive_ && !is_hung_) later(microseconds(100), milliseconds(3), [this] { try_attach(); });
 }
 
-// Between two edges only: what the old manager sent and nobody took yet is not taken any more.
+// Between two edges only: drops the posts of the old manager that are not handled yet.
 void Process::try_attach() {
   if (!is_serving_ || is_busy_ || next_manager_ == manager_) return;
   const auto old = [this](const Letter& letter) { return letter.manager != 0 && letter.manager != next_manager_; };

@@ -49,7 +49,7 @@ class Process {
   bool is_alive() const noexcept { return is_alive_; }
   bool is_hung() const noexcept { return is_hung_ || world_.now() < stalled_until_; }
   bool is_busy() const noexcept { return is_busy_ || !service_.empty(); }
-  /// That signal of the present manager to the task waits to be taken, or is being carried out.
+  /// True if `signal` of the present manager to the task waits or is being carried out.
   bool is_sent(Signal signal, TaskId task) const noexcept;
   std::uint32_t incarnation() const noexcept { return incarnation_; }
   /// As its segment says, also after its death.

@@ -14,7 +14,7 @@ constexpr std::size_t kFaces = 4;
 constexpr Nanoseconds kChaos = seconds(16);
 constexpr std::size_t kMostEvents = 400'000;
 
-/// What goes wrong, and when.
+/// Failures at random instants.
 class Chaos {
  public:
   explicit Chaos(ManagerState& world) : world_(world) {}

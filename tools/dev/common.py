@@ -121,7 +121,7 @@ def _open_lock_file():
 
 @contextlib.contextmanager
 def realtime_lock():
-    """Held by whoever measures time on this machine: one at a time, whichever user or checkout."""
+    """Lock for measurements of time: one process of the machine holds it, of any user and checkout."""
     descriptor = _open_lock_file()
     try:
         try:

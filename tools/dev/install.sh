@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Puts a staged tree into a prefix, and takes it out again. PREFIX/share/chimera/manifest says what is ours there: lines
 # of sha256sum, and `#dir FOLDER` for each folder that did not exist before.
-#   install.sh look PREFIX [BYTES]     refuses a prefix that cannot be installed into, or has no room for so many
+#   install.sh look PREFIX [BYTES]     refuses a prefix that cannot be installed into, or has no room for BYTES
 #   install.sh put PREFIX STAGE        installs, or upgrades: all of it or nothing
 #   install.sh remove PREFIX
 set -euo pipefail
@@ -37,7 +37,7 @@ look() {  # [bytes]
 named() { [ ! -e "$prefix/$manifest" ] || grep -v '^#' "$prefix/$manifest" | cut -c 67- | sort -u; }
 folders_named() { [ ! -e "$prefix/$manifest" ] || sed -n 's/^#dir //p' "$prefix/$manifest"; }
 
-# Sorts what the manifest names into `same` (as it was installed) and `changed` (by somebody since).
+# Sorts the files of the manifest into `same` (as installed) and `changed` (since then).
 sort_ours() {
   local path sum
   declare -A known=()

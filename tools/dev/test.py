@@ -195,7 +195,7 @@ def allowed_skips():
 
 
 def judge_skips(cases):
-    """On the build machine a skip that nobody foresaw is a failure."""
+    """On the build machine a skip that tests/may_skip.txt does not list is a failure."""
     if not on_build_machine():
         return
     allowed = allowed_skips()

@@ -10,7 +10,7 @@ TEST(List, NamesEveryComponentOfTheFolders) {
   const CommandResult output = list(test_place(), false);
   EXPECT_EQ(output.code, kOk) << output.err;
   EXPECT_NE(output.out.find("t_counter "), std::string::npos);
-  EXPECT_NE(output.out.find("  Shows what a cycle is told.\n"), std::string::npos) << output.out;
+  EXPECT_NE(output.out.find("  Publishes the arguments of its cycle.\n"), std::string::npos) << output.out;
 }
 
 TEST(List, SaysWhereToLookWhenThereIsNothing) {
@@ -25,7 +25,7 @@ TEST(List, SaysWhereToLookWhenThereIsNothing) {
 TEST(Describe, ShowsPurposeRateMethodsAndPorts) {
   const CommandResult output = describe_component("t_counter", test_place(), false);
   EXPECT_EQ(output.code, kOk);
-  EXPECT_EQ(output.out.rfind("t_counter: Shows what a cycle is told.\n", 0), 0u) << output.out;
+  EXPECT_EQ(output.out.rfind("t_counter: Publishes the arguments of its cycle.\n", 0), 0u) << output.out;
   EXPECT_NE(output.out.find("rate     1000 Hz by default\nreleased by the timer\nmethods  cycle\nports\n"),
             std::string::npos) << output.out;
   EXPECT_NE(output.out.find("one more in every cycle, going on from where it stood; initially 0\n"),

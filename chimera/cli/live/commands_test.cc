@@ -51,7 +51,7 @@ TEST(Command, WhatChangesSomethingIsAnAct) {
   EXPECT_TRUE(read_call({"off", "pid"})->is_act());
   EXPECT_TRUE(read_call({"end"})->is_act());
   EXPECT_TRUE(read_call({"save", "--write"})->is_act());
-  EXPECT_TRUE(read_call({"status", "--pid", "servo"})->is_act()) << "whoever asks for it means to signal it";
+  EXPECT_TRUE(read_call({"status", "--pid", "servo"})->is_act()) << "its user signals the process";
   EXPECT_FALSE(read_call({"save"})->is_act());
   EXPECT_FALSE(read_call({"status"})->is_act());
   EXPECT_FALSE(read_call({"get", "q"})->is_act());

@@ -61,7 +61,7 @@ TEST(Outlet, AShortPatienceAtTheEndIsALoss) {
   std::fputs(much.c_str(), outlet.stream());
   outlet.finish(milliseconds(20));
   EXPECT_EQ(outlet.why_lost(), kNobodyReads);
-  EXPECT_EQ(pipe.read(much.size()).size(), much.size()) << "it arrives if somebody reads later";
+  EXPECT_EQ(pipe.read(much.size()).size(), much.size()) << "the text arrives when a reader comes later";
   outlet.finish(seconds(60));
 }
 

@@ -91,7 +91,7 @@ TEST_F(QuestionsTest, WhoGoesTakesHisQuestionsAlong) {
   ask("stays", 2);
   questions_->forget(1);
   EXPECT_EQ(questions_->waiting(), 1u);
-  EXPECT_EQ(questions_->analyst(), -1) << "it was at a question that nobody wants answered";
+  EXPECT_EQ(questions_->analyst(), -1) << "no client waits for the question that it worked at";
   ASSERT_TRUE(until(1));
   EXPECT_EQ(order_, "stays ");
   EXPECT_EQ(told_, "") << "that was no accident";

@@ -56,7 +56,7 @@ TEST_F(SwitchJournalTest, ASwitchHasItsNumberUntilItsReceiptIsPut) {
   journal.begin(switch_to(3));
   EXPECT_EQ(journal.begun()->number, 1u);
   EXPECT_EQ(journal.next(), 2u);
-  EXPECT_TRUE(journal.put(2, "refused meanwhile"));
+  EXPECT_TRUE(journal.put(2, "refused during 1"));
   BegunSwitch changed = *journal.begun();
   changed.tries = 2;
   journal.change(changed);
@@ -69,7 +69,7 @@ TEST_F(SwitchJournalTest, ASwitchHasItsNumberUntilItsReceiptIsPut) {
   EXPECT_TRUE(next.put(1, "done"));
   EXPECT_FALSE(next.begun());
   EXPECT_EQ(next.next(), 3u);
-  EXPECT_EQ(numbers(next), "2:refused meanwhile 1:done ");
+  EXPECT_EQ(numbers(next), "2:refused during 1 1:done ");
 }
 
 TEST_F(SwitchJournalTest, WhatIsForgottenLeavesNoGap) {

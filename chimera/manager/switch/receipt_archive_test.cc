@@ -85,7 +85,7 @@ TEST_F(ReceiptArchiveTest, KeepsAReceiptThatCannotBeFiledAndTriesAgain) {
   std::filesystem::create_directories(control::ReceiptFile(folder()).path());  // a folder in the place of the file
   add(1);
   ASSERT_TRUE(until([this] { return archive->fault() != ""; }));
-  EXPECT_EQ(answered, "1 ") << "nobody waits for a disk that says no";
+  EXPECT_EQ(answered, "1 ") << "a switch does not wait for a failing disk";
   EXPECT_EQ(archive->fault(), archive->path() + ": cannot be opened: Is a directory");
   EXPECT_EQ(archive->unfiled(), 1u);
   EXPECT_EQ(journal().unfiled().size(), 1u);

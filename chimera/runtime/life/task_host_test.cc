@@ -133,7 +133,7 @@ TEST_F(TaskHostTest, ASignalGoesToTheTaskOfThatNameOrToTheOwnTask) {
 }
 
 TEST_F(TaskHostTest, RefusesASignalWithoutAReceiver) {
-  EXPECT_EQ(send(kOff, "nobody"), CHIMERA_FAULT);
+  EXPECT_EQ(send(kOff, "absent"), CHIMERA_FAULT);
   EXPECT_EQ(send(kOff, ""), CHIMERA_FAULT);
   EXPECT_EQ(send(kWakeup + 1, "served"), CHIMERA_FAULT);
   EXPECT_TRUE(task().outbox.empty());
@@ -190,7 +190,7 @@ TEST_F(TaskHostTest, KeepsARequestForTasksIfListsAreAllowed) {
     EXPECT_EQ(host().request(context(), text), CHIMERA_FAULT);
     return std::string(task().faults.note);
   };
-  EXPECT_EQ(refusal("--on nobody"), "asks for '--on nobody': there is no task 'nobody'");
+  EXPECT_EQ(refusal("--on absent"), "asks for '--on absent': there is no task 'absent'");
   EXPECT_EQ(refusal("--off"), "asks for '--off': expected '--on TASK... --off TASK...'");
   EXPECT_EQ(refusal("-x"), "asks for '-x': expected '--on TASK... --off TASK...'");
   EXPECT_EQ(task().requested_set, kNoRequest);

@@ -66,7 +66,7 @@ struct User {
 
 struct Boss {  // sends signals to others
   void cycle(Cycle c) {
-    sent_ = c.signal(Signal::kOff, "reader") && !c.signal(Signal::kOff, "nobody");
+    sent_ = c.signal(Signal::kOff, "reader") && !c.signal(Signal::kOff, "absent");
     if (!sent_) throw std::runtime_error("cannot send");
   }
   bool sent_ = false;

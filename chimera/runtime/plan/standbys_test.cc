@@ -95,7 +95,7 @@ TEST_F(StandbysTest, OneThatCouldNotGoOnIsPassedOver) {
   set(kFirst, State::kError);
   at(2);
   EXPECT_FALSE(standbys_.next(0).is_valid());
-  EXPECT_TRUE(standbys_.is_any_uncovered()) << "nobody is left: not after a period, but now";
+  EXPECT_TRUE(standbys_.is_any_uncovered()) << "no standby is left: uncovered now, not after a period";
   set(kPrimary, State::kOff);
   at(3);
   EXPECT_FALSE(standbys_.is_any_uncovered()) << "cleared";

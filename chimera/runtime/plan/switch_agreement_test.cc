@@ -63,7 +63,7 @@ TEST_F(SwitchAgreementTest, AnOrderThatDoesNotFitTheApplicationIsNone) {
   agreement.announce(other);
   EXPECT_FALSE(agreement.order(agreement.plan(), 2, 70)) << "there is no task 70";
   agreement.announce(some_order(9, 0));
-  EXPECT_FALSE(agreement.order(agreement.plan(), 2, 70)) << "nobody takes part";
+  EXPECT_FALSE(agreement.order(agreement.plan(), 2, 70)) << "the order has no members";
 }
 
 TEST_F(SwitchAgreementTest, AnOrderWhoseTimesCannotBeAddedIsNone) {

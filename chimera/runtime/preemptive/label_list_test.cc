@@ -77,7 +77,7 @@ class Kernel {
       }
     }
     if (list.size() > 1) {
-      EXPECT_LE(list.parked(), list.size() - 1) << "whoever runs has a level of its own";
+      EXPECT_LE(list.parked(), list.size() - 1) << "the running job has a level of its own";
     }
   }
 

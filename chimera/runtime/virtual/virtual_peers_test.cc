@@ -81,7 +81,7 @@ TEST_F(VirtualPeersTest, PassesSignalsOnInOrderAsFarAsThereIsRoom) {
     EXPECT_TRUE(peers->post(Signal::kOff, kTaker, kMaker, false));
   EXPECT_FALSE(peers->post(Signal::kOff, kTaker, kMaker, false));
   peers->die(kOfMaker, {});
-  EXPECT_FALSE(peers->post(Signal::kOff, kMaker, kTaker, false)) << "nobody is there";
+  EXPECT_FALSE(peers->post(Signal::kOff, kMaker, kTaker, false)) << "the rtpu of the maker is dead";
 }
 
 TEST_F(VirtualPeersTest, AnOperatorVariableReachesItsReaders) {

@@ -91,7 +91,7 @@ TEST_P(VirtualSlowSwitches, LivingRtpusAgreeOnOneSideWhenTheOtherDies) {
     EXPECT_TRUE(is_done || receipts[0].why == NoSwitch::kMemberDied) << us;
     EXPECT_EQ(shop.weighed.back(), is_done ? 3 : 1) << us;
     EXPECT_EQ(rtpus->state(kArm), State::kOn);
-    EXPECT_TRUE(rtpus->peers().is_flag_up()) << "nobody produces grip";
+    EXPECT_TRUE(rtpus->peers().is_flag_up()) << "no task produces grip";
     EXPECT_FALSE(rtpus->set(0).flag().is_held());
   }
 }

@@ -134,7 +134,7 @@ TEST_P(VirtualStandbysTest, TheNextOneTakesOverWhenTheFirstIsDeadOrFails) {
   go(milliseconds(10), {death_at(microseconds(3500), 0)});
   EXPECT_EQ(state(kSpare), State::kError);
   EXPECT_EQ(state(kLast), State::kError);
-  EXPECT_EQ(scene.illegal.front(), milliseconds(4).count) << "nobody is left: at once";
+  EXPECT_EQ(scene.illegal.front(), milliseconds(4).count) << "no standby is left: at once";
 }
 
 TEST_P(VirtualStandbysTest, WithoutAFitOneTheFlagIsUpAtOnce) {
@@ -148,7 +148,7 @@ TEST_P(VirtualStandbysTest, TakeOverAlsoWhereWhatTheyReadFailedWithThePrimary) {
   go(milliseconds(8), {death_at(microseconds(3500), 0)});
   EXPECT_EQ(state(kSpare), State::kOn);
   EXPECT_EQ(scene.u, (std::vector<double>{0, 1, 2, 3, 4, 104, 204, 304}));
-  EXPECT_EQ(scene.illegal.front(), milliseconds(4).count) << "nobody produces x";
+  EXPECT_EQ(scene.illegal.front(), milliseconds(4).count) << "no task produces x";
 }
 
 TEST_P(VirtualStandbysTest, APrimaryThatPublishesNothingForTooLongIsKilledAndThenReplaced) {
