@@ -132,7 +132,7 @@ TEST(ModeReport, SameProducerKeepsItsConstant) {
   EXPECT_EQ(edge(report, "c", "a").way(), ModeWay::kFast);
 }
 
-TEST(ModeReport, WhoLeavesAndWhoArrivesDoNotMakeASwitchSlow) {
+TEST(ModeReport, TasksThatLeaveOrArriveDoNotMakeASwitchSlow) {
   const Configuration made = verified(
       "tasks:\n"
       "  light: {component: tool}\n"

@@ -199,7 +199,7 @@ TEST_F(ClientTest, HearsWhyItIsNotLetInAndGetsInAsSoonAsThereIsAPlace) {
   for (const int fd : fds) ::close(fd);
 }
 
-TEST_F(ClientTest, ThatGaveWayComesAgainAlsoWithAnAct) {
+TEST_F(ClientTest, ReconnectsAndSendsAnActAfterItGaveWay) {
   start();
   auto client = Client::connect_to(path);
   ASSERT_TRUE(client && client->call("hello").is_good());
@@ -267,7 +267,7 @@ TEST_F(LimitTest, ALongOneIsWaitedForAsLongAsTheManagerShowsASignOfLife) {
   EXPECT_TRUE(client->call("hello").is_good()) << "the client skips the late answer";
 }
 
-TEST_F(ClientTest, WhateverTheOtherEndSaysItGoesOn) {
+TEST_F(ClientTest, AMalformedAnswerDoesNotEndTheClient) {
   auto client = Client::connect_to(path);
   ASSERT_TRUE(client);
   const int other = ::accept(listening, nullptr, nullptr);
@@ -311,7 +311,7 @@ TEST_F(FindTest, WithoutASubsystemItSaysHowToStartOne) {
   EXPECT_EQ(said("arm"), "no subsystem 'arm' runs; start one with `chimera run FILE`");
 }
 
-TEST_F(FindTest, TheOneThatRunsNeedsNoName) {
+TEST_F(FindTest, TheOnlySubsystemNeedsNoName) {
   place("subject");
   EXPECT_EQ(running_subsystems(folder + "/chimera"), std::vector<std::string>{"subject"});
   EXPECT_EQ(said(""), "subject.sock");

@@ -37,7 +37,7 @@ struct DoorPlaces : DoorTest {
   std::vector<std::string> told;
 };
 
-TEST_F(DoorPlaces, OfOnesOwnTheLongestIdleGivesWay) {
+TEST_F(DoorPlaces, TheLongestIdleConnectionOfTheUserGivesWay) {
   for (int i = 0; i < 16; ++i) {
     more();
     serve(seconds(1));
@@ -62,7 +62,7 @@ TEST_F(DoorPlaces, AHalfLineGivesWayBeforeWhoIsIdle) {
   EXPECT_EQ(told.size(), 1u);
 }
 
-TEST_F(DoorPlaces, WhoseRequestIsUnderWayStaysAndWhoHasAskedJustNowIsAnswered) {
+TEST_F(DoorPlaces, AConnectionWithAPendingRequestNeverGivesWay) {
   for (int i = 0; i < 16; ++i) more();
   for (int i = 1; i < 16; ++i) say(fds[static_cast<std::size_t>(i)], request("signal", kOff));
   serve();
@@ -76,7 +76,7 @@ TEST_F(DoorPlaces, WhoseRequestIsUnderWayStaysAndWhoHasAskedJustNowIsAnswered) {
   EXPECT_TRUE(told.empty()) << "who finds no place was not inside";
 }
 
-TEST_F(DoorPlaces, WhoReadsWhatItSubscribedToStaysAndWhoDoesNotReadItGivesWay) {
+TEST_F(DoorPlaces, ASubscriberThatReadsStaysAndOneThatDoesNotGivesWay) {
   for (int i = 0; i < 16; ++i) more();
   serve();
   for (const std::size_t i : {std::size_t{0}, std::size_t{1}})

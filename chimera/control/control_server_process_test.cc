@@ -145,7 +145,7 @@ TEST_F(DoorTest, APeerThatSaysNothingMoreIsStillAnswered) {
   ::close(fd);
 }
 
-TEST_F(DoorTest, WhatAPeerAskedForBeforeItWentIsCarriedOut) {
+TEST_F(DoorTest, CarriesOutRequestsOfAClientThatHasGone) {
   const int fd = plain();
   std::string acts;
   for (int i = 0; i < 40; ++i) acts += request("flag", R"({"up":true})");
@@ -223,7 +223,7 @@ TEST_F(DoorTest, TheFirstNotificationComesWithTheAnswerNotAfterAPeriod) {
   ::close(fd);
 }
 
-TEST_F(DoorTest, WhatALateTurnMissedIsNotMadeUpFor) {
+TEST_F(DoorTest, ALateTurnSendsOneStatusOnly) {
   const int fd = plain();
   ask(fd, request("subscribe", R"({"to":"status","period_ms":50})"));
   const int before = backend.pulls;
@@ -296,7 +296,7 @@ TEST_F(StrangerTest, GetsOnlyTheAnswerThatItHasNoRole) {
   EXPECT_EQ(server->connections(), 0u);
 }
 
-TEST_F(StrangerTest, OfAGroupWithARoleHasThatRoleAndNoMore) {
+TEST_F(StrangerTest, AMemberOfAGroupHasOnlyItsRole) {
   groups.observe = 4242;
   open_door();
   EXPECT_NE(as_stranger(path, 4242, request("hello"), [&] { serve(); }).find(R"("role":"observe")"), std::string::npos);

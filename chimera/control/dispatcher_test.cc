@@ -92,7 +92,7 @@ TEST_F(DispatcherTest, AnActBehindAQuestionOfItsConnectionDoesNotOvertakeIt) {
   EXPECT_EQ(backend_.called, (Calls{"1 status", "1 end"}));
 }
 
-TEST_F(DispatcherTest, WhatTheRoleMayNotDoNeverReachesTheBackend) {
+TEST_F(DispatcherTest, ARequestBeyondTheRoleNeverReachesTheBackend) {
   const std::uint64_t one = connect(Role::kObserve);
   say(one, "end");
   run_turns();
@@ -151,7 +151,7 @@ TEST_F(DispatcherTest, DropsAReplyAfterTheEndOfTheConnectionOrTheDispatcher) {
   EXPECT_EQ(heard(stays), "");
 }
 
-TEST_F(DispatcherTest, OfOneUserSomePlacesAreKeptForThoseWhoDoNotSubscribe) {
+TEST_F(DispatcherTest, LimitsTheSubscribersOfAUser) {
   for (std::size_t i = 0; i <= kMaxListenersOfUser; ++i)
     say(connect(Role::kObserve), "subscribe", R"({"to":"status"})");
   run_turns();

@@ -33,7 +33,7 @@ TEST(Home, IsHereInTheSameTerminalOrFolderOnly) {
   EXPECT_FALSE(is_here({"arm", 1, mine + 1, "/nowhere", "arm.yaml"}));
 }
 
-TEST(Home, WhoDoesNotSayWhereItWasStartedIsNotHere) {
+TEST(Home, ASubsystemWithoutAStartingPlaceIsNotHere) {
   EXPECT_FALSE(is_here({"arm", 1, -1, "", ""}));
   EXPECT_FALSE(is_here({"arm", 1, -1, "", "arm.yaml"}));
   EXPECT_FALSE(is_here(Home()));

@@ -59,7 +59,7 @@ TEST(Methods, QuoteNoMoreThanAMessageNeeds) {
   EXPECT_LT(judged("hello", {{std::string(100'000, 'x'), 1}}).size(), 200u);
 }
 
-TEST(Methods, ThatActAreForOperatorsAndNeverSentTwice) {
+TEST(Methods, ActsNeedTheRoleOperateOrMore) {
   std::string acts;
   for (const MethodRule& rule : methods()) {
     EXPECT_EQ(find_method(rule.name), &rule);

@@ -55,7 +55,7 @@ TEST_F(PlacesTest, AnOwnerTakesThatOfAnybodyWhoDoesNotAct) {
   EXPECT_EQ(refusal(7, Rank::kOperate), "the 40 of the roles up to operate are all in use");
 }
 
-TEST_F(PlacesTest, WhoDoesNothingGivesWayTheLowestRankFirstThenHalfLinesThenTheLongest) {
+TEST_F(PlacesTest, GivesWayByRankThenHalfLineThenIdleTime) {
   sit(1, 1, Rank::kObserve, Standing::kAsks, seconds(1));
   sit(1, 2, Rank::kOperate, Standing::kHalfLine, seconds(1));
   sit(1, 3, Rank::kOperate, Standing::kIdle, seconds(1));
@@ -80,7 +80,7 @@ TEST_F(PlacesTest, AConnectionNeverGivesWayToALowerRank) {
   EXPECT_EQ(in_place_of(2, Rank::kOperate), 11u) << "idle of one's own rank before one that listens";
 }
 
-TEST_F(PlacesTest, OfAUserOnlyItsOwnGiveWay) {
+TEST_F(PlacesTest, ForANewConnectionOnlyOneOfTheSameUserGivesWay) {
   crowd(8, Rank::kObserve);
   sit(15, 1000, Rank::kOwner, Standing::kListens);
   sit(1, 1000, Rank::kOwner, Standing::kActs);

@@ -177,7 +177,7 @@ TEST_F(GuardTest, WritesFramesPostedBeforeTheDeathAndReadAfterIt) {
   EXPECT_EQ(device.heard(), "stop");
 }
 
-TEST_F(GuardTest, WhatWasTakenBackIsNotWritten) {
+TEST_F(GuardTest, AFrameThatWasTakenBackIsNotWritten) {
   start();
   const Device device, given_up;
   const auto life = begin();

@@ -33,7 +33,7 @@ class KeptPeerTest : public ::testing::Test, public testing::ChildFolder {
   KeptPeer peer_{1};
 };
 
-TEST_F(KeptPeerTest, OneThatCannotBeStartedHasEndedWith127AndItsNumberIsTaken) {
+TEST_F(KeptPeerTest, AFailedStartEndsWith127AndUsesAnIncarnation) {
   EXPECT_FALSE(start("/nowhere/rtpu", seconds(3)));
   EXPECT_FALSE(start("/nowhere/rtpu", seconds(4)));
   EXPECT_FALSE(peer_.lives());

@@ -44,7 +44,7 @@ TEST_F(SealedObjectsTest, LinkWhatWasThereWhenTheyWerePacked) {
   EXPECT_EQ(refused.error().message.view(), "nothing_offered.so offers no component. Rebuild the component.");
 }
 
-TEST_F(SealedObjectsTest, OfOnePathAreThereOnce) {
+TEST_F(SealedObjectsTest, AnObjectThatIsNamedTwiceIsPackedOnce) {
   const std::string counter = copy_of("counter.so");
   EXPECT_EQ(packed({counter, counter}).size(), packed({counter}).size());
 }

@@ -114,7 +114,7 @@ TEST(ManagerLoop, AnRtpuThatDiedWhileThereWasNoManagerIsDealtWithByTheNext) {
   EXPECT_TRUE(fake.until_on("law"));
 }
 
-TEST(ManagerLoop, WhatWasOnComesBackWhateverItsRtpuLeftInItsMemory) {
+TEST(ManagerLoop, TurnsTasksOnAgainAfterTheirRtpuOverwroteItsMemory) {
   for (const std::uint64_t word : {std::uint64_t{0xdeadbeef}, UINT64_MAX, std::uint64_t{1}}) {
     FakeSubsystem fake;
     fake.start_manager();
@@ -130,7 +130,7 @@ TEST(ManagerLoop, WhatWasOnComesBackWhateverItsRtpuLeftInItsMemory) {
   }
 }
 
-TEST(ManagerLoop, WhatWasOnInAnRtpuWhoseMemoryCannotBeReadIsKnownToTheNextManager) {
+TEST(ManagerLoop, TheNextManagerKnowsTheTasksOfAnRtpuWithUnreadableMemory) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));

@@ -34,7 +34,7 @@ TEST_F(ReadMethodsTest, HelloSaysTheRoleOfWhoAsks) {
   EXPECT_EQ((*reads_.answer(MethodId::kHello, Json::object(), control::Role::kOperate)->result)["role"], "operate");
 }
 
-TEST_F(ReadMethodsTest, WhatTheBundleSaysIsMadeIntoTextOnce) {
+TEST_F(ReadMethodsTest, BuildsEachTextOfTheBundleOnce) {
   const auto first = ask(MethodId::kDescribe)->text;
   EXPECT_EQ(Json::parse(*first)["start"], "run");
   EXPECT_EQ(ask(MethodId::kDescribe)->text, first);

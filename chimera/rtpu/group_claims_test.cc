@@ -29,7 +29,7 @@ TEST_F(GroupClaimsTest, OneRtpuAtATimeHasAGroup) {
   EXPECT_EQ(decision.claims[1], 0u);
 }
 
-TEST_F(GroupClaimsTest, WhatADeadProcessHoldsIsFree) {
+TEST_F(GroupClaimsTest, AClaimOfADeadProcessIsFree) {
   EXPECT_TRUE(first.take(0));
   keeper.alive[0] = 0;
   EXPECT_TRUE(second.take(0));

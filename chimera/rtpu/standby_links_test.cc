@@ -137,7 +137,7 @@ TEST_F(StandbyLinksTest, ReportsTheCompletedStepsOfATakeoverWhenItsRtpuDies) {
   EXPECT_NE(takeover.at, kNever);
 }
 
-TEST_F(StandbyLinksTest, OneWhoseOnFailsMakesPlace) {
+TEST_F(StandbyLinksTest, AStandbyWhoseOnFailsMakesPlace) {
   Standby::fails = true;
   rtpus->die(0);
   rtpus->run(milliseconds(1));

@@ -133,7 +133,7 @@ TEST_F(SwitchLinksTest, TheSameRequestIsMadeAgainThoughTheManagerThatDealtWithTh
   EXPECT_EQ(rtpus->rtpus[1]->segment.block.head().wish.wish().set, kObserved);
 }
 
-TEST_F(SwitchLinksTest, WhoStaysSeesNothingOfTenThousandSwitches) {
+TEST_F(SwitchLinksTest, TenThousandSwitchesDoNotDisturbTasksThatStay) {
   const Nanoseconds begin = rtpus->now;
   std::mt19937 random(5);
   std::vector<std::uint32_t> wanted;
@@ -250,7 +250,7 @@ TEST_F(SwitchLinksTest, AnOrderWithAChangedWordIsAborted) {
 }
 
 // Between its own agreement and the commit an rtpu still aborts if a task of the switch fails.
-TEST_F(SwitchLinksTest, WhatComesAfterTheOwnAgreementStillAborts) {
+TEST_F(SwitchLinksTest, AFailureAfterItsOwnAgreementStillAborts) {
   (void)rtpus->switch_to(kObserved, milliseconds(20));
   testing::TestRtpu* agreed = nullptr;  // steps the rtpus one by one, until one has agreed and the other has not
   while (agreed == nullptr) {

@@ -158,7 +158,7 @@ TEST_F(Outboxes, AReaderThatClaimsToBeAheadGetsNothingMore) {
   EXPECT_FALSE(outbox.try_post(numbered(0)));
 }
 
-TEST_F(Outboxes, WhatNoSenderWritesIsPassedOver) {
+TEST_F(Outboxes, SkipsPostsThatNoSenderWrites) {
   Inbox inbox(*ring, progress, 1);
   Outbox outbox(*ring, &progress, 1);
   for (std::uint64_t i = 0; i < 6; ++i) ASSERT_TRUE(outbox.try_post(numbered(i)));

@@ -16,7 +16,7 @@ TEST(TaskWord, HoldsATaskAndAMethod) {
   EXPECT_FALSE(found.is_none());
 }
 
-TEST(TaskWord, OfTheFirstTasksFirstMethodIsNotNone) {
+TEST(TaskWord, TheFirstMethodOfTheFirstTaskIsNotNone) {
   EXPECT_FALSE(TaskWord(TaskId(0u), Method::kInit).is_none());
   EXPECT_TRUE(TaskWord().is_none());
   EXPECT_EQ(TaskWord().word(), 0u);

@@ -61,7 +61,7 @@ TEST_F(CommandQueueTest, TellsWhatWasDoneThoughOneFailed) {
   EXPECT_EQ(report(kArm, State::kOff), "answer 1 no: off: pid: no answer from the drive pid ON>ERROR arm ON>OFF\n");
 }
 
-TEST_F(CommandQueueTest, WhoIsOffAlreadyIsSentNothing) {
+TEST_F(CommandQueueTest, ATaskThatIsOffReceivesNoOff) {
   EXPECT_EQ(ask(Signal::kOff, {kArm}), "answer 1 yes arm OFF>OFF already\n");
 }
 

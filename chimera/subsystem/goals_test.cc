@@ -18,7 +18,7 @@ class GoalsTest : public ::testing::Test, public TestWorld {
   }
 };
 
-TEST_F(GoalsTest, OffOfOneThatIsStillToBeTurnedOnIsDoneAtOnceAndFailsTheTransaction) {
+TEST_F(GoalsTest, OffOfATaskThatWaitsForOnFailsTheTransaction) {
   all_off();
   command(Signal::kOn, {kArm, kTraj, kPid});
   EXPECT_EQ(command(Signal::kOff, {kPid}), "goal pid 0\nanswer 3 yes pid OFF>OFF\n");
@@ -72,7 +72,7 @@ TEST_F(GoalsTest, OffTakesTheGoalOnBackWhileTheProcessIsRestarted) {
   EXPECT_TRUE(subsystem->is_settled());
 }
 
-TEST_F(GoalsTest, WhatAPersonWasKillingDoesNotComeBack) {
+TEST_F(GoalsTest, ATaskWithAPendingKillDoesNotComeBack) {
   command(Signal::kKill, {kReserve});
   EXPECT_EQ(die(kSpare),
             "rtpu-ended: spare ended by signal 11 (SIGSEGV) in pid.cycle\n"

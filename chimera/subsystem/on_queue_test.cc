@@ -116,7 +116,7 @@ TEST_F(OnQueueTest, ARequestThatAGoalFulfilsIsDoneWithoutASignal) {
   EXPECT_EQ(advance(), "goal traj 0\nanswer 1 yes traj OFF>ON\n");
 }
 
-TEST_F(OnQueueTest, OfNoTaskIsDoneAtOnce) {
+TEST_F(OnQueueTest, ACommandForNoTaskIsDoneAtOnce) {
   ask(1, {});
   EXPECT_EQ(advance(), "answer 1 yes\n");
 }

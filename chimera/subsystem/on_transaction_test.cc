@@ -122,7 +122,7 @@ TEST_F(OnTransactionTest, SendsNothingToAnRtpuThatEnded) {
             "goal arm 0\ngoal traj 0\ngoal pid 0\nanswer 7 no: arm: servo ended by signal 9\n");
 }
 
-TEST_F(OnTransactionTest, OfGoalsIsPursuedAgainAfterAnRtpuEnded) {
+TEST_F(OnTransactionTest, KeepsItsGoalsAfterAnRtpuEnded) {
   are_on({kTraj});
   for (TaskId task : {kArm, kPid}) goals.add(task, kGoalOn);
   transaction.begin({0, {kArm, kPid}, TaskId{}, true});
@@ -134,7 +134,7 @@ TEST_F(OnTransactionTest, OfGoalsIsPursuedAgainAfterAnRtpuEnded) {
   EXPECT_TRUE(goals.has(kArm, kGoalOn) && goals.has(kPid, kGoalOn));
 }
 
-TEST_F(OnTransactionTest, OfGoalsTakesUpWhatAnEarlierManagerTurnedOn) {
+TEST_F(OnTransactionTest, ResumesTheGoalsOfAnEarlierManager) {
   are_on({kTraj, kArm});
   for (TaskId task : {kArm, kPid}) goals.add(task, kGoalOn);
   transaction.begin({0, {kArm, kPid}, TaskId{}, true});

@@ -77,7 +77,7 @@ TEST_F(SubsystemRivals, AStandbyThatHasTakenOverKeepsTheResource) {
   EXPECT_EQ(told.find("spawn pid"), std::string::npos) << told;
 }
 
-TEST_F(SubsystemRivals, OfTwoRtpusThatDieTheOneThatWasOnLastComesBackAlone) {
+TEST_F(SubsystemRivals, AfterTwoDeathsOnlyTheRivalThatWasOnLastComesBack) {
   make_standby();
   start_without_reserve();
   die(kServo);
@@ -124,7 +124,7 @@ TEST_F(SubsystemRivals, ADeviceThatIsNeverReadyHasItsOff) {
   EXPECT_NE(end.find("answer 2 no: arm: on: it is not ready yet"), std::string::npos) << end;
 }
 
-TEST_F(SubsystemRivals, OffTakesBackWhatAnOnHasBegun) {
+TEST_F(SubsystemRivals, OffTakesBackAnOnThatHasBegun) {
   start();
   command(Signal::kOff, {kArm, kTraj, kPid});
   for (TaskId task : {kPid, kTraj, kArm}) report(task, State::kOff);

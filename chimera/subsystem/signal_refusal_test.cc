@@ -16,7 +16,7 @@ TEST(SignalRefusal, TellsItsReasonAndThenItsRemedy) {
   EXPECT_EQ(kNameless.behind("on: ").text(), "") << "words before nothing say nothing";
 }
 
-TEST(SignalRefusal, OfAListIsTheFirstThatHasAReason) {
+TEST(SignalRefusal, ARefusedListHasTheFirstReason) {
   SignalRefusal refusal;
   EXPECT_FALSE(refusal.is_refused());
   EXPECT_TRUE(refusal.add(kNameless));
@@ -28,7 +28,7 @@ TEST(SignalRefusal, OfAListIsTheFirstThatHasAReason) {
   EXPECT_EQ(refusal.reason, "pi is OFF");
 }
 
-TEST(SignalRefusal, OfEveryKindHasAName) {
+TEST(SignalRefusal, EveryKindHasAName) {
   EXPECT_STREQ(refusal_kind_name(RefusalKind::kNone), "");
   EXPECT_STREQ(refusal_kind_name(RefusalKind::kNoAnswer), "no-answer");
   EXPECT_STREQ(refusal_kind_name(RefusalKind::kOther), "other");

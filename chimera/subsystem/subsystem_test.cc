@@ -82,7 +82,7 @@ TEST_F(SubsystemTest, NothingOfAListIsSentWhenOneOfItIsIllegal) {
             "answer 4 no: reserve is in state NOT-CREATED, where off is not legal; type `chimera off arm`\n");
 }
 
-TEST_F(SubsystemTest, WhoIsWhereAPersonWantsItIsDoneAlready) {
+TEST_F(SubsystemTest, ATaskInTheWantedStateIsDoneAlready) {
   EXPECT_EQ(command(Signal::kOn, {kArm, kPid}), "answer 1 yes arm ON>ON already pid ON>ON already\n");
   EXPECT_EQ(command(Signal::kOff, {kReserve}), "answer 2 yes reserve OFF>OFF already\n");
   EXPECT_EQ(command(Signal::kOff, {kPid, kReserve}), "send servo: off pid\n");
@@ -136,7 +136,7 @@ TEST_F(SubsystemTest, AFailedTransactionTurnsOffBackwardsWhatItTurnedOn) {
             "goal arm 0\ngoal traj 0\ngoal pid 0\nanswer 2 no: pid: gains are zero\n");
 }
 
-TEST_F(SubsystemTest, OneThatLeavesOnByItselfFailsTheTransaction) {
+TEST_F(SubsystemTest, ATaskThatLeavesOnByItselfFailsTheTransaction) {
   command(Signal::kOff, {kArm, kTraj, kPid});
   for (TaskId task : {kPid, kTraj, kArm}) report(task, State::kOff);
   command(Signal::kOn, {kPid, kTraj, kArm});
@@ -234,7 +234,7 @@ TEST_F(SubsystemTest, ATaskInWhosePlaceItsStandbyIsOnComesBackOff) {
 }
 
 // Both rtpus die one after the other. Only the task that had taken over comes back ON.
-TEST_F(SubsystemTest, OfTwoThatStandInForEachOtherTheOneThatDiedLastComesBackOn) {
+TEST_F(SubsystemTest, AfterTwoDeathsTheStandbyThatWasOnComesBackOn) {
   const StandbySpec pair[] = {{kPid, kReserve}};
   spec.standbys = pair;
   die(kServo);

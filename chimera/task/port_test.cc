@@ -231,7 +231,7 @@ struct Partly {
 };
 CHIMERA_COMPONENT(Partly, "partly", "A struct port with a member left out.");
 
-TEST(Port, WhatCannotBeDeclaredIsRefusedAtConstruction) {
+TEST(Port, ConstructionRefusesAnIllegalPort) {
   alignas(64) std::byte state[4096] = {};
   chimera_fault fault{};
   EXPECT_EQ(linked_component("twice").construct(state, &fault), CHIMERA_FAULT);

@@ -104,7 +104,7 @@ TEST_F(SettingTest, AWrongNameIsReportedWithTheNearest) {
       << refusal({set("law.cutof", "5 Hz")});
 }
 
-TEST_F(SettingTest, WhatATaskProducesAndWhatIsSetTwiceIsRefused) {
+TEST_F(SettingTest, RefusesAProducedVariableAndASecondValue) {
   EXPECT_EQ(refusal({set("tau", "5 N.m")}),
             "arm.yaml:4:3: --set tau '5 N.m': 'tau' is produced by task 'law'; operator variables and constants of the "
             "file can be set");

@@ -49,7 +49,7 @@ TEST_F(JoinPriorityTest, LeavesWhatIsTooOldAndComesBackWhenItIsRenewed) {
   EXPECT_EQ(rig.get<double>("out", 0), 2);
 }
 
-TEST_F(JoinPriorityTest, OfNoAgeCountsHoweverOld) {
+TEST_F(JoinPriorityTest, WithoutAMaximumAgeAnOldInputCounts) {
   start(0);
   give(0, 1);
   ASSERT_TRUE(rig.cycle(seconds(1000)));

@@ -249,7 +249,7 @@ TEST_F(ModbusIoTest, TheSafeFramesWriteIdleOverASecondConnection) {
   ::close(second);
 }
 
-TEST_F(ModbusIoTest, WhatIsNotFiniteIsNeverWrittenAndTheRestIsHeldWithinTheRegister) {
+TEST_F(ModbusIoTest, NeverWritesANonFiniteNumberAndClampsToTheRegister) {
   start(device.tcp());
   rig.set("holding", 7.0, 0, 0);
   rig.set("holding", 1e300, 0, 1);

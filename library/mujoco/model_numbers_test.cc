@@ -88,7 +88,7 @@ TEST_F(ModelNumbers, SoundFilesPassAndLoadNamesCalledNanToo) {
   EXPECT_TRUE(loads(sound(kMjcf)));
 }
 
-TEST_F(ModelNumbers, WhatIsNoFiniteNumberIsRefusedWhereverItStands) {
+TEST_F(ModelNumbers, RefusesANonFiniteNumberInEveryAttribute) {
   std::size_t files = 0;
   for (const std::string marked : {kUrdf, kMjcf}) {
     for (const std::string word : {"nan", "-NaN", "inf", "+Infinity", "&#110;an", "nan(1)"}) {
@@ -142,7 +142,7 @@ TEST_F(ModelNumbers, LooksIntoIncludedFilesAndEndsWhereOneIncludesItself) {
   EXPECT_EQ(refusal("<mujoco><include file='" + path + "'/></mujoco>"), "sound");
 }
 
-TEST_F(ModelNumbers, WhatIsNoXmlIsLeftToMujoco) {
+TEST_F(ModelNumbers, TextThatIsNoXmlIsLeftToMujoco) {
   for (const char* text : {"", "<", "<a", "<a b", "<a b=", "<a b='", "<!--", "<a b=c d='nan'/>", "</", "<?"})
     EXPECT_EQ(refusal(text), "sound") << text;
 }

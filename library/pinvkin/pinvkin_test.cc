@@ -52,7 +52,7 @@ TEST_F(PinvkinTest, FollowsAPathWithoutChangingTheArm) {
   }
 }
 
-TEST_F(PinvkinTest, WhatIsOutOfReachOrBeyondTheLimitsLeavesTheReferenceAndIsSaid) {
+TEST_F(PinvkinTest, AnUnreachableTargetKeepsTheReferenceAndIsReported) {
   ASSERT_TRUE(rig.cycle());
   const Puma560::Vector stands = rig.six("q_ref");
   Frame far = Puma560::forward(kBent);

@@ -122,7 +122,7 @@ TEST_F(SerialFrameTest, NoiseCutFramesAndWrongChecksumsAreCountedAndPassedOver) 
   EXPECT_EQ(state(1), 2);  // no value of a frame that is not finite
 }
 
-TEST_F(SerialFrameTest, WhatIsNotFiniteIsNeverSentAndTheRestIsHeldWithinTheLimit) {
+TEST_F(SerialFrameTest, NeverSendsANonFiniteNumberAndClampsToTheLimit) {
   rig.set("limit", 10.0);
   start(1, 1);
   rig.set("command", std::nan(""));

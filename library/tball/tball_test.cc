@@ -154,7 +154,7 @@ TEST_F(TballTest, WholeReportsOfADeviceCountAndLostOnesDoNot) {
   EXPECT_EQ(rig.get<std::int32_t>("buttons"), 2);
 }
 
-TEST_F(TballTest, WhatWaitedBeforeOnIsForgottenInTheFirstCycles) {
+TEST_F(TballTest, EventsFromBeforeOnAreDroppedInTheFirstCycles) {
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
   plug();
   const RigAnswer made = init(path);

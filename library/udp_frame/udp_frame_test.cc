@@ -140,7 +140,7 @@ TEST_F(UdpFrameTest, ACycleTakesEightDatagramsAtMost) {
   EXPECT_EQ(state(), 12);
 }
 
-TEST_F(UdpFrameTest, WhatCameBeforeOnIsForgottenInTheFirstCyclesAndIsNoSilence) {
+TEST_F(UdpFrameTest, DatagramsFromBeforeOnAreDroppedAndAreNoSilence) {
   start();
   ASSERT_TRUE(rig.off());
   for (std::uint32_t i = 1; i <= 150; ++i) say(datagram(i, 99));
@@ -179,7 +179,7 @@ TEST_F(UdpFrameTest, StrangersAreNotHeard) {
   EXPECT_EQ(count("received"), 0);
 }
 
-TEST_F(UdpFrameTest, WhatIsNotFiniteIsNeverSent) {
+TEST_F(UdpFrameTest, NeverSendsANonFiniteNumber) {
   start();
   rig.set("command", std::nan(""));
   ASSERT_TRUE(rig.cycle());

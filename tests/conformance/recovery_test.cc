@@ -215,7 +215,7 @@ TEST_P(RecoveryTest, ALateTakeoverSaysHowLongTheFlagWasUp) {
   EXPECT_EQ(receipt.flag, receipt.at - receipt.asked - milliseconds(1));
 }
 
-TEST_P(RecoveryTest, OneThatCannotGoOnMakesPlaceForTheNext) {
+TEST_P(RecoveryTest, AStandbyThatCannotGoOnMakesPlaceForTheNext) {
   fail_first_in(5);
   scene.on_of_spare = [n = 0](Cycle) mutable -> Outcome { return n++ == 0 ? fault("no voltage") : ok(); };
   go(milliseconds(10));

@@ -139,7 +139,7 @@ TEST_P(Requests, TheSameThatIsRefusedIsTakenTenTimesASecondAndAnotherOneAtOnce) 
   EXPECT_TRUE(is_on(kOther));
 }
 
-TEST_P(Requests, WhatIsRefusedIsTakenAgainAlthoughItIsAskedForOnlyOnceMore) {
+TEST_P(Requests, ASecondRequestRepeatsARefusedSwitch) {
   scene.on_of_high = [](Cycle) { return fault("no"); };
   scene.first = [](Cycle c) {
     if (c.count() == 10 || c.count() == 20) ask(c, "high");
@@ -218,7 +218,7 @@ TEST_P(Requests, DuringASwitchTheLastRequestIsCarriedOutNext) {
   EXPECT_TRUE(is_on(kOther));
 }
 
-TEST_P(Requests, OfAnOperatorAreRefusedWhileOneOfATaskIsUnderWay) {
+TEST_P(Requests, ARequestOfAnOperatorIsRefusedDuringASwitch) {
   scene.on_of_high = [](Cycle c) {
     c.spend(microseconds(1500));
     return ok();
@@ -234,7 +234,7 @@ TEST_P(Requests, OfAnOperatorAreRefusedWhileOneOfATaskIsUnderWay) {
   EXPECT_EQ(receipts[1].cause, SwitchCause::kScript);
 }
 
-TEST_P(Requests, OfAnArmedTaskGoOutAtTheChangeAndAreForgottenWithoutOne) {
+TEST_P(Requests, ARequestOfAnArmedTaskIsSentAtTheChangeOnly) {
   scene.on_of_high = [](Cycle c) {
     ask(c, "other");
     return ok();
@@ -300,7 +300,7 @@ TEST_P(Requests, ForTasksThatAreNoLegalSetAreRefusedAndKept) {
   EXPECT_TRUE(is_on(kLow));
 }
 
-TEST_P(Requests, OfOneConfigurationTurnSomeOfItsTasksOff) {
+TEST_P(Requests, MayTurnOffATaskOfTheOnlyConfiguration) {
   n_sets_ = 1;
   scene.first = [](Cycle c) {
     if (c.count() == 3) ask(c, "--off second");
@@ -319,7 +319,7 @@ TEST_P(Requests, WhereThereIsOneConfigurationAreRefused) {
   EXPECT_STREQ(set_->tasks()[kFirst.index].faults.note, "asks for the configuration 'low': it is the only one");
 }
 
-TEST_P(Requests, OfTheReactionOnMissFollowTheLateCycle) {
+TEST_P(Requests, AReactionOnMissSwitchesAfterTheLateCycle) {
   change_ = [](testing::TestApplication& app) {
     app.tasks[kLow.index].on_miss = OnMiss::kSwitch;
     app.tasks[kLow.index].on_miss_set = kHighSet;
@@ -340,7 +340,7 @@ TEST_P(Requests, OfTheReactionOnMissFollowTheLateCycle) {
   EXPECT_TRUE(is_on(kHigh));
 }
 
-TEST_P(Requests, OfTheReactionOnOverrunFollowTheCycleThatUsedTooMuch) {
+TEST_P(Requests, AReactionOnOverrunSwitchesAfterTheLongCycle) {
   change_ = [](testing::TestApplication& app) {
     app.tasks[kLow.index].on_overrun = OnMiss::kSwitch;
     app.tasks[kLow.index].on_overrun_set = kOtherSet;
@@ -357,7 +357,7 @@ TEST_P(Requests, OfTheReactionOnOverrunFollowTheCycleThatUsedTooMuch) {
   EXPECT_TRUE(is_on(kOther));
 }
 
-TEST_P(Requests, OfTheReactionOnFaultLeaveTheTaskInErrorBehind) {
+TEST_P(Requests, AReactionOnFaultLeavesTheTaskInError) {
   change_ = [](testing::TestApplication& app) {
     app.tasks[kLow.index].on_fault = OnFault::kSwitch;
     app.tasks[kLow.index].on_fault_set = kHighSet;

@@ -197,7 +197,7 @@ TEST_P(SafeWhen, IsAskedOfElementsAndOfOtherTypes) {
   EXPECT_GE(receipt.armed, milliseconds(7));
 }
 
-TEST_P(SafeWhen, ThatNeverHoldsEndsTheSwitchWithTheValue) {
+TEST_P(SafeWhen, AConditionThatNeverHoldsAbortsWithTheValue) {
   const SwitchReceipt receipt = go({"speed", 0, Relation::kMore, 100}, seconds(11));
   EXPECT_EQ(receipt.end, SwitchEnd::kAborted);
   EXPECT_EQ(receipt.why, NoSwitch::kNotSafe);
@@ -213,7 +213,7 @@ TEST_P(SafeWhen, AVariableWithoutAProducerIsNotSafe) {
   EXPECT_TRUE(std::isnan(receipt.value));
 }
 
-TEST_P(SafeWhen, WhatNeverHadAValueIsNotSafe) {
+TEST_P(SafeWhen, AnUnwrittenVariableIsNotSafe) {
   int cycles = 0;
   scene.on_of_hand = [&cycles](Cycle) { cycles = scene.cycles; };
   const SwitchReceipt receipt = go({"speed", 0, Relation::kUnequal, 100}, milliseconds(20), {});
@@ -241,7 +241,7 @@ TEST_P(SafeWhen, AnInputThatNeverHasAValueEndsTheSwitchByItsName) {
 }
 
 // `on` takes 5 ms, in which the value changes. With one context no task cycles during `on`.
-TEST_P(SafeWhen, ThatHoldsNoMoreWhenTheInstantWouldBeProposedTakesTheSwitchBack) {
+TEST_P(SafeWhen, AConditionThatFailsBeforeTheProposalAbortsTheSwitch) {
   scene.on_of_hand = [](Cycle c) { c.spend(milliseconds(5)); };
   const SwitchReceipt receipt = go({"speed", 0, Relation::kMore, 5.5}, milliseconds(40));
   EXPECT_EQ(receipt.end, GetParam() >= How::kTwoRtpus ? SwitchEnd::kAborted : SwitchEnd::kDone);

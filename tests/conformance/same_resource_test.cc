@@ -165,7 +165,7 @@ TEST_P(SameResource, DeclaredSharedBothAreCreatedAndTheSwitchIsFast) {
   EXPECT_EQ(device.story, (Story{"init hand", "init drill", "on hand", "on drill", "off hand"}));
 }
 
-TEST_P(SameResource, WhateverFailsTheOldTaskHasItsDeviceAgain) {
+TEST_P(SameResource, AfterAFailedSwitchTheOldTaskHasItsDevice) {
   for (const char* fails : {"init drill", "on drill"}) {
     device = {};
     device.fails = fails;

@@ -185,7 +185,7 @@ TEST(Servers, AnEventWithoutAnythingBehindItCostsNoCycle) {
   EXPECT_EQ(app.task("S").profile.cycles, 1u);
 }
 
-TEST(Servers, WhatWaitsWhenTheTaskGoesOffIsForgotten) {
+TEST(Servers, EventsThatWaitAreDroppedWhenTheTaskGoesOff) {
   Application app;
   add_served(app, "S", kDeferrable, 1, 6);
   app.toy("S").spend = milliseconds(1);

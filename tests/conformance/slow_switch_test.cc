@@ -208,7 +208,7 @@ TEST_P(SlowSwitches, AnExtentBeyondItsMaximumIsFoundBeforeAnythingHappens) {
 }
 
 // Each step fails once.
-TEST_P(SlowSwitches, WhateverFailsTheOldTasksAndConstantsComeBack) {
+TEST_P(SlowSwitches, AFailureInAnyStepRestoresTasksAndConstants) {
   struct Case {
     const char* fails;
     std::vector<std::string> story;
@@ -237,7 +237,7 @@ TEST_P(SlowSwitches, WhateverFailsTheOldTasksAndConstantsComeBack) {
   }
 }
 
-TEST_P(SlowSwitches, WhoDoesNotComeBackIsNamed) {
+TEST_P(SlowSwitches, NamesATaskThatDoesNotComeBack) {
   tools.fails = "reinit arm";
   const auto receipts = go(milliseconds(40), {to(kWithHeavy, milliseconds(5))});
   EXPECT_EQ(receipts[0].why, NoSwitch::kStepFailed);

@@ -246,7 +246,7 @@ TEST_P(Switches, AnOnThatFailsUndoesEverything) {
   EXPECT_EQ(losses(), 0u);
 }
 
-TEST_P(Switches, WhatOnSendsGoesOutAtTheChangeAndIsForgottenWithoutOne) {
+TEST_P(Switches, ASignalFromOnIsSentAtTheChangeOnly) {
   scene.two_sends = true;
   scene.on_takes = microseconds(600);
   go(milliseconds(20), {to(kObserved, microseconds(5600))});
@@ -416,7 +416,7 @@ TEST_P(Switches, OverWhichATaskMightMissItsDeadlineGoesTheSlowWay) {
 }
 
 // Two acts of one instant: the second one finds a plan that is announced and not taken up.
-TEST_P(Switches, OfTwoAtOneInstantTheSecondIsRefused) {
+TEST_P(Switches, RefusesSecondSwitchAtSameInstant) {
   build();
   for (const std::uint32_t second : {kDirect, kObserved}) {
     build();

@@ -188,7 +188,7 @@ TEST_F(VirtualRtpusTest, ATaskThatStopsItsRtpuStopsNoOther) {
   EXPECT_EQ(app.task("b").profile.cycles, 10u);
 }
 
-TEST_F(VirtualRtpusTest, OfADeadRtpuTheLastValuesStandAndItsTasksAreInError) {
+TEST_F(VirtualRtpusTest, TheLastValuesOfADeadRtpuStayAndItsTasksAreInError) {
   for (const bool preemptive : {false, true}) {
     SCOPED_TRACE(preemptive ? "preemptive" : "executive");
     renew(preemptive);
@@ -232,7 +232,7 @@ TEST_F(VirtualRtpusTest, AProducerThatIsSpawnedAnewIsReadAgain) {
   EXPECT_EQ(read_at("consumer", milliseconds(7)), 5) << "two more by 6 ms";
 }
 
-TEST_F(VirtualRtpusTest, WhatComesOfAJobThatCannotStartIsSeenElsewhereAtThatInstant) {
+TEST_F(VirtualRtpusTest, OtherRtpusSeeAJobThatCannotStartAtItsInstant) {
   add("consumer", kFirst, milliseconds(1), {}, "late");
   add("blocker", kSecond, milliseconds(5), milliseconds(3));
   TaskSpec& late = add("late", kSecond, milliseconds(5));

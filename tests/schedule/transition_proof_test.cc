@@ -6,7 +6,7 @@
 namespace chimera::proof {
 namespace {
 
-TEST(TransitionProof, WhatIsPromisedOfRandomTransitionsHoldsAtEveryInstantOfTheChange) {
+TEST(TransitionProof, GuaranteesOfRandomTransitionsHoldAtEveryInstant) {
   TransitionTallies tallies{};
   for (std::uint32_t seed = 1; seed <= 1000; ++seed) {
     const std::string wrong = judge_transition(seed, tallies);

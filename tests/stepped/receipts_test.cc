@@ -149,7 +149,7 @@ std::vector<std::pair<Nanoseconds, std::string>> history_of(const Json& receipts
   return history;
 }
 
-TEST(SteppedReceipts, OfFourOperatorsWhoAskAtRandomExplainEachAnswer) {
+TEST(SteppedReceipts, ReceiptsExplainEachAnswerToFourOperators) {
   const unsigned seed = std::random_device()();
   SCOPED_TRACE("seed " + std::to_string(seed));
   SteppedSubsystem system(kReceipts);

@@ -92,7 +92,7 @@ TEST(SteppedSwitch, TurnsTasksOnAndOffByNameAndNamesTheConfigurationThatTheyMake
   EXPECT_EQ(system.on(), kGentle);
 }
 
-TEST(SteppedSwitch, ThatStepsTooFarChangesNothing) {
+TEST(SteppedSwitch, ASwitchWithTooLargeAStepChangesNothing) {
   SteppedSubsystem system(kSwitch);
   ASSERT_TRUE(system.until_started());
   EXPECT_EQ(switched(system, "quick")["end"], "done");

@@ -21,7 +21,7 @@ TEST(TerminalText, ALineHasNoMarksOfDirectionAndNothingUnseen) {
   EXPECT_EQ(plain_line("\xe2\x80"), "  ") << "cut short";
 }
 
-TEST(TerminalText, WhatACommandPrintsKeepsItsLines) {
+TEST(TerminalText, OutputOfACommandKeepsItsLines) {
   EXPECT_EQ(for_terminal("a\tb\n\x1b[2Jc\r\n"), "a\tb\n [2Jc \n");
 }
 

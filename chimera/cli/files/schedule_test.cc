@@ -197,7 +197,7 @@ TEST(Schedule, AMoreCriticalTaskIsNeverSaidToGiveWayToALessCriticalOne) {
 }
 
 // `b`, the most critical, lifts its rtpu above the other one: once it has moved, `a` would come second and miss.
-TEST(Schedule, WhoMovesTakesTheBandOfItsRtpuAlong) {
+TEST(Schedule, ATaskThatMovesTakesAlongTheBandOfItsRtpu) {
   const std::vector<Line> lines = {{"a", "second", "low", "200", 1500}, {"b", "second", "high", "20", 6000},
                                    {"c", "first", "low", "20", 4000}};
   const Json said = analysed(description("first: {policy: rm}, second: {policy: rm}", lines));

@@ -47,7 +47,7 @@ TEST(Command, IsTypedAgainAsItWasGiven) {
   EXPECT_EQ(cli::command_line(*read_call({"set", "kp", "it's"})), "chimera set kp 'it'\\''s'");
 }
 
-TEST(Command, WhatChangesSomethingIsAnAct) {
+TEST(Command, ACommandWithAnEffectIsAnAct) {
   EXPECT_TRUE(read_call({"off", "pid"})->is_act());
   EXPECT_TRUE(read_call({"end"})->is_act());
   EXPECT_TRUE(read_call({"save", "--write"})->is_act());

@@ -114,7 +114,7 @@ TEST(Scope, AValueHoldsUntilTheNextOneAndToTheEdgesOfThePicture) {
   EXPECT_EQ(scope.rows(), 4u) << "what only holds is no row of the window";
 }
 
-TEST(Scope, WhatWasPublishedBeforeTheWindowHoldsIntoIt) {
+TEST(Scope, AValueFromBeforeTheWindowHoldsIntoIt) {
   Scope scope(request("error > 2 mrad", 1, 1));
   scope.add(arm(0, 1000, 7));
   scope.add(arm(1, 1001, 9));

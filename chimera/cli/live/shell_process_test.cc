@@ -443,7 +443,7 @@ TEST_F(ShellTest, TopEndsWithASentenceWhenTheSubsystemDoes) {
   EXPECT_TRUE(terminal.is_sane());
 }
 
-TEST_F(ShellTest, WhatGoesOnOutlivesARestartOfTheManager) {
+TEST_F(ShellTest, TopAndWatchOutliveARestartOfTheManager) {
   OnTerminal top([this] { return carry_out(surroundings(), read_call({"top"}).value(), stdout, stderr); });
   OnTerminal watch([this] { return carry_out(surroundings(), read_call({"watch", "error"}).value(), stdout, stderr); });
   serve();

@@ -64,7 +64,7 @@ TEST(EventLines, AreAllTheirOwnWhenThatIsWanted) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 6);
 }
 
-TEST(EventLines, OfOneKindLeaveTheOthersOut) {
+TEST(EventLines, AFilterByKindLeavesOutOtherKinds) {
   EXPECT_EQ(events_text(kBurst, 0, EventLines(*read_kinds("set,fault"))),
             "     4  22:13:20.013  set              kp 0.4 V.s/rad\n");
   EXPECT_EQ(read_kinds("mis").error().message.view(), "--kind: no kind 'mis'; did you mean 'miss'?");

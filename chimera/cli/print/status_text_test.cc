@@ -18,7 +18,7 @@ TEST(OldestInput, IsNeverOneOfTheOperatorWhichHoldsUntilItIsSet) {
   EXPECT_EQ(oldest(R"({"inputs": [{"variable": "q", "age_ns": 7}, {"variable": "r", "age_ns": null}]})").age_ns, -1);
 }
 
-TEST(StatusText, OfAnRtpuThatWasGivenUpItSaysWhatToType) {
+TEST(StatusText, NamesTheCommandsThatBringBackAGivenUpRtpu) {
   Json status = chimera::cli::status();
   status["rtpus"][1]["given_up"] = true;
   status["rtpus"][1]["remedy"] = "`chimera clear trajectory`, then `chimera on trajectory`";

@@ -236,7 +236,7 @@ TEST_F(Attend, AStartThatFailsIsRefusedInTheWordsOfItsTask) {
   EXPECT_EQ(out_, "");
 }
 
-TEST_F(Attend, WhatFailsBehindAStartThatWasNotKnownYetIsNoFailureOfIt) {
+TEST_F(Attend, ARefusalAfterTheStartIsNoFailureOfTheStart) {
   const std::int64_t started = backend_.started_ns.as_int64();
   backend_.starts_at = std::exchange(backend_.started_ns, nullptr);
   backend_.events = {{{"number", 1}, {"at_ns", started + 2'000'000}, {"kind", "refused"}, {"task", "pid"},

@@ -44,7 +44,7 @@ TEST_F(ExpectationText, RefusesBoundsThatAreNone) {
     EXPECT_EQ(refusal(text).rfind(std::string("--expect '") + text + "': ", 0), 0u) << refusal(text);
 }
 
-TEST_F(ExpectationText, WhatWasNeverWrittenSatisfiesNothing) {
+TEST_F(ExpectationText, AnUnwrittenVariableSatisfiesNoExpectation) {
   const Application source = test_application(
       "subsystem: s\ntasks:\n  a: {component: t_source, constants: {start: 0 m, slope: 1 m/s}}\n", library_);
   const auto made = Expectation::parse("x >= 0 m", source.configuration(), library_.units());

@@ -32,7 +32,7 @@ struct Pipe {
   int ends[2] = {-1, -1};
 };
 
-TEST(Outlet, WhatIsPrintedArrivesInOrder) {
+TEST(Outlet, OutputArrivesInOrder) {
   Pipe pipe;
   Outlet outlet(pipe.ends[1]);
   for (int i = 0; i < 3; ++i) std::fprintf(outlet.stream(), "line %d\n", i);

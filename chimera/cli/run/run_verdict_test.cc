@@ -80,7 +80,7 @@ TEST(RunVerdict, ARestartSaysFromWhereItCounts) {
   EXPECT_FALSE(verdict.is_failure());
 }
 
-TEST(RunVerdict, WhatIsBrokenAtTheEndIsAFailureAlways) {
+TEST(RunVerdict, ATaskOrRtpuThatIsBrokenAtTheEndFailsEveryRun) {
   EXPECT_EQ(judged({task("pi")}, {{.name = "servo", .is_given_up = true}}).text(),
             "FAILED: servo was given up: its process ended too often, its tasks did not run\n");
   EXPECT_EQ(judged({task("pi")}, {{.name = "servo", .bad_end = "ended by signal 9 (SIGKILL)"}}).text(),

@@ -63,7 +63,7 @@ TEST_F(DrillTest, RaisesTheFlagUntilTheDeviceIsSafeAndTellsTheTime) {
   EXPECT_NE(told.find("the drill lowered the flag after "), std::string::npos) << told;
 }
 
-TEST_F(DrillTest, WhatWasPublishedBeforeTheFlagSaysNothing) {
+TEST_F(DrillTest, IgnoresValuesFromBeforeTheFlag) {
   fake.rtpu(0).filled_with = 1;
   const std::uint64_t cycles = fake.rtpu(0).block().profile(fake.task("arm")).cycles;
   ASSERT_TRUE(fake.until([&] { return fake.rtpu(0).block().profile(fake.task("arm")).cycles > cycles + 1; }));
@@ -155,7 +155,7 @@ TEST(Drill, WithoutHardwareNothingIsSafe) {
   EXPECT_FALSE(got->is_safe());
 }
 
-TEST(Drill, WhatCannotTellIsNotWaitedForAndNotSafe) {
+TEST(Drill, HardwareWithoutSafeStateIsNotAwaitedAndNotSafe) {
   std::string text = kHardwareText;
   text.replace(text.find("start: run"), 10, "start: all");
   FakeSubsystem fake(text);

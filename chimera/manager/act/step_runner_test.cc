@@ -74,7 +74,7 @@ TEST_F(StepRunnerTest, DoesNotDealTwiceWithADeathThatAPredecessorDealtWith) {
   EXPECT_NE(told(last), "");
 }
 
-TEST_F(StepRunnerTest, WhatTasksWereIsForgottenWithTheDeathThatIsDealtWith) {
+TEST_F(StepRunnerTest, ForgetsTheStatesOfTasksWhenADeathIsHandled) {
   runner_.begin();
   for (const char* name : {"law", "sensor"}) state().own.block().set_status(task(name), {State::kOn});
   runner_.step(subsystem::RtpuDown{RtpuId(1u), 3, "ended by signal 9 (SIGKILL)"});

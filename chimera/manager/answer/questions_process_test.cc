@@ -85,7 +85,7 @@ TEST_F(QuestionsTest, RefusesTooMuchText) {
   EXPECT_EQ(answers_["more"].message, "analyses of 16 MiB of text are under way");
 }
 
-TEST_F(QuestionsTest, WhoGoesTakesHisQuestionsAlong) {
+TEST_F(QuestionsTest, QuestionsOfAClosedConnectionAreDropped) {
   ask("gone1", 1);
   ask("gone2", 1);
   ask("stays", 2);
@@ -122,7 +122,7 @@ TEST_F(QuestionsTest, ADeathBetweenTwoQuestionsCostsNone) {
   EXPECT_EQ(told_, "the analyst of descriptions ended by signal 9 (SIGKILL)\n");
 }
 
-TEST_F(QuestionsTest, WhatTakesTooLongIsGivenUp) {
+TEST_F(QuestionsTest, EndsAnAnalysisAtItsTimeLimit) {
   ask("slow", 1);
   ::kill(questions_->analyst(), SIGSTOP);  // not reaped yet: still its process id
   const Nanoseconds late = now() + kAnalysisLimit;

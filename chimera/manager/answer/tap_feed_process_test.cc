@@ -103,7 +103,7 @@ TEST_F(TapFeedTest, WithoutVariablesItGivesTheSchedulingRecords) {
   EXPECT_EQ(last["overrun"][4], 5000);
 }
 
-TEST_F(TapFeedTest, WhatWasOverwrittenIsCounted) {
+TEST_F(TapFeedTest, CountsOverwrittenRecords) {
   TapFeed feed(state(), {});
   overwrite_spare();
   pump_a_ring(feed);

@@ -72,7 +72,7 @@ TEST_F(SwitchJournalTest, ASwitchHasItsNumberUntilItsReceiptIsPut) {
   EXPECT_EQ(numbers(next), "2:refused during 1 1:done ");
 }
 
-TEST_F(SwitchJournalTest, WhatIsForgottenLeavesNoGap) {
+TEST_F(SwitchJournalTest, AForgottenSwitchLeavesNoGap) {
   memory->journal().begin(switch_to(1));
   SwitchJournal next = successor();
   next.forget();
@@ -81,7 +81,7 @@ TEST_F(SwitchJournalTest, WhatIsForgottenLeavesNoGap) {
   EXPECT_EQ(successor().next(), 1u);
 }
 
-TEST_F(SwitchJournalTest, WhatIsFiledIsNotHandedOnAndGivesItsRoomBack) {
+TEST_F(SwitchJournalTest, AFiledReceiptFreesItsRoomAndIsNotHandedOn) {
   SwitchJournal journal = memory->journal();
   const std::string half(60 << 10, 'x');
   EXPECT_TRUE(journal.put(1, half));
@@ -101,7 +101,7 @@ TEST_F(SwitchJournalTest, WhatIsFiledIsNotHandedOnAndGivesItsRoomBack) {
 }
 
 // The stores of an act one by one. After each of them its owner may be killed.
-TEST_F(SwitchJournalTest, WhoIsKilledBetweenTwoStoresHasDoneItOrNot) {
+TEST_F(SwitchJournalTest, AKillBetweenTwoStoresLeavesAnActDoneOrNot) {
   SwitchJournal journal = memory->journal();
   journal.begin(switch_to(1));
   memory->pages().last = 0;  // begin(): the number is not in use yet

@@ -106,7 +106,7 @@ TEST_F(ReceiptArchiveTest, KeepsAReceiptThatCannotBeFiledAndTriesAgain) {
 
 // The manager was killed between the file and the journal: the successor has both in its journal, and one of them in
 // the file.
-TEST_F(ReceiptArchiveTest, WhatAPredecessorDidNotFileIsFiledOnce) {
+TEST_F(ReceiptArchiveTest, FilesReceiptsOfAPredecessorOnce) {
   archive.reset();
   ASSERT_TRUE(journal().put(1, receipt(1)));
   ASSERT_TRUE(journal().put(2, receipt(2)));

@@ -107,7 +107,7 @@ TEST_F(SwitchCoordinatorTest, OrdersWhatIsAskedForAndPutsThePartsTogether) {
   EXPECT_NE(fake.told("switch").find("0 tasks arrive, 2 leave, 2 cycles lost\n"), std::string::npos);
 }
 
-TEST_F(SwitchCoordinatorTest, WhatIsInForceIsNothingToDo) {
+TEST_F(SwitchCoordinatorTest, ASwitchToTheSetInForceDoesNothing) {
   ask(kRun);
   ASSERT_TRUE(got);
   EXPECT_EQ(got->receipt.end, SwitchEnd::kNothingToDo);
@@ -156,7 +156,7 @@ TEST_F(SwitchCoordinatorTest, OneAtATimeAndItCanBeCancelled) {
   EXPECT_EQ(third, got->json) << "who cancelled gets the same receipt";
 }
 
-TEST_F(SwitchCoordinatorTest, WhatIsCommittedIsNotCancelled) {
+TEST_F(SwitchCoordinatorTest, ACommittedSwitchIsNotCancelled) {
   ask(kRest);
   commit();
   EXPECT_FALSE(coordinator().cancel(kBen, [](const SwitchOutcome&) {}));
@@ -202,7 +202,7 @@ TEST_F(SwitchCoordinatorTest, TheRtpuThatAbortedSaysWhy) {
   EXPECT_EQ(got->receipt.said.view(), "no current");
 }
 
-TEST_F(SwitchCoordinatorTest, OneThatWasOnlyLateIsTriedFourTimes) {
+TEST_F(SwitchCoordinatorTest, ALateSwitchIsTriedFourTimes) {
   ask(kRest);
   Nanoseconds lead;
   for (std::uint16_t number = 1; number <= 4; ++number) {
@@ -222,7 +222,7 @@ TEST_F(SwitchCoordinatorTest, OneThatWasOnlyLateIsTriedFourTimes) {
   EXPECT_EQ(agreement().plan().number, 4);
 }
 
-TEST_F(SwitchCoordinatorTest, OneThatFoundNoGapOrNoReadyDeviceIsMadeTheSlowWay) {
+TEST_F(SwitchCoordinatorTest, ASwitchWithoutAGapOrAReadyDeviceIsRepeatedSlowly) {
   const std::pair<NoSwitch, std::uint8_t> ways[] = {{NoSwitch::kNoGap, kSlowForGap},
                                                     {NoSwitch::kNotReady, kSlowForDevice}};
   std::uint16_t number = 1;
@@ -271,7 +271,7 @@ TEST_F(SwitchCoordinatorTest, AFailureCountsMoreThanLatenessOrNoAnswer) {
   }
 }
 
-TEST_F(SwitchCoordinatorTest, WhatIsCancelledIsNotTriedAgain) {
+TEST_F(SwitchCoordinatorTest, ACancelledSwitchIsNotTriedAgain) {
   ask(kRest);
   EXPECT_TRUE(coordinator().cancel(kBen, [](const SwitchOutcome&) {}));
   over(0, NoSwitch::kLate);
@@ -296,7 +296,7 @@ TEST_F(SwitchCoordinatorTest, ASuccessorGoesOnWithTheSwitchAndFilesItsReceipt) {
   EXPECT_FALSE(coordinator().is_under_way());
 }
 
-TEST_F(SwitchCoordinatorTest, WhatTheRtpusDidWithoutAManagerIsCollected) {
+TEST_F(SwitchCoordinatorTest, TheNextManagerCollectsASwitchOfTheRtpus) {
   ask(kRest);
   fake.kill_manager();
   commit_in(fake.decision_page());
@@ -325,7 +325,7 @@ TEST_F(SwitchCoordinatorTest, ASuccessorClosesAPlanThatIsPastItsDeadline) {
 
 // The manager was killed between the journal and the plan. The switch was not announced, so the next one gets its
 // number.
-TEST_F(SwitchCoordinatorTest, WhatWasNeverAnnouncedIsForgotten) {
+TEST_F(SwitchCoordinatorTest, ForgetsASwitchThatWasNeverAnnounced) {
   BegunSwitch begun;
   begun.order.number = 1;
   begun.order.after = kRest;

@@ -122,7 +122,7 @@ TEST_F(SwitchWishesTest, ASuccessorFindsWhatIsOpenAndOnlyThat) {
 }
 
 // The switch was ordered, and its manager died.
-TEST_F(SwitchWishesTest, WhatAPredecessorHasOrderedIsNotOrderedAgain) {
+TEST_F(SwitchWishesTest, ARequestOrderedByAPredecessorIsNotOrderedAgain) {
   wish(1, kRest, "law");
   rounds();
   EXPECT_EQ(plan().number, 1);
@@ -146,7 +146,7 @@ TEST_F(SwitchWishesTest, ReportsARefusedRequestOnce) {
             "switch to 'run', asked for by task sensor, is refused: task 'law' is in ERROR: clear it first\n");
 }
 
-TEST_F(SwitchWishesTest, OfAnRtpuThatHasDiedSinceStand) {
+TEST_F(SwitchWishesTest, ARequestOutlivesItsRtpu) {
   wish(1, kRest, "law");
   fake.kill_rtpu(1, SIGKILL);
   EXPECT_TRUE(fake.until([this] { return plan().number == 1; }));
@@ -154,7 +154,7 @@ TEST_F(SwitchWishesTest, OfAnRtpuThatHasDiedSinceStand) {
 }
 
 // The memory of an rtpu may hold any value.
-TEST_F(SwitchWishesTest, WhatDoesNotFitTheApplicationIsPassedOver) {
+TEST_F(SwitchWishesTest, SkipsRequestsThatDoNotFitTheApplication) {
   SwitchWishWords& words = fake.rtpu(1).block().head().wish;
   const auto law = static_cast<std::uint16_t>(fake.task("law").index);
   const auto sensor = static_cast<std::uint16_t>(fake.task("sensor").index);

@@ -52,13 +52,13 @@ TEST_F(Method, ItsLateEndIsReportedOnce) {
   EXPECT_EQ(news, 2);
 }
 
-TEST_F(Method, ThatIsFollowedByAnotherOneBeginsAnew) {
+TEST_F(Method, TheNextMethodBeginsAnew) {
   after(milliseconds(1500), 0x100);
   EXPECT_EQ(after(milliseconds(1500), 0x101).word, 0u);
   EXPECT_EQ(after(kEvery, 0x101).word, 0x101u);
 }
 
-TEST_F(Method, ThatIsCalledAgainAndAgainDoesEnd) {
+TEST_F(Method, AMethodThatIsCalledAgainIsNoHang) {
   EXPECT_EQ(after(seconds(30), 0x100, true).word, 0u);
   EXPECT_EQ(news, 0);
 }

@@ -171,7 +171,7 @@ TEST_F(EdgeSignalsTest, AMemberWithAJobUnderWayLeavesAfterIt) {
   EXPECT_FALSE(releases->members().is_on(kReader));
 }
 
-TEST_F(EdgeSignalsTest, WhatJobsLeaveIsSettledOnce) {
+TEST_F(EdgeSignalsTest, ReactionsOfAJobAreSettledOnce) {
   begin();
   app.tasks[0].on_miss = OnMiss::kStop;
   releases->misses().report_late({kSender, milliseconds(1), milliseconds(2)}, true);

@@ -172,7 +172,7 @@ TEST_F(ReleasesTest, AReactionThatRefusesLateStartsNeedsTheDeadlineItself) {
   EXPECT_FALSE(releases->may_start(job, job.deadline));
 }
 
-TEST_F(ReleasesTest, WhatAJobLeavesIsSettledAtItsEnd) {
+TEST_F(ReleasesTest, ReactionsOfAJobAreSettledAtItsEnd) {
   begin();
   Sender::fails = true;
   releases->release_due(milliseconds(10));

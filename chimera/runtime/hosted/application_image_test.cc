@@ -183,7 +183,7 @@ bool says(const std::string& refusal, const char* why) {
   return refusal.starts_with(std::string("damaged image: ") + why + ", before byte ");
 }
 
-TEST(ApplicationImage, WhatVerificationNeverMakesIsRefused) {
+TEST(ApplicationImage, RefusesSpecificationsThatVerificationNeverMakes) {
   EXPECT_EQ(refusal_of([](Sample&) {}), "accepted");
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].rtpu = RtpuId{2u}; }), "an rtpu that does not exist"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.start[0] = TaskId{3u}; }), "a task that does not exist"));

@@ -97,7 +97,7 @@ TEST_F(MissPolicyTest, ToleratesAsManyMissesAsItsWindowAllows) {
   EXPECT_EQ(profile().missed, 3u) << "a miss that is tolerated is counted";
 }
 
-TEST_F(MissPolicyTest, WhatWasReportedDuringTheJobIsNotDoneAgainAtItsEnd) {
+TEST_F(MissPolicyTest, AReactionDuringTheJobIsNotRepeatedAtItsEnd) {
   spec().on_miss = OnMiss::kFlag;
   misses.report_late(BareTasks::job(kFirst, 10), true);
   EXPECT_TRUE(bare.leaves(JobRecord::kRaiseFlag));

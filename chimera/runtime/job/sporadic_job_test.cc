@@ -61,7 +61,7 @@ TEST(SporadicJob, RunsUntilTheCapacityIsUsedAndAgainWhenItIsBack) {
   EXPECT_EQ(job.deadline(), milliseconds(23));
 }
 
-TEST(SporadicJob, OfADeferrableServerIsAsUrgentAsThePeriodItRunsIn) {
+TEST(SporadicJob, OnADeferrableServerIsAsUrgentAsItsPeriod) {
   SporadicJob job = started(kDeferrable);
   std::uint32_t waiting = 1;
   (void)job.accept(waiting, milliseconds(3));

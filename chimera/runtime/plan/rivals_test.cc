@@ -86,7 +86,7 @@ TEST_F(RivalsTest, TheStartLeavesOutRivalsAndWhoNeedsTheirConstants) {
   for (const TaskId task : {kOne, kTwo, kThree, kUser, kLast}) EXPECT_TRUE(rivals.may_be_absent(task));
 }
 
-TEST_F(RivalsTest, OfRivalsThatDoNotStartTheFirstIsCreated) {
+TEST_F(RivalsTest, CreatesTheFirstOfTheRivalsOutsideTheStartSet) {
   with_one = {};
   make();
   EXPECT_EQ(created(), (std::vector<bool>{true, false, false, false, false}));

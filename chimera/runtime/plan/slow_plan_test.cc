@@ -105,7 +105,7 @@ TEST_F(SlowPlanTest, ChecksThenOffThenReinitInOrderThenOn) {
                                                 {SlowAct::kOn, kHeavy}}));
 }
 
-TEST_F(SlowPlanTest, WhoArrivesIsReinitialisedToo) {
+TEST_F(SlowPlanTest, AnArrivingTaskIsReinitialisedToo) {
   EXPECT_EQ(steps(2, 1), (std::vector<SlowStep>{{SlowAct::kCheck, kArm},
                                                 {SlowAct::kCheck, kLaw},
                                                 {SlowAct::kOff, kClock},

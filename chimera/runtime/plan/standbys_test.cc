@@ -86,7 +86,7 @@ TEST_F(StandbysTest, TheFirstOfTheDescriptionTakesOverAndCoversForOnePeriodOfIts
   EXPECT_FALSE(standbys_.is_replaced(kSecond));
 }
 
-TEST_F(StandbysTest, OneThatCouldNotGoOnIsPassedOver) {
+TEST_F(StandbysTest, SkipsAStandbyWhoseOnFailed) {
   at(1);
   fail(kPrimary, 2);
   standbys_.rule_out(kSecond);  // its on failed, and it is OFF again

@@ -124,7 +124,7 @@ TEST_F(SwitchAgreementTest, AnAbortEndsItBeforeTheCommit) {
 }
 
 // A context was delayed since the plan before.
-TEST_F(SwitchAgreementTest, WhoComesLateWithAnOlderPlanChangesNothing) {
+TEST_F(SwitchAgreementTest, AContextWithAnOlderPlanChangesNothing) {
   agreement.announce(some_order(3));
   EXPECT_TRUE(agreement.abort(3));
   agreement.announce(some_order(4));

@@ -28,7 +28,7 @@ TEST(SwitchWish, TheLastRequestStands) {
   EXPECT_FALSE(is_new_wish(true, false, true)) << "it is asked for already";
 }
 
-TEST(SwitchWish, OfListsIsReadWhole) {
+TEST(SwitchWish, ARequestOfListsIsReadWhole) {
   SwitchWishWords words;
   EXPECT_FALSE(words.read().wish.is_there());
   SwitchRequest request{UINT32_MAX, SwitchCause::kRequest, TaskId{7u}};

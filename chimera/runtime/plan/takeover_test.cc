@@ -53,7 +53,7 @@ TEST(TakeoverRing, TwoAtATimeMayBeOverInEitherOrder) {
   for (const std::uint32_t n : {1u, 2u}) EXPECT_TRUE(ring.read(n, true, read)) << n;
 }
 
-TEST(TakeoverRing, OneThatDiesWhileItWritesTheNextLeavesAllThatCanBeRead) {
+TEST(TakeoverRing, ADeathInAWriteKeepsTheOlderTakeovers) {
   TakeoverRing ring;
   for (std::uint32_t n = 1; n <= kKept + 1; ++n) ring.put(takeover(n, seconds(1)));
   const std::uint32_t oldest = ring.oldest();
@@ -67,7 +67,7 @@ TEST(TakeoverRing, OneThatDiesWhileItWritesTheNextLeavesAllThatCanBeRead) {
 }
 
 // A takeover that is kept no more has no place to be told anew in: that is a younger one's.
-TEST(TakeoverRing, OneThatIsOverTooLateLeavesTheYoungerOnes) {
+TEST(TakeoverRing, AnOverwrittenTakeoverKeepsTheYoungerOnes) {
   TakeoverRing ring;
   for (std::uint32_t n = 1; n <= kKept + 2; ++n) ring.put(takeover(n, n == 1 ? kNever : seconds(1)));
   ring.put(takeover(1, seconds(1)));

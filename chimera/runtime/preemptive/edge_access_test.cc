@@ -194,7 +194,7 @@ TEST_F(EdgeAccessTest, AJobReleasedBeforeAnInstantIsUnderWayOrWaits) {
   EXPECT_TRUE(access().has_job_before(TaskId(0u), at(30)));
 }
 
-TEST_F(EdgeAccessTest, WhatIsAwaitedStaysAwaitedWhenTheTaskIsClaimed) {
+TEST_F(EdgeAccessTest, AnAwaitedJobStaysAwaitedWhenItsTaskIsClaimed) {
   access().await_job(TaskId(0u));
   EXPECT_TRUE(job(0).is_awaited);
   EXPECT_TRUE(access().claim(TaskId(0u)));

@@ -79,7 +79,7 @@ TEST_F(VirtualProcessorTest, ASliceThatIsRecordedInBetweenGoesOn) {
   EXPECT_EQ(slices(), "0 1 1\n0 2 2\n");
 }
 
-TEST_F(VirtualProcessorTest, WhatSomethingElseUsesInBetweenIsNotTheJobs) {
+TEST_F(VirtualProcessorTest, DoesNotCountTimeBetweenTheSlicesOfAJob) {
   processor.give(kFirst, milliseconds(1));
   (void)processor.use(milliseconds(2));
   processor.record_slice();

@@ -65,7 +65,7 @@ TEST_P(VirtualSlowSwitches, TheStepFromATaskOfAnotherRtpuIsFromItsLastCycle) {
   EXPECT_EQ(receipt.variables[0].usual.size, 1);
 }
 
-TEST_P(VirtualSlowSwitches, WhatFailsOnOneRtpuIsUndoneOnBoth) {
+TEST_P(VirtualSlowSwitches, AFailureOnOneRtpuIsUndoneOnBoth) {
   shop.fails = "on heavy";
   const auto receipts = go(milliseconds(40), {act_at(milliseconds(5), ScriptAct::Kind::kSwitch, 1)});
   ASSERT_EQ(receipts[0].end, SwitchEnd::kAborted);

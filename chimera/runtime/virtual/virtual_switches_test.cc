@@ -51,7 +51,7 @@ TEST_P(VirtualSwitchesTest, TwoRtpusChangeAtOneInstant) {
   EXPECT_EQ(rtpus->lost(), 0u);
 }
 
-TEST_P(VirtualSwitchesTest, WhoStaysSeesNothingOfAThousandSwitches) {
+TEST_P(VirtualSwitchesTest, AThousandSwitchesDoNotDisturbTasksThatStay) {
   std::vector<ScriptAct> acts;
   std::mt19937 random(3);
   Nanoseconds at = milliseconds(10);
@@ -140,7 +140,7 @@ TEST_P(VirtualSwitchesTest, ALaterRequestForTheRunningSwitchTakesBackAnEarlierOn
 }
 
 // One that chatters in each cycle, of which the receipts that there is room for are kept.
-TEST_P(VirtualSwitchesTest, WhoAsksAllTheTimeFillsNothing) {
+TEST_P(VirtualSwitchesTest, RequestsInEveryCycleFillNoMemory) {
   scene.in_reader = [](Cycle c) { c.request(c.count() % 10 < 5 ? "observed" : "beside"); };
   scene.in_plant = [](Cycle c) { c.request(c.count() % 10 < 5 ? "observed" : "beside"); };
   const auto receipts = go(seconds(1));
@@ -160,7 +160,7 @@ TEST_P(VirtualSwitchesTest, ARequestForWhatIsInForceOrNotThereLeavesNoReceipt) {
   EXPECT_EQ(rtpus->set(1).tasks()[kReader.index].requests_refused, 1);
 }
 
-TEST_P(VirtualSwitchesTest, WhatFailsOnOneRtpuIsUndoneOnTheOther) {
+TEST_P(VirtualSwitchesTest, AFailureOnOneRtpuIsUndoneOnTheOther) {
   scene.on_of_two_fails = true;
   const auto receipts = go(milliseconds(30), {act_at(microseconds(5600), ScriptAct::Kind::kSwitch, kObserved)});
   EXPECT_EQ(receipts[0].end, SwitchEnd::kAborted);
