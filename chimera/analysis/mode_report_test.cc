@@ -189,7 +189,7 @@ TEST(ModeReport, WarnsOfAReactionThatMayRaiseTheFlag) {
   EXPECT_TRUE(edge(report, "a", "b").has_reaction());
 }
 
-TEST(ModeReport, TakeoversAreJudgedAndWhatFollowsThem) {
+TEST(ModeReport, JudgesTakeoversAndTheSwitchesAfterThem) {
   const Configuration made = verified(
       "rtpus: {first: {cpu: 0}, second: {cpu: 1}}\n"
       "tasks:\n"

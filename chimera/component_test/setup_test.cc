@@ -89,7 +89,7 @@ TEST_F(ArrangeFrom, NamesThePartner) {
   EXPECT_EQ(std::string(reinterpret_cast<const char*>(text.data()), text.size()), "tcp:5020");
 }
 
-TEST_F(ArrangeFrom, RefusesWhatIsNoSetupOfThisComponent) {
+TEST_F(ArrangeFrom, RefusesASetupThatDoesNotFitTheComponent) {
   const LibraryEntry entry = component({});
   EXPECT_EQ(from("subsystem: s\ntasks: {a: {component: other}}\n", entry).report.faults()[0].message,
             "a test setup has one task, of the component thing");

@@ -51,7 +51,7 @@ TEST_F(DoorLimits, ClosesAfterALineThatIsTooLong) {
   ::close(fd);
 }
 
-TEST_F(DoorLimits, RefusesWhatComesTooFastAndTakesItAgainLater) {
+TEST_F(DoorLimits, RefusesRequestsThatComeTooFastAndAcceptsLaterOnes) {
   const int fd = plain();
   std::string flood;
   for (int i = 0; i < 300; ++i) flood += request("hello");

@@ -51,7 +51,7 @@ TEST_F(DoorPlaces, TheLongestIdleConnectionOfTheUserGivesWay) {
   EXPECT_FALSE(is_closed(fds[0]));
 }
 
-TEST_F(DoorPlaces, AHalfLineGivesWayBeforeWhoIsIdle) {
+TEST_F(DoorPlaces, AHalfLineGivesWayBeforeAnIdleConnection) {
   for (int i = 0; i < 16; ++i) more();
   serve();
   say(fds[7], "{");
@@ -109,7 +109,7 @@ TEST_F(DoorPlaces, TwelveOfAUserMaySubscribe) {
   EXPECT_NE(ask(fds[12], subscribe).find("\"subscription\""), std::string::npos);
 }
 
-TEST_F(DoorPlaces, FourUsersWhoMayLookLeavePlacesForWhoMayDoMore) {
+TEST_F(DoorPlaces, FourObserversLeavePlacesForHigherRoles) {
   for (uid_t user = 61001; user <= 61004; ++user)
     for (int i = 0; i < 16; ++i) as(user, Role::kObserve);
   EXPECT_EQ(server->connections(), 32u);

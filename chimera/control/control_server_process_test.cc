@@ -67,7 +67,7 @@ TEST_F(DoorTest, TwoPeersGetTheirOwnAnswers) {
   ::close(b);
 }
 
-TEST_F(DoorTest, RefusesWhatIsNoRequestAndGoesOn) {
+TEST_F(DoorTest, RefusesALineThatIsNoRequestAndGoesOn) {
   const int fd = plain();
   EXPECT_EQ(ask(fd, "no json\n"), error("null", -32700, "this is no JSON"));
   EXPECT_EQ(ask(fd, "\n"), error("null", -32700, "this is no JSON"));

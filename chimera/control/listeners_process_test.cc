@@ -46,7 +46,7 @@ TEST_F(ListenersTest, AreTheKeeperAndTheManager) {
   EXPECT_EQ(listeners_at(folder + "/other.sock").manager, 0);
 }
 
-TEST(SilenceText, SaysWhoAndWhatToDo) {
+TEST(SilenceText, NamesTheProcessAndTheRemedy) {
   EXPECT_EQ(
       silence_text("/run/arm.sock", {120, 123, false}, seconds(5)),
       "the manager (process 123) of 'arm' does not answer for 5 s: it hangs, or has too much to do; its rtpus "

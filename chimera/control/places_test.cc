@@ -47,7 +47,7 @@ TEST_F(PlacesTest, AreKeptForEveryHigherRank) {
   EXPECT_EQ(all.size(), kPlacesUpTo[4]);
 }
 
-TEST_F(PlacesTest, AnOwnerTakesThatOfAnybodyWhoDoesNotAct) {
+TEST_F(PlacesTest, AnOwnerTakesThePlaceOfAnyConnectionThatDoesNotAct) {
   crowd(40, Rank::kOperate, Standing::kActs);
   crowd(8, Rank::kConfigure, Standing::kListens);
   sit(16, 1000, Rank::kOwner, Standing::kListens);

@@ -272,7 +272,7 @@ TEST_F(GuardTest, EndsTheRtpuOfATaskThatIsSilentForTooLong) {
   EXPECT_EQ(device.heard(), "stop");
 }
 
-TEST_F(GuardTest, EndsTheRtpuOfAPrimaryWhoseOutputsAreTooOldWhileAStandbyCanTakeOver) {
+TEST_F(GuardTest, EndsTheRtpuOfASilentPrimaryIfAStandbyCanTakeOver) {
   make_image({{TaskId(std::size_t{1}), TaskId(std::size_t{2}), milliseconds(40), false}});
   start();
   const auto primary = begin(0), standby = begin(1);

@@ -96,7 +96,7 @@ class KeeperProcess : public ::testing::Test, public testing::ChildFolder {
   pid_t keeper_ = 0;
 };
 
-TEST_F(KeeperProcess, StartsEverybodyAndPassesTheirMemoryOn) {
+TEST_F(KeeperProcess, StartsAllPeersAndPassesTheirMemoryOn) {
   start(2);
   EXPECT_TRUE(wait_for("0.1 peer 1 1 by-1.1"));
   EXPECT_TRUE(wait_for("0.1 peer 2 1 by-2.1"));
@@ -118,7 +118,7 @@ TEST_F(KeeperProcess, StartsEverybodyAndPassesTheirMemoryOn) {
   EXPECT_TRUE(nobody_is_left());
 }
 
-TEST_F(KeeperProcess, ADeadManagerIsReplacedAndToldAllThereIs) {
+TEST_F(KeeperProcess, ANewManagerReceivesTheLivesAndMemoryOfAllPeers) {
   start(2);
   ASSERT_TRUE(wait_for("1.1 peer 2 1"));
   ASSERT_TRUE(wait_for("1.1 peer 0 1"));  // the keeper has the memory of all three

@@ -28,7 +28,7 @@ struct SealedObjectsTest : ::testing::Test {
   std::string folder = "/tmp/sealed_objects_XXXXXX";
 };
 
-TEST_F(SealedObjectsTest, LinkWhatWasThereWhenTheyWerePacked) {
+TEST_F(SealedObjectsTest, LinkTheContentFromTheTimeOfPacking) {
   const std::string counter = copy_of("counter.so"), other = copy_of("nothing_offered.so");
   const auto bytes = packed({counter, other, counter});
   std::ofstream(counter, std::ios::binary) << "built anew, and not finished";

@@ -106,7 +106,7 @@ TEST_F(ManagerBackendTest, NoDrillWhileASwitchIsUnderWay) {
             "{\"kind\":\"under-way\",\"remedy\":\"ask again when it is over\",\"where\":\"\"}");
 }
 
-TEST_F(ManagerBackendTest, HelloSaysWhoSpeaks) {
+TEST_F(ManagerBackendTest, HelloNamesProtocolProgramAndSubsystem) {
   const Json hello = good("hello");
   EXPECT_EQ(hello["protocol"], 1);
   EXPECT_EQ(hello["program"], "0.1.0");
@@ -149,7 +149,7 @@ TEST_F(ManagerBackendTest, StatusIsReadOutOfTheBlocks) {
   EXPECT_EQ(law["inputs"][1], (Json{{"port", "kp"}, {"variable", "kp"}, {"age_ns", 0}})) << "never old";
 }
 
-TEST_F(ManagerBackendTest, DescribeTellsWhatVerificationKnows) {
+TEST_F(ManagerBackendTest, DescribePrintsTheVerifiedApplication) {
   const Json described = good("describe");
   EXPECT_EQ(described["start"], "run");
   EXPECT_EQ(described["configurations"][1], (Json{{"name", "rest"}, {"tasks", {"sensor"}}}));
@@ -210,7 +210,7 @@ TEST_F(ManagerBackendTest, GetReadsTheRegisters) {
             "-32005 no state variable 'tua'; did you mean 'tau'? {\"nearest\":\"tau\",\"where\":\"tua\"}");
 }
 
-TEST_F(ManagerBackendTest, SignalsAreOneTransactionAndSayWhatBecameOfEachTask) {
+TEST_F(ManagerBackendTest, ASignalIsOneTransactionAndReturnsTheStateOfEachTask) {
   EXPECT_EQ(good("signal", {{"signal", "off"}, {"tasks", {"law"}}})["tasks"],
             Json::array({Json{{"task", "law"}, {"before", "ON"}, {"after", "OFF"}}}));
   EXPECT_EQ(good("status")["configuration"], "");
@@ -229,7 +229,7 @@ TEST_F(ManagerBackendTest, SignalsAreOneTransactionAndSayWhatBecameOfEachTask) {
   EXPECT_EQ(good("signal", {{"signal", "on"}, {"tasks", {"law"}}})["tasks"][0]["after"], "ON");
 }
 
-TEST_F(ManagerBackendTest, NoAnswerNamesTheRtpuAndWhatItWasDoing) {
+TEST_F(ManagerBackendTest, NoAnswerNamesTheRtpuAndItsMethod) {
   fake_.rtpu(1).block().head().running = TaskWord(fake_.task("law"), Method::kCycle).word();
   fake_.rtpu(1).is_deaf = true;
   EXPECT_EQ(refusal("signal", {{"signal", "off"}, {"tasks", {"law"}}}),
@@ -381,7 +381,7 @@ TEST_F(ManagerBackendTest, AnalysesATextWithTheLibraryOfTheStart) {
   EXPECT_EQ(good("schedule", {{"text", "subsystem: a\ntasks: {sensr: {}}\n"}})["legal"], false);
 }
 
-TEST_F(ManagerBackendTest, AnswersARefusedSignalWithItsKindItsPlaceAndItsRemedyWhateverItsWordsAre) {
+TEST_F(ManagerBackendTest, ARefusedSignalHasKindPlaceAndRemedy) {
   EXPECT_EQ(answer_to(RefusalKind::kState, "no answer from a parser", "type `chimera clear law`"),
             "-32000 no answer from a parser; type `chimera clear law` "
             R"({"kind":"state","remedy":"type `chimera clear law`","where":"law"})");

@@ -23,7 +23,7 @@ TEST(ManagerLoop, BringsTheStartSetUp) {
   EXPECT_NE(fake.told("state").find("law: OFF -> ON\n"), std::string::npos) << fake.told("state");
 }
 
-TEST(ManagerLoop, CarriesOutACommandAndSaysWhatBecameOfIt) {
+TEST(ManagerLoop, CarriesOutACommandAndReturnsTheResult) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));

@@ -101,7 +101,7 @@ TEST(ChromeTrace, HoldsBackNoMoreThanTwoSeconds) {
   EXPECT_EQ(seen, "preempt drop preempt ");
 }
 
-TEST(ChromeTrace, GivesTheWholeProcessWhatConcernsNoTask) {
+TEST(ChromeTrace, GivesRecordsWithoutATaskToTheWholeProcess) {
   TapRecord flag = record(TapKind::kFlag, 1, 0, 1);
   flag.task = TaskId();
   const TapRecord records[] = {flag, record(TapKind::kRelease, 2, 0)};

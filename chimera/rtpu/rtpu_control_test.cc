@@ -123,7 +123,7 @@ TEST_F(EdgeTest, EverySignalWithACommandIsReported) {
   EXPECT_EQ(first().state(kSource), State::kOn);
 }
 
-TEST_F(EdgeTest, TheManagersWishDecidesWhatGoesToTheTap) {
+TEST_F(EdgeTest, TheManagerDecidesWhichGroupsGoToTheTap) {
   all_on();
   EXPECT_FALSE(first().tasks->tasks()[kSource.index].is_tapped);
   rtpus->manager->block.set_tapped(kSource, true);

@@ -166,7 +166,7 @@ TEST_F(SwitchLinksTest, TenThousandSwitchesDoNotDisturbTasksThatStay) {
   EXPECT_TRUE(reader == scene.reader);
 }
 
-TEST_F(SwitchLinksTest, AnOnThatFailsInOneRtpuUndoesWhatTheOtherHasArmed) {
+TEST_F(SwitchLinksTest, AnOnThatFailsInOneRtpuUndoesArmingInTheOther) {
   scene.on_of_two_fails = true;
   const std::uint16_t number = rtpus->switch_to(kObserved);
   rtpus->run(milliseconds(10));
@@ -228,7 +228,7 @@ TEST_F(SwitchLinksTest, TheDeathOfAMemberAfterTheCommitDoesNotHoldUpTheChange) {
   EXPECT_EQ(std::get<1>(scene.u.back()), 7);
 }
 
-TEST_F(SwitchLinksTest, ASuccessorAbortsWhatItsPredecessorTookPartIn) {
+TEST_F(SwitchLinksTest, ASuccessorAbortsASwitchOfItsPredecessor) {
   const std::uint16_t number = rtpus->switch_to(kBeside);
   rtpus->start(1, 2);
   rtpus->change();

@@ -103,7 +103,7 @@ TEST_F(Outboxes, ASuccessorGoesOnWhereTheReaderStopped) {
   EXPECT_FALSE(Inbox::resume(*ring, wrong, 3).take(post));
 }
 
-TEST_F(Outboxes, ANewReaderBeginsBehindWhatWasPosted) {
+TEST_F(Outboxes, ANewReaderBeginsBehindEarlierPosts) {
   Outbox outbox(*ring, &progress, 7);
   ASSERT_TRUE(outbox.try_post(numbered(0)));
   Inbox first(*ring, progress, 7);

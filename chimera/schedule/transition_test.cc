@@ -100,7 +100,7 @@ TEST(Transition, JudgesEachCriticalityByItself) {
   EXPECT_EQ(j.verdicts[1].guarantee, Guarantee::kNo);
 }
 
-TEST(Transition, SaysWhatItCouldNotCountAndLeavesOutOtherProcessors) {
+TEST(Transition, CountsTasksWithoutATimeAndLeavesOutOtherProcessors) {
   std::vector<Work> works = {work(10, 0), work(10, 5), work(10, 9)};
   works[2].rtpu = 1;
   std::vector<ProcessorUse> uses = {use(Policy::kEdf), use(Policy::kEdf)};

@@ -81,7 +81,7 @@ TEST_F(CommandQueueTest, ASpawnIsAGoalAndEndsWithIt) {
   EXPECT_EQ(report(kReserve, State::kOff), "goal reserve 0\nanswer 1 yes reserve NOT-CREATED>OFF\n");
 }
 
-TEST_F(CommandQueueTest, ASpawnWhoseInitFailsIsRefusedWithItsWords) {
+TEST_F(CommandQueueTest, ASpawnWhoseInitFailsIsRefusedWithTheFault) {
   is(kReserve, State::kNotCreated);
   ask(Signal::kSpawn, {kReserve});
   (void)goals.advance();
@@ -126,7 +126,7 @@ TEST_F(CommandQueueTest, KillOfATaskThatWasLostMakesItNoLongerMissed) {
   EXPECT_FALSE(state.observed.is_lost(kReserve));
 }
 
-TEST_F(CommandQueueTest, ClearOfATaskThatWasLostStartsItsRtpuAndWhatIsWantedBack) {
+TEST_F(CommandQueueTest, ClearOfALostTaskStartsItsRtpuAndTheOtherWantedTasks) {
   die(kSpare);
   state.observed.want_back(kReserve, true);
   EXPECT_EQ(ask(Signal::kClear, {kTraj}), "goal traj 1\ngoal reserve 1\nrestart spare\nstart spare\n");

@@ -52,7 +52,7 @@ TEST_F(GoalsTest, ACommandForATaskThatIsBroughtUpWaitsAndIsFulfilledByIt) {
 }
 
 // docs/formats/control.md, `signal`: only `on` is one transaction over all rtpus.
-TEST_F(GoalsTest, AListOfOffGoesOutRtpuByRtpuAndWhatWasDoneStaysDone) {
+TEST_F(GoalsTest, ARefusedOffOfAListDoesNotUndoOtherTasks) {
   const std::string asked = command(Signal::kOff, {kArm, kTraj});
   EXPECT_NE(asked.find("send servo: off arm\n"), std::string::npos) << asked;
   EXPECT_NE(asked.find("send spare: off traj\n"), std::string::npos) << asked;

@@ -59,7 +59,7 @@ TEST_F(OnQueueTest, IgnoresATaskThatDoesNotExist) {
   EXPECT_EQ(taken(), "");
 }
 
-TEST_F(OnQueueTest, GoalsGoBeforeThoseWhoWait) {
+TEST_F(OnQueueTest, GoalsGoBeforeWaitingCommands) {
   goals.add(kTraj, kGoalOn);
   (void)taken();
   ask(1, {kArm, kPid});

@@ -67,7 +67,7 @@ TEST_F(OnTransactionTest, SendsNothingOfAnIllegalSet) {
   EXPECT_FALSE(transaction.is_under_way());
 }
 
-TEST_F(OnTransactionTest, TurnsOffBackwardsWhatItTurnedOn) {
+TEST_F(OnTransactionTest, AFailureTurnsOffItsTasksInReverse) {
   begin({kPid, kTraj, kArm});
   (void)advance();
   (void)report(kArm, State::kOn);
@@ -78,7 +78,7 @@ TEST_F(OnTransactionTest, TurnsOffBackwardsWhatItTurnedOn) {
   EXPECT_EQ(report(kTraj, State::kOff), "goal arm 0\ngoal traj 0\ngoal pid 0\nanswer 7 no: pid: no sensor\n");
 }
 
-TEST_F(OnTransactionTest, LeavesAloneWhatWasOnBefore) {
+TEST_F(OnTransactionTest, AFailureLeavesTasksOnThatWereOnBefore) {
   are_on({kTraj, kArm});
   begin({kPid, kArm});
   EXPECT_EQ(taken(), "goal pid 2\n");

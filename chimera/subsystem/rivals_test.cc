@@ -21,7 +21,7 @@ class SubsystemRivals : public ::testing::Test, public TestWorld {
   }
 };
 
-TEST_F(SubsystemRivals, TheStartLeavesOutWhoseResourceIsTaken) {
+TEST_F(SubsystemRivals, TheStartLeavesOutATaskWhoseResourceIsTaken) {
   make_rivals();
   const std::string told = start_without_reserve();
   EXPECT_EQ(told.find("reserve"), std::string::npos) << told;

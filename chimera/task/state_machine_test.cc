@@ -176,7 +176,7 @@ TEST(StateMachine, TakesAnAnswerThatIsNotOneForAFault) {
   EXPECT_EQ(answer_of(Method::kError, -1), Answer::kFault);
 }
 
-TEST(StateMachine, ASignalHasArrivedWhereItLeadsAndNowhereElse) {
+TEST(StateMachine, ASignalHasArrivedOnlyInItsTargetState) {
   struct {
     Signal signal;
     State before, after;

@@ -29,7 +29,7 @@ TEST(UnitSystem, NamesTheUnknownWordAndTheNearestUnit) {
   EXPECT_EQ(refusal("ft"), "\"ft\" is no known unit; did you mean \"t\"?");
 }
 
-TEST(UnitSystem, RefusesWhatBreaksTheGrammar) {
+TEST(UnitSystem, RefusesTextThatBreaksTheGrammar) {
   EXPECT_EQ(refusal(""), "the unit is empty; write 1 for none");
   EXPECT_EQ(refusal("kg/m.s"),
             "unit \"kg/m.s\": a product after \"/\" can be read in two ways; write a/(b.c) or a.c/b");

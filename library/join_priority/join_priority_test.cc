@@ -34,7 +34,7 @@ TEST_F(JoinPriorityTest, TakesTheFirstThatHasBeenWritten) {
   EXPECT_EQ(rig.get<double>("out", 1), 11);
 }
 
-TEST_F(JoinPriorityTest, LeavesWhatIsTooOldAndComesBackWhenItIsRenewed) {
+TEST_F(JoinPriorityTest, LeavesAnInputThatIsTooOldUntilItIsRenewed) {
   start(0.01);
   give(0, 1);
   give(1, 5);

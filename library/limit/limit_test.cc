@@ -27,7 +27,7 @@ TEST(Limit, CutsEachElementAtItsOwnLimits) {
   EXPECT_EQ(rig.get<double>("y", 2), 1);
 }
 
-TEST(Limit, LeavesWhatIsWithinToTheBit) {
+TEST(Limit, ANumberWithinTheLimitsIsUnchangedToTheBit) {
   SignalRig rig("limit");
   rig.set("low", -kInfinity);
   rig.set("high", 10.0);

@@ -89,7 +89,7 @@ TEST(Logic, AbortsItsCycleWhileAnInputIsUnwritten) {
   EXPECT_EQ(rig.cycle().status, CHIMERA_ABORTED);
 }
 
-TEST(Logic, RefusesWhatDoesNotFitItsFunction) {
+TEST(Logic, RefusesInputsThatDoNotFitItsFunction) {
   EXPECT_EQ(Combined("and", 0).init().text, "there is nothing to combine: name at least one input");
   EXPECT_EQ(Combined("AND", 2).init().text, "function must be and, or, xor, nand, nor, xnor, not or latch");
   EXPECT_EQ(Combined("not", 2).init().text, "not has one input");

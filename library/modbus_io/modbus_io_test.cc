@@ -308,7 +308,7 @@ TEST_F(ModbusIoTest, ADeviceThatSaysNothingDelaysNoCycle) {
   EXPECT_LT(std::clock() - before, CLOCKS_PER_SEC);
 }
 
-TEST_F(ModbusIoTest, RefusesWhatIsNoDeviceOrHasOtherRegisters) {
+TEST_F(ModbusIoTest, RefusesAnUnknownDeviceOrOtherRegisters) {
   const auto answer = [this](const std::string& where) {
     rig.resource("device", where.c_str());
     return rig.init().text;

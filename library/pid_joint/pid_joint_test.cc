@@ -37,7 +37,7 @@ TEST_F(PidJointTest, GivesTheThreeTermsForEachJointAlone) {
   EXPECT_DOUBLE_EQ(rig.get<double>("tau", 1), 5 * 0.2);
 }
 
-TEST_F(PidJointTest, StaysWithinWhatTheDrivesGive) {
+TEST_F(PidJointTest, StaysWithinTheTorqueOfTheDrives) {
   start();
   rig.set("q_ref", 3.0, 0);
   ASSERT_TRUE(rig.cycle());

@@ -22,7 +22,7 @@ TEST_F(PinvkinTest, StaysWithTheSolutionThatIsNearest) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(rig.six("q_ref")[i], kBent[i], 1e-9);
 }
 
-TEST_F(PinvkinTest, GoesOnFromTheCommandThatIsHandedOverAndElseFromTheMeasurement) {
+TEST_F(PinvkinTest, StartsAtTheHandedOverCommandOrTheMeasurement) {
   for (std::size_t i = 0; i < 6; ++i) rig.set("q_ref", kBent[i] + 0.05, i);
   rig.inherit("q_ref", milliseconds(10));
   ASSERT_TRUE(rig.on());

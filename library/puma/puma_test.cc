@@ -33,7 +33,7 @@ TEST_F(PumaTest, TellsItsRows) {
 }
 
 // An arm that replaces another starts at the place and speed of that arm, not in its start pose.
-TEST_F(PumaTest, GoesOnWhereThatOneIsWhosePlaceItTakes) {
+TEST_F(PumaTest, StartsAtTheStateOfTheTaskThatItReplaces) {
   start();
   const auto inherit = [&](Nanoseconds age, double elbow) {
     for (std::size_t i = 0; i < 6; ++i) {

@@ -21,7 +21,7 @@ TEST(Ringer, RingsABurstOncePerEveryCycles) {
   EXPECT_EQ(rig.signals()[0], "wakeup valve");
 }
 
-TEST(Ringer, RefusesWhatCannotBe) {
+TEST(Ringer, RefusesImpossibleConstants) {
   Rig rig("ringer");
   EXPECT_EQ(rig.init().text, "target is empty");
   rig.set("target", Text<64>("valve"));

@@ -170,7 +170,7 @@ TEST_F(SerialFrameTest, IdleIsSentAtOffAndWhileTheFlagIsUp) {
   EXPECT_EQ(heard(8), frame({0.25}));
 }
 
-TEST_F(SerialFrameTest, TheSafeFrameIsIdleBehindWhatEndsACutFrame) {
+TEST_F(SerialFrameTest, TheSafeFrameEndsACutFrameBeforeIdle) {
   rig.set("idle", 0.25);
   start(1, 1);
   const auto& safe = rig.safe_frame(0);
@@ -260,7 +260,7 @@ TEST_F(SerialFrameTest, ADeviceThatIsUnpluggedIsAFaultAndComesBackByClear) {
   EXPECT_EQ(state(0), 2.0);
 }
 
-TEST_F(SerialFrameTest, RefusesWrongConstantsAndWhatIsNoSerialDevice) {
+TEST_F(SerialFrameTest, RefusesWrongConstantsAndOtherDevices) {
   const auto answer = [this](const char* name) {
     rig.resource("device", name);
     return rig.init().text;

@@ -252,7 +252,7 @@ TEST_F(TballTest, HoldsStillWhileTheFlagIsUp) {
   EXPECT_EQ(xd().position[0], 0.0);
 }
 
-TEST_F(TballTest, RefusesWhatIsNoBall) {
+TEST_F(TballTest, RefusesADeviceThatIsNoBall) {
   EXPECT_EQ(init("/dev/input/event99").text,
             "/dev/input/event99: No such file or directory: plug the device in, or name another under `resources`");
   EXPECT_EQ(init("/dev/null").text,

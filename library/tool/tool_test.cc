@@ -38,7 +38,7 @@ TEST_F(ToolTest, TellsAnotherMassByReinit) {
   EXPECT_EQ(rig.get<double>("payload_mass"), 2.5);
 }
 
-TEST_F(ToolTest, RefusesWhatIsNoFrameAndNoMass) {
+TEST_F(ToolTest, RefusesAnInvalidFrameOrMass) {
   rig.set("mass", std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(rig.init().text, "mass is 0 to 100 kg");
   rig.set("mass", 1.0);

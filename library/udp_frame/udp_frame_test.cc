@@ -240,7 +240,7 @@ TEST_F(UdpFrameTest, SendsIdleAtOff) {
   EXPECT_EQ(heard(), datagram(2, 0));
 }
 
-TEST_F(UdpFrameTest, RefusesWhatIsNoAddressAndAPortThatIsTaken) {
+TEST_F(UdpFrameTest, RefusesABadAddressAndATakenPort) {
   rig.extent("m", 1);
   for (const std::string text : {"", "localhost:5000", "1.2.3.4", "1.2.3.4:", "1.2.3.4:0", "1.2.3.4:65536",
                                  "1.2.3.4:5x"}) {

@@ -76,7 +76,7 @@ TEST_F(UrdfChainTest, MujocoSeesTheSameRobotInTheFile) {
   }
 }
 
-TEST_F(UrdfChainTest, RefusesWhatIsNoChainOfTurningJoints) {
+TEST_F(UrdfChainTest, RefusesAModelWithoutAChainOfTurningJoints) {
   const std::string ends = "<parent link='a'/><child link='b'/>";
   EXPECT_EQ(refusal("<joint name='j' type='fixed'>" + ends + "</joint>"),
             ": no joint turns between the root and the tip");

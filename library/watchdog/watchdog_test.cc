@@ -56,7 +56,7 @@ TEST_F(WatchdogTest, GivesAnUnwrittenInputMaxAgeFromOn) {
   EXPECT_TRUE(alive());  // max_age counts from `on` again
 }
 
-TEST_F(WatchdogTest, AsAFaultSaysWhoIsLateAndClearBringsItBack) {
+TEST_F(WatchdogTest, AsAFaultNamesTheLateInputAndClearBringsItBack) {
   start("fault");
   renew(0);
   ASSERT_TRUE(rig.cycle(milliseconds(5)));

@@ -67,7 +67,7 @@ TEST_P(Executors, TakeSignalsAtEdgesAndKeepThePhase) {
   EXPECT_EQ(app.task("a").state, chimera::State::kOff);
 }
 
-TEST_P(Executors, TellHowOldIsWhatAnOutVarHeldAtOn) {
+TEST_P(Executors, GiveTheAgeOfAnOutVarAtOn) {
   app.add("a", milliseconds(10), microseconds(100));
   acts = {signal_at(12, Signal::kOff, app.id("a")), signal_at(33, Signal::kOn, app.id("a")),
           signal_at(45, Signal::kOff, app.id("a")), signal_at(45, Signal::kOn, app.id("a"))};
@@ -213,7 +213,7 @@ TEST_P(Executors, PublishNothingOfACycleThatGaveUp) {
   EXPECT_EQ(app.task("a").state, chimera::State::kOn);
 }
 
-TEST_P(Executors, StopWhenTold) {
+TEST_P(Executors, StopOnRequest) {
   app.add("a", milliseconds(10), milliseconds(1));
   std::atomic<bool> stop{true};
   RunOptions options;

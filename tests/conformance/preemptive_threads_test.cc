@@ -82,7 +82,7 @@ TEST(PreemptiveThreads, AFaultLeadsToErrorAndTheOthersGoOn) {
   EXPECT_EQ(app.task("bad").profile.cycles, 1u);
 }
 
-TEST(PreemptiveThreads, AJobThatSleepsIsChargedForWhatItComputed) {
+TEST(PreemptiveThreads, AJobThatSleepsIsChargedForItsComputingTime) {
   Application app;
   app.add("sleeper", milliseconds(20));
   app.toy("sleeper").during = [](const chimera_call&) {

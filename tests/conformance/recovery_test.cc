@@ -325,7 +325,7 @@ TEST_P(RecoveryTest, AHotStandbyThatIsNotReadyIsAskedAgainAPeriodLater) {
   EXPECT_TRUE(task(kSpare).is_unread);
 }
 
-TEST_P(RecoveryTest, AHotStandbyIsOffForAllOthersAndWhatItSendsIsNotSent) {
+TEST_P(RecoveryTest, AHotStandbyIsOffForOtherTasksAndSendsNothing) {
   make_hot(standbys_);
   scene.cycle_of_spare = [](Cycle c) -> Outcome {
     c.request("alone");

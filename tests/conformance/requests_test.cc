@@ -180,7 +180,7 @@ TEST_P(Requests, TheLastOfAMethodCounts) {
   EXPECT_EQ(receipts[0].after, kOtherSet);
 }
 
-TEST_P(Requests, ForWhatIsInForceOrUnderWayHaveNoEffect) {
+TEST_P(Requests, ARequestForTheSetInForceOrUnderWayHasNoEffect) {
   scene.on_of_high = [](Cycle c) {
     c.spend(microseconds(1500));  // the releases during `on` come before the change
     return ok();
@@ -266,7 +266,7 @@ TEST_P(Requests, ForAnUnknownConfigurationAreRefusedCountedAndNotedOnce) {
   EXPECT_STREQ(task.faults.note, "asks for the configuration 'hihg': there is none of this name");
 }
 
-TEST_P(Requests, ForTasksAreWorkedOutFromWhatIsOn) {
+TEST_P(Requests, ARequestForTasksDependsOnTheTasksThatAreOn) {
   scene.first = [](Cycle c) {
     if (c.count() == 3) ask(c, "--on high");
     if (c.count() == 4 || c.count() == 8) ask(c, "--on high --off low");  // what is under way, and what is in force

@@ -80,7 +80,7 @@ Outcome in_company(std::uint32_t seed, bool preemptive, std::uint32_t me, const 
   return outcome_of(run.records(), app.calls, n, RtpuId(me));
 }
 
-TEST(RtpusTwins, AnRtpuThatGetsNothingFromOthersDoesWhatItDoesAlone) {
+TEST(RtpusTwins, AnRtpuWithoutInputsFromOthersRunsAsAlone) {
   std::size_t n_records = 0;
   for (std::uint32_t seed = 1; seed <= 40; ++seed)
     for (const bool preemptive : {false, true}) {

@@ -266,7 +266,7 @@ TEST_P(SlowSwitches, ASignalToAMemberAndTheFlagTakeItBack) {
 }
 
 // Outside the configuration in force a task has the constants of the first one that names it.
-TEST_P(SlowSwitches, OnByHandReinitialisesWhoWasInitialisedWithOtherConstants) {
+TEST_P(SlowSwitches, OnByHandReinitialisesATaskWithOtherConstants) {
   tools.heavy = 1;
   tools.heavy_axes = 3;
   const ScriptAct off{milliseconds(25), ScriptAct::Kind::kSignal, Signal::kOff, kScreen};

@@ -123,7 +123,7 @@ TEST_P(SwitchLoops, OffThatWasNeverCalledWaitsForAGapForAHundredMilliseconds) {
   EXPECT_LE(off_at, receipt.at + milliseconds(waits ? 102 : 2));
 }
 
-TEST_P(SwitchLoops, OnlyAContextWhoseJobsDoNotPreemptEachOtherNeedsAGapForOn) {
+TEST_P(SwitchLoops, OnlyAContextWithoutPreemptionNeedsAGapForOn) {
   const TaskId stays = add("stays", testing::component<Busy>("busy"), milliseconds(1), microseconds(30));
   const TaskId heavy = add("heavy", testing::component<Busy>("busy"), milliseconds(10), milliseconds(3));
   app_.link(heavy.index, 0, "yb");

@@ -194,7 +194,7 @@ TEST_P(Switches, ArmBesideThePredecessorCommitAtOneInstantAndTurnOffBehindIt) {
 }
 
 // The laws of both sets compute equal values: tasks that stay must publish equal bits with and without the switches.
-TEST_P(Switches, TenThousandAtRandomInstantsLoseNothingAndDoNotTouchWhoStays) {
+TEST_P(Switches, TenThousandAtRandomInstantsLoseNoCycleOfTasksThatStay) {
   std::vector<ScriptAct> acts;
   std::mt19937 random(7);
   Nanoseconds at = milliseconds(10);
@@ -300,7 +300,7 @@ TEST_P(Switches, TheReceiptHasTheLongestDelayOfAStart) {
   EXPECT_LE(before, microseconds(200));
 }
 
-TEST_P(Switches, OneAtATimeAndWhatIsInForceIsNothingToDo) {
+TEST_P(Switches, OneSwitchAtATimeAndNoneToTheSetInForce) {
   scene.on_takes = microseconds(600);
   const auto receipts = go(milliseconds(20), {to(kDirect, milliseconds(2)), to(kObserved, microseconds(5600)),
                                               to(kDirect, microseconds(5610)), to(kDirect, milliseconds(9))});
@@ -390,7 +390,7 @@ TEST_P(Switches, TheEndOfTheRunTakesAnUnfinishedOneBack) {
   EXPECT_EQ(std::ranges::count(scene.story, "on two"), std::ranges::count(scene.story, "off two"));
 }
 
-TEST_P(Switches, ARaisedFlagUndoesWhatIsNotCommitted) {
+TEST_P(Switches, ARaisedFlagUndoesAnUncommittedSwitch) {
   scene.on_takes = microseconds(600);
   const ScriptAct up{milliseconds(6), ScriptAct::Kind::kRaiseFlag, Signal::kOn, TaskId()};
   const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600)), up});

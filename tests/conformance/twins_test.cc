@@ -72,7 +72,7 @@ std::vector<std::string> with_seed(std::uint64_t seed, Kind kind) {
   return all;
 }
 
-TEST(Twins, TheSeedDecidesExecutionTimesAndNothingElseDoes) {
+TEST(Twins, OnlyTheSeedDecidesExecutionTimes) {
   for (const Kind kind : {Kind::kVirtual, Kind::kPreemptive}) {
     EXPECT_EQ(with_seed(1, kind), with_seed(1, kind));
     EXPECT_NE(with_seed(1, kind), with_seed(2, kind));

@@ -29,7 +29,7 @@ struct Deaths : ::testing::Test {
   }
 };
 
-TEST_F(Deaths, AnRtpuThatDiesIsNamedWithItsCauseAndComesBackWithWhatWasOn) {
+TEST_F(Deaths, ADeadRtpuIsNamedWithItsCauseAndComesBackWithItsTasks) {
   const std::pair<int, const char*> ways[] = {{SIGSEGV, "signal 11 (SIGSEGV)"}, {SIGABRT, "signal 6 (SIGABRT)"},
                                               {SIGBUS, "signal 7 (SIGBUS)"},    {SIGFPE, "signal 8 (SIGFPE)"},
                                               {SIGILL, "signal 4 (SIGILL)"},    {SIGKILL, "signal 9 (SIGKILL)"}};

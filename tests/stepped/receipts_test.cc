@@ -80,7 +80,7 @@ TEST(SteppedReceipts, ASecondRequestIsRefusedByNameAndTheFirstOneCanBeCancelled)
   EXPECT_EQ(system.on(), kQuick);
 }
 
-TEST(SteppedReceipts, ADryRunSaysWhatWouldBeDoneAndChangesNothing) {
+TEST(SteppedReceipts, ADryRunForeseesTheSwitchAndChangesNothing) {
   SteppedSubsystem system(kReceipts);
   ASSERT_TRUE(system.until_started());
   const Json plan = system.result("plan", to("quick"));

@@ -24,7 +24,7 @@ start: low
 )";
 const std::string kLow = "steady asker one reader ", kHigh = "steady asker two reader ";
 
-TEST(SteppedRequests, CarryOutWhatATaskAsksForAndNameTheTask) {
+TEST(SteppedRequests, CarryOutRequestsOfATaskAndNameTheTask) {
   for (const std::string& lists : {std::string("{first: low, second: high}"),
                                    std::string("{first: --on one, second: --on two --off one}")}) {
     SteppedSubsystem system(replaced(kTasksAsk, "{first: low, second: high}", lists));
@@ -58,7 +58,7 @@ TEST(SteppedRequests, RefuseTasksThatAreNoLegalSetByName) {
   EXPECT_EQ(system.receipts(), Json::array());
 }
 
-TEST(SteppedRequests, WaitWithASwitchForItsSafeWhenAndNameWhatHoldsItUp) {
+TEST(SteppedRequests, WaitForSafeWhenAndNameTheVariableThatDelays) {
   SteppedSubsystem system(kTasksAsk);
   ASSERT_TRUE(system.until_started());
   system.set("given", 9);

@@ -44,7 +44,7 @@ TEST(ValueList, ListsTextsAndUnitsOfTheirOwnStayWhole) {
   EXPECT_TRUE(mixed->numbers.empty()) << "half a metre is not 500 of what the other is 1 of";
 }
 
-TEST(ValueList, RefusesWhatIsNoList) {
+TEST(ValueList, RefusesAMalformedList) {
   const std::string form = "write 'NAME = VALUE, VALUE UNIT' or 'NAME = [FIRST:STEP:LAST] UNIT'";
   EXPECT_EQ(values("kp"), Texts{"--over 'kp': " + form});
   EXPECT_EQ(values("= 1"), Texts{"--over '= 1': " + form});

@@ -82,7 +82,7 @@ CommandResult modes_of(std::string text, const std::string& instead = "", const 
   return output;
 }
 
-TEST(CheckModes, JudgesEachSwitchAndSaysWhoAsks) {
+TEST(CheckModes, JudgesEachSwitchAndNamesItsRequesters) {
   const CommandResult output = modes_of(kModes);
   EXPECT_EQ(output.code, kOk);
   EXPECT_EQ(output.err, "");
@@ -102,7 +102,7 @@ TEST(CheckModes, JudgesEachSwitchAndSaysWhoAsks) {
             "unreachable except by an operator: late\n");
 }
 
-TEST(CheckModes, AReactionWhoseSwitchWouldBeSlowIsAFault) {
+TEST(CheckModes, AReactionWithASlowSwitchIsAFault) {
   const CommandResult output = modes_of(kModes, "{switch: late}", "{switch: light}");
   EXPECT_EQ(output.code, kRefused);
   EXPECT_EQ(output.out.rfind("heavy -> late: slow; asked for by on_miss of a, an operator\n", 0), 0u) << output.out;
@@ -126,7 +126,7 @@ start: alone
   EXPECT_EQ(output.out.rfind("alone -> both: fast; asked for by on_miss of a, on_fault of a, an operator\n", 0), 0u);
 }
 
-TEST(CheckModes, NamesWhoAsksForTasksThatLeadToAConfiguration) {
+TEST(CheckModes, NamesTheRequesterOfTasksThatLeadToAConfiguration) {
   const CommandResult output = modes_of(R"(subsystem: modes
 tasks:
   asker: {component: t_asker, rate: 100 Hz, budget: 1 ms, constants: {first: --on two, second: --off one}}

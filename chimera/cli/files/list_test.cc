@@ -48,7 +48,7 @@ TEST(Output, AnErrorNamesItsPlace) {
             "{\"error\": {\"where\": \"arm.yaml:3:4\", \"message\": \"wrong \\\"word\\\"\"}}\n");
 }
 
-TEST(JsonString, EscapesWhatJsonCannotHold) {
+TEST(JsonString, EscapesCharactersThatJsonCannotHold) {
   EXPECT_EQ(json_string("a\"\\\n\x01"), "\"a\\\"\\\\\\n\\u0001\"");
   EXPECT_EQ(json_string("\xff"), "\"\xef\xbf\xbd\"");  // no UTF-8: the replacement character
 }

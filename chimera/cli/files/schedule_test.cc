@@ -60,7 +60,7 @@ TEST(Schedule, TellsWhoMissesInAnExecutiveAndWhatWouldHelp) {
       << output.out;
 }
 
-TEST(Schedule, ASetThatTakesMoreThanThereIsIsAnalysedAndToldWhatFits) {
+TEST(Schedule, AnOverloadedSetIsAnalysedWithARemedyThatFits) {
   std::string text = kTwo;
   text.replace(text.find("budget: 9 ms"), 12, "budget: 45 ms");
   const CommandResult output = scheduled(text, "preemptive");
@@ -239,7 +239,7 @@ TEST(Schedule, TellsWhatAProfileSaysOfTheBudgets) {
       << said;
 }
 
-TEST(Schedule, SaysWhatToDoAboutATaskWithoutATime) {
+TEST(Schedule, NamesARemedyForATaskWithoutATime) {
   const CommandResult output = scheduled("subsystem: s\ntasks:\n  a: {component: t_counter}\n", "");
   EXPECT_EQ(output.code, kOk);
   EXPECT_NE(output.out.find("  no budget given for a: ignored in this proof; write 'budget:', or record one: "
@@ -250,7 +250,7 @@ TEST(Schedule, SaysWhatToDoAboutATaskWithoutATime) {
       << output.out;
 }
 
-TEST(Schedule, TheLegendOfTheWindowNamesWhoIsSeen) {
+TEST(Schedule, TheLegendOfTheWindowNamesTheTasksInIt) {
   const std::string text = description("r: {policy: rm, executor: preemptive}",
                                        {{"a", "r", "low", "1000", 10}, {"b", "r", "low", "1", 300000}});
   const CommandResult output = scheduled(text, "");
@@ -259,7 +259,7 @@ TEST(Schedule, TheLegendOfTheWindowNamesWhoIsSeen) {
       << output.out;
 }
 
-TEST(Schedule, RefusesWhatIsNotLegalAsCheckDoes) {
+TEST(Schedule, RefusesAnIllegalDescriptionAsCheckDoes) {
   const CommandResult output = scheduled("subsystem: s\ntasks:\n  a: {component: nothing}\n", "");
   EXPECT_EQ(output.code, kRefused);
   EXPECT_EQ(output.out, "");

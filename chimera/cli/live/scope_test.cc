@@ -42,7 +42,7 @@ Json arm(std::uint64_t first, std::int64_t at_ms, double value) {
           {"rows", Json::array({Json::array({at_ms * 1'000'000, first + 1, {value, value}})})}};
 }
 
-TEST(Scope, KeepsWhatWasBeforeTheTriggerAndEndsAfterIt) {
+TEST(Scope, KeepsRowsFromBeforeTheTriggerAndEndsAfterIt) {
   Scope scope(request("error > 2 mrad", 2, 1));
   scope.add(pid(0, {{1000, 1, 0}, {1001, 2, 0}, {1002, 3, 0.001}, {1003, 4, 0.002}}));
   scope.add(arm(0, 1002, 7));

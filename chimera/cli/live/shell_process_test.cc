@@ -281,7 +281,7 @@ TEST_F(ShellTest, AScopeRecordsRoundItsTriggerAndCountsItsGaps) {
   EXPECT_NE(content(path("a.svg")).find("3 rows of pid lost"), std::string::npos);
 }
 
-TEST_F(ShellTest, AScopeRefusesWhatCannotBe) {
+TEST_F(ShellTest, AScopeRefusesImpossibleArguments) {
   serve();
   EXPECT_EQ(run({"scope", "eror"}), "1||[puma_pid]\nno state variable 'eror'; did you mean 'error'?\n");
   EXPECT_EQ(run({"scope", "ndof"}), "2||[puma_pid]\n'ndof' is a constant: no task publishes it\n");

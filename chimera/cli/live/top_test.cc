@@ -60,7 +60,7 @@ TEST(Top, ANarrowScreenKeepsTheMissedDeadlinesWhole) {
   }
 }
 
-TEST(Top, TheHelpSaysWhatEveryColumnMeans) {
+TEST(Top, TheHelpExplainsEveryColumn) {
   std::string text;
   for (const TopLine& line : help_lines({})) text += line.text + "\n";
   for (const char* column : {"RATE", "EXEC", "MAX", "BUDGET", "USED", "JITTER", "MISSED", "INPUT"})
@@ -152,7 +152,7 @@ TEST(Top, ShowsTheCapacityOfAServerAndItsUseSinceTheLastPoll) {
   EXPECT_EQ(top_lines(then, first, {})[6].text.substr(43, 12), "2.00 ms  50%");
 }
 
-TEST(Top, AWideScreenTellsWhatSeldomHappens) {
+TEST(Top, AWideScreenShowsRareCounters) {
   Json json = status();
   json["tasks"][1]["demoted"] = 2;
   json["tasks"][1]["preempted"] = 1'200'000;

@@ -52,7 +52,7 @@ TEST(Trigger, ANumberThatIsNoneHoldsNoComparison) {
   EXPECT_EQ(edges(settled("e > 1", "1"), {NAN, 2}), "01");
 }
 
-TEST(Trigger, RefusesWithTheWordsOfWhatIsWrong) {
+TEST(Trigger, RefusesWithTheReason) {
   EXPECT_EQ(refusal("error"), "trigger 'error': expected VARIABLE, one of > >= < <= == !=, QUANTITY");
   EXPECT_EQ(refusal("> 2 rad"),
             "trigger '> 2 rad': '' is not the name of a variable; expected a name such as q, q[2] or pose.x");

@@ -14,7 +14,7 @@
 namespace chimera::cli {
 namespace {
 
-TEST(EventLines, AreNumberedAndTimedAndSayWhatIsGone) {
+TEST(EventLines, AreNumberedAndTimedAndCountLostEvents) {
   setenv("TZ", "UTC", 1);
   tzset();
   EXPECT_EQ(events_text(Json::parse(R"({"first": 17, "last": 18, "events": [

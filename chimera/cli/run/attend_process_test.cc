@@ -215,7 +215,7 @@ TEST_F(Attend, ANumberThatIsNoneSatisfiesNothing) {
   EXPECT_NE(out_.find("FAILS: q < 3 rad (q is [1 nan] rad)\n"), std::string::npos) << out_;
 }
 
-TEST_F(Attend, ActsAtTheirTimeAndTellsWhatWasRefused) {
+TEST_F(Attend, ActsAtTheirTimeAndPrintsRefusals) {
   request_.run.at = {"20 ms: on pid", "10 ms: flag up"};
   const std::int64_t started = backend_.started_ns.as_int64();
   backend_.events = {{{"number", 1}, {"at_ns", started + 30'000'000}, {"kind", "refused"}, {"task", "pid"},

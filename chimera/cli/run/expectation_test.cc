@@ -23,7 +23,7 @@ TEST_F(ExpectationText, TakesEveryComparisonAndConvertsTheUnit) {
     EXPECT_EQ(refusal(text), "accepted") << text;
 }
 
-TEST_F(ExpectationText, RefusesWhatIsNoComparison) {
+TEST_F(ExpectationText, RefusesTextThatIsNoComparison) {
   const char* form = "write 'VARIABLE <= QUANTITY', with < <= > or >=";
   EXPECT_EQ(refusal(""), std::string("--expect '': ") + form);
   EXPECT_EQ(refusal("dt = 1 s"), std::string("--expect 'dt = 1 s': ") + form);

@@ -35,7 +35,7 @@ UnderWay& known() {
   return place;
 }
 
-TEST(OwnProcess, AnswersWhatItsWorkReturned) {
+TEST(OwnProcess, ReturnsTheAnswerOfItsWork) {
   const pid_t here = ::getpid();
   EXPECT_EQ(end_of([] { return 0; }), "returned 0");
   EXPECT_EQ(end_of([here] { return ::getpid() == here ? 1 : 3; }), "returned 3") << "not in this process";

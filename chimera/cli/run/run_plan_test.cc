@@ -45,7 +45,7 @@ TEST(RunPlan, RefusesHardTasksThatAreNotGuaranteedTheirDeadlines) {
   EXPECT_NE(said.find("--may-miss b runs it all the same"), std::string::npos) << said;
 }
 
-TEST(RunPlan, RunsThemWhenToldSoByName) {
+TEST(RunPlan, RunsTasksThatMayMissIfTheOptionNamesThem) {
   EXPECT_EQ(refusal(kTight, missing({"a", "b"})), "");
   EXPECT_EQ(refusal(kTight, missing({"a"})).find("task 'a' is not"), std::string::npos);
   EXPECT_EQ(refusal(kTight, missing({"a", "b", "see"})), "error: --may-miss: no task 'see'\n");

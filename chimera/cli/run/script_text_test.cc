@@ -89,7 +89,7 @@ TEST_F(ScriptText, ASwitchNamesTasksInPlaceOfOne) {
             "--at '3 s: switch --on countr': no task 'countr'; did you mean 'counter'?");
 }
 
-TEST_F(ScriptText, RefusesWhatIsNoAct) {
+TEST_F(ScriptText, RefusesTextThatIsNoAct) {
   const char* form = "write 'DURATION: SIGNAL TASK', such as '2 s: off pid'";
   const char* object = "after the time stand a signal and a task, 'flag up', 'set VARIABLE VALUE', "
                        "'switch CONFIGURATION', 'switch --on TASK... --off TASK...', or 'die RTPU'";

@@ -139,7 +139,7 @@ TEST(SeveralRtpus, SwitchToAnotherConfigurationTogether) {
   EXPECT_TRUE(has(said.out, ": 0 tasks arrive, 2 leave, 0 cycles lost\n")) << said.out;
 }
 
-TEST(SeveralRtpus, SwitchToWhatTasksByNameLeadTo) {
+TEST(SeveralRtpus, SwitchToTheSetThatNamedTasksLeadTo) {
   RunRequest request = with_act("5 ms: switch --off ages");
   request.at.insert(request.at.end(), {"15 ms: switch --off counter --on source", "20 ms: switch --on ages",
                                        "24 ms: switch --on ages", "25 ms: switch --off source ages",

@@ -33,7 +33,7 @@ struct DrillTest : ::testing::Test {
   std::optional<DrillOutcome> got;
 };
 
-TEST_F(DrillTest, HardwareIsWhatSaysWhenItIsSafeAndWhatMayMove) {
+TEST_F(DrillTest, HardwareIsATaskWithASafeStateOrAMovingResource) {
   const auto hardware = hardware_of(fake.spec(), fake.loop().state().bundle.library);
   ASSERT_EQ(hardware.size(), 2u);
   EXPECT_EQ(hardware[0].task, fake.task("arm"));
@@ -106,7 +106,7 @@ TEST_F(DrillTest, AManagerThatDiesEndsItsDrill) {
   EXPECT_EQ(flag(), 0u);
 }
 
-TEST_F(DrillTest, KillsAnRtpuWhenAllAreSafeAndTellsWhatTheGuardWrote) {
+TEST_F(DrillTest, KillsAnRtpuWhenAllAreSafeAndReportsTheFramesOfTheGuard) {
   fake.rtpu(0).filled_with = 1;
   begin(kHangLimit, RtpuId(std::size_t{0}));
   ASSERT_TRUE(fake.until([&] { return fake.killed == 0u; }));

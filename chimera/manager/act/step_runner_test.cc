@@ -55,7 +55,7 @@ TEST_F(StepRunnerTest, KeepsTheGoalsOfTheFirstStepInTheManagersBlock) {
   EXPECT_FALSE(state().logic.is_settled());
 }
 
-TEST_F(StepRunnerTest, GoesOnWithWhatAPredecessorLeftInTheBlock) {
+TEST_F(StepRunnerTest, ResumesTheGoalsThatAPredecessorLeft) {
   memory().started = 1;
   state().own.block().set_goal(task("law"), kGoalSpawn);
   runner_.begin();

@@ -60,7 +60,7 @@ TEST_F(QuestionsTest, AnswersWithTheReportAndEachConnectionInTurn) {
   EXPECT_EQ(told_, "");
 }
 
-TEST_F(QuestionsTest, RefusesWhatIsTooManyAtOnce) {
+TEST_F(QuestionsTest, RefusesTooManyAnalysesAtOnce) {
   for (const char* name : {"1", "2", "3", "4", "5"}) ask(name, 1);
   ASSERT_EQ(answers_.size(), 1u);
   EXPECT_EQ(answers_["5"].code, control::kTooFast);
@@ -70,7 +70,7 @@ TEST_F(QuestionsTest, RefusesWhatIsTooManyAtOnce) {
   EXPECT_EQ(answers_["last"].message, "64 analyses are under way");
 }
 
-TEST_F(QuestionsTest, RefusesWhatIsTooMuchTextAtOnce) {
+TEST_F(QuestionsTest, RefusesTooMuchTextInAllAnalyses) {
   const std::string text(kMaxQuestionBytes / 16, '#');
   for (std::uint64_t n = 0; n < 16; ++n) ask("n" + std::to_string(n), n, text);
   ask("last", 1000, "#");

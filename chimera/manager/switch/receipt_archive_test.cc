@@ -118,7 +118,7 @@ TEST_F(ReceiptArchiveTest, FilesReceiptsOfAPredecessorOnce) {
   EXPECT_EQ(archive->kept(), (std::deque<std::string>{receipt(1), receipt(2)}));
 }
 
-TEST_F(ReceiptArchiveTest, BeyondItsRoomTheOldestIsLostAndTold) {
+TEST_F(ReceiptArchiveTest, WithoutRoomTheOldestReceiptIsLostAndReported) {
   std::filesystem::create_directories(control::ReceiptFile(folder()).path());
   add(1);
   ASSERT_TRUE(until([&] { return archive->fault() != ""; }));
@@ -128,7 +128,7 @@ TEST_F(ReceiptArchiveTest, BeyondItsRoomTheOldestIsLostAndTold) {
   EXPECT_NE(lone.told().find(" is lost: "), std::string::npos) << lone.told();
 }
 
-TEST_F(ReceiptArchiveTest, FlushFilesWhatIsLeft) {
+TEST_F(ReceiptArchiveTest, FlushFilesTheRemainingReceipts) {
   add(1);
   add(2);
   archive->flush(kHangLimit);

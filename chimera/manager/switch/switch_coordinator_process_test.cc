@@ -71,7 +71,7 @@ struct SwitchCoordinatorTest : ::testing::Test {
   std::optional<SwitchOutcome> got;
 };
 
-TEST_F(SwitchCoordinatorTest, OrdersWhatIsAskedForAndPutsThePartsTogether) {
+TEST_F(SwitchCoordinatorTest, OrdersARequestAndCombinesTheParts) {
   ask(kRest);
   ASSERT_FALSE(got);
   const PlanWord plan = agreement().plan();
@@ -167,7 +167,7 @@ TEST_F(SwitchCoordinatorTest, ACommittedSwitchIsNotCancelled) {
   EXPECT_EQ(got->receipt.end, SwitchEnd::kDone);
 }
 
-TEST_F(SwitchCoordinatorTest, ForeseesWhatWouldBeDoneAndChangesNothing) {
+TEST_F(SwitchCoordinatorTest, ForeseesASwitchAndChangesNothing) {
   ForeseenSwitch foreseen = coordinator().foresee(tasks_of(fake.spec(), kRest));
   EXPECT_EQ(foreseen.receipt.end, SwitchEnd::kDone);
   EXPECT_EQ(foreseen.receipt.before, kRun);
@@ -442,7 +442,7 @@ TEST_F(SwitchCoordinatorTest, AnRtpuThatDiesBetweenCommitAndChangeComesBackToThe
 
 // One rtpu has agreed and died; the other would agree next. The tasks that come back are decided now, so the plan must
 // be decided too.
-TEST_F(SwitchCoordinatorTest, APlanIsNoLongerOpenWhenItIsDecidedAsWhatADeadRtpuComesBack) {
+TEST_F(SwitchCoordinatorTest, ADeathClosesThePlanBeforeTheGoalsOfTheRtpuAreDecided) {
   ask(kRest);
   const std::uint16_t number = agreement().plan().number;
   ASSERT_TRUE(agreement().propose(number, agreement().round_up(now() + milliseconds(1))));

@@ -64,7 +64,7 @@ struct SwitchWishesTest : ::testing::Test {
   FakeSubsystem fake;
 };
 
-TEST_F(SwitchWishesTest, AreCarriedOutAndNameWhoAsked) {
+TEST_F(SwitchWishesTest, AreCarriedOutAndNameTheRequester) {
   wish(1, kRest, "law", SwitchCause::kFault);
   rounds();
   EXPECT_EQ(plan().phase, SwitchPhase::kPrepared);
@@ -80,7 +80,7 @@ TEST_F(SwitchWishesTest, AreCarriedOutAndNameWhoAsked) {
       << filed()[0];
 }
 
-TEST_F(SwitchWishesTest, ForWhatIsInForceChangeNothing) {
+TEST_F(SwitchWishesTest, ARequestForTheSetInForceChangesNothing) {
   wish(0, kRun, "sensor");
   rounds();
   EXPECT_EQ(plan().number, 0);
@@ -107,7 +107,7 @@ TEST_F(SwitchWishesTest, WaitForTheSwitchThatIsUnderWay) {
   EXPECT_TRUE(coordinator().leads_to({kRun, SwitchCause::kRequest, {}}));
 }
 
-TEST_F(SwitchWishesTest, ASuccessorFindsWhatIsOpenAndOnlyThat) {
+TEST_F(SwitchWishesTest, ASuccessorFindsOpenRequestsOnly) {
   fake.kill_manager();
   wish(1, kRest, "law");
   fake.start_manager();
@@ -176,7 +176,7 @@ TEST_F(SwitchWishesTest, SkipsRequestsThatDoNotFitTheApplication) {
   }
 }
 
-TEST_F(SwitchWishesTest, ForTasksAreWorkedOutFromWhatIsOn) {
+TEST_F(SwitchWishesTest, ARequestForTasksDependsOnTheTasksThatAreOn) {
   wish_for({.plus = {}, .minus = bits_of(std::vector{fake.task("law")})});
   rounds();
   EXPECT_EQ(plan().phase, SwitchPhase::kPrepared);

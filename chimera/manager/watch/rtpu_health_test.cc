@@ -7,7 +7,7 @@
 namespace chimera::manager {
 namespace {
 
-TEST(RtpuHealth, ReadsWhatWasGranted) {
+TEST(RtpuHealth, ReadsTheGrantedRights) {
   const auto all = GrantedRights::of("Real-time OK: memory locked, pinned to CPU 1, SCHED_FIFO 80. Kernel limit ...");
   EXPECT_EQ(all.level, 80);
   EXPECT_EQ(all.cpu, 1);

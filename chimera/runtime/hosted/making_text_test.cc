@@ -8,7 +8,7 @@
 namespace chimera {
 namespace {
 
-TEST(MakingWord, SaysWhatIsMadeForWhom) {
+TEST(MakingWord, NamesTheObjectAndItsTask) {
   std::atomic<std::uint32_t> cell{0};
   show_making(cell, 2, Making::kLoads);
   EXPECT_EQ(task_of_making(cell, 3), 2u);

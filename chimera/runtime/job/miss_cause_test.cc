@@ -51,7 +51,7 @@ class MissCauseTest : public ::testing::Test {
   MissCause cause{tasks, under_way, heap};
 };
 
-TEST_F(MissCauseTest, FindsWhoWentFurthestBeyondItsBudget) {
+TEST_F(MissCauseTest, FindsTheTaskThatExceededItsBudgetMost) {
   cause.ended(kFirst, milliseconds(3), milliseconds(13));
   cause.ended(kSecond, milliseconds(6), milliseconds(19));
   cause.missed(kFirst, milliseconds(10));
@@ -100,7 +100,7 @@ TEST_F(MissCauseTest, BlamesATaskThatUsedTooMuchThoughTheProcessorWasAway) {
   EXPECT_EQ(judged(kFirst, 40).culprit, kSecond);
 }
 
-TEST_F(MissCauseTest, SaysWhoCameNearestWhenTheProcessorWasAwayForLessThanAMillisecond) {
+TEST_F(MissCauseTest, BlamesTheNearestTaskIfTheProcessorWasAwayForLessThanAMillisecond) {
   cause.ended(kFirst, milliseconds(2), milliseconds(18));
   cause.ended(kSecond, microseconds(1900), milliseconds(19));
   cause.ended(kThird, microseconds(6200), milliseconds(20));
@@ -129,7 +129,7 @@ TEST_F(MissCauseTest, BlamesTheTaskItselfWhenNoTaskUsedTime) {
   EXPECT_EQ(verdict.used, Nanoseconds{});
 }
 
-TEST_F(MissCauseTest, JudgesATaskTenTimesASecondAtMostAndForgetsWhatCameBetween) {
+TEST_F(MissCauseTest, JudgesATaskTenTimesASecondAtMostAndForgetsOtherMisses) {
   cause.missed(kFirst, milliseconds(10));
   EXPECT_EQ(judged(kFirst, 20).used, milliseconds(10));
   cause.missed(kFirst, milliseconds(20));

@@ -74,7 +74,7 @@ TEST_F(MissPolicyTest, SkipDropsTheNextReleaseAndNoOther) {
   EXPECT_FALSE(bare.records[0].skip_next);
 }
 
-TEST_F(MissPolicyTest, RefusesAStartWhoseMinimumIsNotLeftAndCountsThat) {
+TEST_F(MissPolicyTest, RefusesAndCountsAStartWithoutItsMinimumTime) {
   spec().min_time = milliseconds(4);
   spec().on_miss = OnMiss::kHold;
   EXPECT_FALSE(misses.decide_start(BareTasks::job(kFirst, 10), milliseconds(17)));

@@ -34,7 +34,7 @@ TEST(SporadicJob, AnswersOneEventAfterTheOther) {
   EXPECT_FALSE(job.has_event());
 }
 
-TEST(SporadicJob, LosesTheEventThatWasAcceptedAndOnlyThatOne) {
+TEST(SporadicJob, LosesOnlyTheAcceptedEvent) {
   SporadicJob job = started(kSporadic);
   EXPECT_FALSE(job.forget());
   std::uint32_t waiting = 3;

@@ -200,7 +200,7 @@ TEST_F(TaskHostTest, KeepsARequestForTasksIfListsAreAllowed) {
   EXPECT_TRUE(lists[task().id.index].plus.has(task().id));
 }
 
-TEST_F(TaskHostTest, APortKnowsWhatItIsLinkedToAndInWhichRtpu) {
+TEST_F(TaskHostTest, APortKnowsItsVariableAndTheRtpu) {
   EXPECT_EQ(view(host().variable(context(), port(0))), "q");
   EXPECT_EQ(view(host().unit(context(), port(0))), "rad");
   EXPECT_EQ(view(host().variable(context(), port(1))), "") << "not linked";

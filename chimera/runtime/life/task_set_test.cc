@@ -151,7 +151,7 @@ TEST_F(CounterAndReader, AFaultThatIsNotRecoveredEndsInErrorAndClearLeadsToOff) 
   EXPECT_FALSE(set->flag().is_up());
 }
 
-TEST_F(CounterAndReader, RefusesWhatIsNotLegalAndChangesNothing) {
+TEST_F(CounterAndReader, AnIllegalSignalIsRefusedAndChangesNothing) {
   ASSERT_TRUE(set->life().start({}));
   const SignalReport again = set->life().signal(TaskId{std::size_t{0}}, Signal::kOn, {});
   EXPECT_FALSE(again.is_accepted);
@@ -165,7 +165,7 @@ TEST_F(CounterAndReader, RefusesWhatIsNotLegalAndChangesNothing) {
   EXPECT_EQ(set->tasks()[1].state, State::kOff);
 }
 
-TEST_F(CounterAndReader, ARespawnedProducerTakesOverWhatItsPredecessorLeft) {
+TEST_F(CounterAndReader, ARespawnedProducerTakesOverTheLastValue) {
   ASSERT_TRUE(set->life().start({}));
   for (int i = 1; i <= 5; ++i) run_cycle(*set, 0, milliseconds(i));
   const TaskId counter{std::size_t{0}};
@@ -197,7 +197,7 @@ TEST_F(CounterAndReader, AnInitialValueIsNotInherited) {
   EXPECT_EQ(counter()->inherited_, Nanoseconds{}) << "a clock that was read before";
 }
 
-TEST_F(CounterAndReader, ClearDoesNotMakeWhatStoodYounger) {
+TEST_F(CounterAndReader, ClearDoesNotRenewTheAgeOfAValue) {
   ASSERT_TRUE(set->life().start({}));
   run_cycle(*set, 0, milliseconds(1));
   static_cast<Counter*>(set->tasks()[0].instance)->recovers_ = false;

@@ -79,7 +79,7 @@ TEST_F(RivalsTest, SharedByEitherOrTogetherInAConfigurationTheyAreNone) {
   EXPECT_FALSE(rivals.may_be_absent(kTwo));
 }
 
-TEST_F(RivalsTest, TheStartLeavesOutRivalsAndWhoNeedsTheirConstants) {
+TEST_F(RivalsTest, TheStartLeavesOutRivalsAndUsersOfTheirConstants) {
   make();
   EXPECT_EQ(created(), (std::vector<bool>{true, false, false, false, false}))
       << "user has the mass of its configuration, which two makes";

@@ -74,7 +74,7 @@ struct Planned {
 
 std::vector<TaskId> listed(std::span<const TaskId> ids) { return {ids.begin(), ids.end()}; }
 
-TEST(SwitchPlan, SaysWhoArrivesLeavesAndStaysInTheOrdersOfTheDataFlow) {
+TEST(SwitchPlan, ListsArrivingLeavingAndStayingTasksByDataFlow) {
   Planned p;
   ASSERT_TRUE(p.make(1));
   EXPECT_EQ(p.plan.before, 0u);

@@ -48,7 +48,7 @@ struct Scene {
 
 constexpr TaskId kA{0u}, kB{1u}, kC{2u};
 
-TEST(SwitchSchedule, LikeForLikeMaySwitchAndWhatMeetsMayNot) {
+TEST(SwitchSchedule, AllowsLikeForLikeAndForbidsTasksThatMeet) {
   Scene scene({task(10, 8), task(10, 7), task(10, 8, 0, 9)}, {{kA}, {kB}, {kC}});
   EXPECT_TRUE(scene.judge(0, 1));
   EXPECT_TRUE(scene.judge(1, 0));

@@ -16,7 +16,7 @@ Takeover takeover(std::uint32_t number, Nanoseconds ended) {
   return one;
 }
 
-TEST(TakeoverRing, GivesOutWhatIsOverOrOfADeadContext) {
+TEST(TakeoverRing, GivesOutTakeoversThatAreOverOrOfADeadContext) {
   TakeoverRing ring;
   Takeover read;
   EXPECT_FALSE(ring.read(1, false, read)) << "it has not begun";

@@ -157,7 +157,7 @@ TEST_F(EdgeAccessTest, HoldsReleasesFromAnInstantOnUntilTheTaskIsLetGo) {
   EXPECT_EQ(job(1).release_end, at(100)) << "the run ends before";
 }
 
-TEST_F(EdgeAccessTest, ARunThatGoesOnKeepsWhatIsHeld) {
+TEST_F(EdgeAccessTest, ARunThatGoesOnKeepsHeldReleases) {
   access().open(at(100));
   access().hold_releases(at(30));
   access().let_release(TaskId(1u));

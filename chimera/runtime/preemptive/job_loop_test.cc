@@ -87,7 +87,7 @@ TEST_F(JobLoopTest, TakesTheNewestReleaseAndDropsTheOthers) {
   EXPECT_EQ(job(0).task.profile.dropped, 3u);
 }
 
-TEST_F(JobLoopTest, ForgetsWhatWasSaidOfTheJobBefore) {
+TEST_F(JobLoopTest, ForgetsTheStateOfTheJobBefore) {
   add("one", seconds(100));
   make_loop();
   job(0).next_release = now() - seconds(1);

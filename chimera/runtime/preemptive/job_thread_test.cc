@@ -20,7 +20,7 @@ class JobThreadTest : public ::testing::Test {
   Task task_;
 };
 
-TEST_F(JobThreadTest, CountsWhatItsThreadUsesFromTheBeginningOfTheJobOn) {
+TEST_F(JobThreadTest, CountsTheTimeOfItsThreadFromTheBeginOfTheJob) {
   JobThread job(task_);
   Nanoseconds used, passed;
   job.start([&] {

@@ -96,7 +96,7 @@ TEST(LabelList, TheMostUrgentJobHasTheHighestLevel) {
   EXPECT_EQ(k.runs(), "2");
 }
 
-TEST(LabelList, AFullTieKeepsTheJobThatRunsElseTheOrderOfTheTasksDecides) {
+TEST(LabelList, AFullTieKeepsTheRunningJobOrFollowsTheOrderOfTheTasks) {
   Kernel k(Policy::kEdf, 4);
   k.insert(job(2, 10));
   k.insert(job(1, 10));

@@ -36,7 +36,7 @@ class ProcessorShareTest : public ::testing::Test {
   std::array<Task, 3> tasks_;
 };
 
-TEST_F(ProcessorShareTest, KeepsForImportantTasksWhatTheirBudgetsSay) {
+TEST_F(ProcessorShareTest, KeepsTheBudgetsOfImportantTasksFree) {
   ProcessorShare s = share();
   EXPECT_EQ(s.left(kNow), milliseconds(600));
   run(s, kLess, kNow, milliseconds(250));

@@ -40,7 +40,7 @@ struct ConstantStoreTest : ::testing::Test {
   HeapMemory heap;
 };
 
-TEST_F(ConstantStoreTest, KnowsWhatTheDescriptionGives) {
+TEST_F(ConstantStoreTest, KnowsTheConstantsOfTheDescription) {
   const ConstantStore store(spec, heap);
   EXPECT_TRUE(store[kGiven].is_known);
   EXPECT_EQ(store.integer(kGiven, -1), 7);

@@ -103,7 +103,7 @@ TEST_F(ContextConstantsTest, AConstantGoesFromItsMakerToItsUsers) {
   EXPECT_EQ(seen_by_user(), 3);
 }
 
-TEST_F(ContextConstantsTest, KnowsWhoUsesAConstantThatHasChanged) {
+TEST_F(ContextConstantsTest, KnowsTheUsersOfAChangedConstant) {
   make();
   makes(3);
   ASSERT_TRUE(constants.collect(kMaker, why));

@@ -148,7 +148,7 @@ struct VirtualReaderTest : VirtualPeersTest {
   }
 };
 
-TEST_F(VirtualReaderTest, AUserOfAConstantIsReinitialisedWhenItChangesElsewhere) {
+TEST_F(VirtualReaderTest, AUserOfAConstantIsReinitialisedWhenAnotherRtpuChangesIt) {
   app.add("numberer", testing::component<Numberer>("numberer"));
   app.add("user", testing::component<User>("user"));
   begin({signal_at(microseconds(2500), Signal::kReinit, TaskId(0u))});

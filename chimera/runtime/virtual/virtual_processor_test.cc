@@ -35,7 +35,7 @@ class VirtualProcessorTest : public ::testing::Test, public testing::BareTasks {
   VirtualProcessor processor{context_tap, 2};
 };
 
-TEST_F(VirtualProcessorTest, CountsWhatTheJobUses) {
+TEST_F(VirtualProcessorTest, CountsTheTimeOfTheJob) {
   EXPECT_TRUE(processor.is_idle());
   EXPECT_FALSE(processor.running().is_valid());
   processor.give(kSecond, milliseconds(5));

@@ -90,7 +90,7 @@ struct VirtualStandbysTest : ::testing::TestWithParam<bool> {
 INSTANTIATE_TEST_SUITE_P(All, VirtualStandbysTest, ::testing::Bool(),
                          [](const auto& one) { return one.param ? "Preemptive" : "Executive"; });
 
-TEST_P(VirtualStandbysTest, TakeOverFromATaskThatFailsElsewhere) {
+TEST_P(VirtualStandbysTest, TakeOverFromATaskThatFailsInAnotherRtpu) {
   scene.fails_at = milliseconds(4).count;
   go(milliseconds(8));
   EXPECT_EQ(state(kPrimary), State::kError);
@@ -143,7 +143,7 @@ TEST_P(VirtualStandbysTest, WithoutAFitOneTheFlagIsUpAtOnce) {
   EXPECT_EQ(scene.illegal.front(), milliseconds(4).count) << "no standby that is fit is left";
 }
 
-TEST_P(VirtualStandbysTest, TakeOverAlsoWhereWhatTheyReadFailedWithThePrimary) {
+TEST_P(VirtualStandbysTest, TakeOverThoughTheirInputFailedWithThePrimary) {
   source_rtpu = 0;
   go(milliseconds(8), {death_at(microseconds(3500), 0)});
   EXPECT_EQ(state(kSpare), State::kOn);

@@ -150,7 +150,7 @@ TEST_P(VirtualSwitchesTest, RequestsInEveryCycleFillNoMemory) {
   EXPECT_EQ(rtpus->lost(), 0u);
 }
 
-TEST_P(VirtualSwitchesTest, ARequestForWhatIsInForceOrNotThereLeavesNoReceipt) {
+TEST_P(VirtualSwitchesTest, ARequestForTheSetInForceOrAnUnknownSetLeavesNoReceipt) {
   scene.in_reader = [](Cycle c) {
     if (c.count() == 5) c.request("nowhere");
     if (c.count() == 6) c.request("direct");
