@@ -8,7 +8,7 @@
 namespace chimera::control {
 namespace {
 
-TEST(Closings, TellsEachOfAFewAndACrowdInOneSentence) {
+TEST(Closings, ReportsAFewOneByOneAndManyInOneSentence) {
   std::vector<std::string> told;
   Closings closings;
   closings.report_to([&](const std::string& text) { told.push_back(text); });

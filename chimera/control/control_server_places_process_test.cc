@@ -76,7 +76,7 @@ TEST_F(DoorPlaces, AConnectionWithAPendingRequestNeverGivesWay) {
   EXPECT_TRUE(told.empty()) << "who finds no place was not inside";
 }
 
-TEST_F(DoorPlaces, ASubscriberThatReadsStaysAndOneThatDoesNotGivesWay) {
+TEST_F(DoorPlaces, ASubscriberThatReadsNothingGivesWay) {
   for (int i = 0; i < 16; ++i) more();
   serve();
   for (const std::size_t i : {std::size_t{0}, std::size_t{1}})

@@ -104,7 +104,7 @@ TEST(Plot, APeakOfOnePointAmongAMillionIsSeen) {
   EXPECT_NE(first_path(picture).find(",89.2"), std::string::npos) << first_path(picture);
 }
 
-TEST(Plot, TellsWhenThereIsNothing) {
+TEST(Plot, SaysThatThereIsNoData) {
   EXPECT_EQ(count(svg(plot_of({})), "no values"), 1u);
   EXPECT_EQ(count(svg(plot_of({{"a", "1", {{0, kNothing}}}})), "no values"), 1u);
 }

@@ -190,7 +190,7 @@ TEST_F(KeeperProcess, SignalsEndEverythingWithTheCodeOfTheFace) {
   }
 }
 
-TEST_F(KeeperProcess, AFaceThatHasLookedSeesHowTheOthersEnd) {
+TEST_F(KeeperProcess, AFaceThatWaitsSeesTheEndsOfAllPeers) {
   start(1);
   ASSERT_TRUE(wait_for("face begin"));
   ASSERT_TRUE(wait_for("1.1 peer 0 1"));

@@ -85,7 +85,7 @@ TEST_F(ManagerBackendTest, CarriesOutEveryMethodButThoseOfTheDoorItself) {
   }
 }
 
-TEST_F(ManagerBackendTest, ADrillWithoutHardwareTellsThatNothingIsSafe) {
+TEST_F(ManagerBackendTest, ADrillWithoutHardwareIsNotSafe) {
   EXPECT_EQ(good("drill")["tasks"], Json::array());
   EXPECT_EQ(good("drill")["safe"], false);
 }
@@ -416,7 +416,7 @@ TEST_F(ServedTest, RingsReachTheRtpuAsOftenAsTheTaskIsNamed) {
   EXPECT_EQ(fake_.told("command"), "ring lamp: done\nring lamp, lamp: done\n");
 }
 
-TEST_F(ServedTest, StatusTellsTheServerAndForHowLongTheTaskWasOn) {
+TEST_F(ServedTest, StatusHasTheServerAndTheTimeSinceOn) {
   const Nanoseconds since = now() - seconds(2);
   fake_.rtpu(0).block().profile(fake_.task("lamp")).on_since = since;
   const Json lamp = good("status")["tasks"][1], sensor = good("status")["tasks"][0];

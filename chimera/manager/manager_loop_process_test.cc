@@ -64,7 +64,7 @@ TEST(ManagerLoop, ReportsADeadRtpuWithItsMethodAndRestartsItsTasks) {
   EXPECT_EQ(fake.loop().state().rtpus[0].last_end, "ended by signal 11 (SIGSEGV) in filter.cycle");
 }
 
-TEST(ManagerLoop, AManagerKilledAtAnyTimeIsFollowedByOneThatGoesOn) {
+TEST(ManagerLoop, ANewManagerResumesAfterAKillAtAnyTime) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -102,7 +102,7 @@ TEST(ManagerLoop, TheNextManagerReportsEventsFromTheGap) {
   EXPECT_EQ(fake.told("state"), "filter: ON -> ERROR\n");
 }
 
-TEST(ManagerLoop, AnRtpuThatDiedWhileThereWasNoManagerIsDealtWithByTheNext) {
+TEST(ManagerLoop, TheNextManagerRestartsAnRtpuThatDiedInTheGap) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -175,7 +175,7 @@ TEST(ManagerLoop, ReportsALivingRtpuWithOverwrittenMemoryAndItsRemedy) {
   EXPECT_TRUE(fake.until_on("law"));
 }
 
-TEST(ManagerLoop, TellsTheFaultOfATaskInItsWords) {
+TEST(ManagerLoop, ReportsTheFaultOfATaskInItsWords) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -185,7 +185,7 @@ TEST(ManagerLoop, TellsTheFaultOfATaskInItsWords) {
   EXPECT_TRUE(fake.until([&] { return fake.loop().state().state(fake.task("filter")) == State::kError; }));
 }
 
-TEST(ManagerLoop, TellsTheNoteOfATaskInItsWords) {
+TEST(ManagerLoop, ReportsTheNoteOfATaskInItsWords) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));

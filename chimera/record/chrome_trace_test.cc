@@ -110,7 +110,7 @@ TEST(ChromeTrace, GivesRecordsWithoutATaskToTheWholeProcess) {
   EXPECT_EQ(events[4]["s"], "t");
 }
 
-TEST(ChromeTrace, TellsThatItCouldNotBeWritten) {
+TEST(ChromeTrace, ReportsAFileThatCannotBeWritten) {
   std::FILE* full = std::fopen("/dev/full", "w");
   ASSERT_NE(full, nullptr);
   ChromeTrace trace(full, "arm", {}, {}, Nanoseconds{});

@@ -83,7 +83,7 @@ TEST_F(SwitchLinksTest, TwoRtpusChangeAtOneInstant) {
   EXPECT_TRUE(rtpus->part(1).variables[0].step_of_on.is_known);
 }
 
-TEST_F(SwitchLinksTest, ARequestIsAWordThatStaysUntilItIsDealtWith) {
+TEST_F(SwitchLinksTest, ARequestStaysUntilTheManagerHandlesIt) {
   const auto wish = [&] { return rtpus->rtpus[1]->segment.block.head().wish.wish(); };
   std::string wanted = "direct";
   scene.in_reader = [&](Cycle c) { EXPECT_TRUE(c.request(wanted.c_str())); };
@@ -109,7 +109,7 @@ TEST_F(SwitchLinksTest, ARequestIsAWordThatStaysUntilItIsDealtWith) {
   EXPECT_EQ(wish().number, 3) << "what is under way, and in force later, is not asked for again";
 }
 
-TEST_F(SwitchLinksTest, TheSameRequestIsMadeAgainThoughTheManagerThatDealtWithTheLastOneIsDead) {
+TEST_F(SwitchLinksTest, ARequestIsRepeatedThoughTheManagerOfTheLastIsDead) {
   const auto number = [&] { return rtpus->rtpus[1]->segment.block.head().wish.wish().number; };
   std::string wanted = "observed";
   scene.in_reader = [&](Cycle c) {

@@ -37,7 +37,7 @@ TEST_F(SafeFrameTest, AWriterThatDiesWhileItWritesLeavesTheFrameBefore) {
   EXPECT_EQ(std::string(reinterpret_cast<const char*>(standing.data()), 5), "whole");
 }
 
-TEST_F(SafeFrameTest, AWordThatNoOwnerWritesIsNoFrame) {
+TEST_F(SafeFrameTest, AnInvalidWordIsNoFrame) {
   auto* word = reinterpret_cast<std::uint32_t*>(&frame);
   *word = (kSafeBytes + 1) << 1;
   EXPECT_EQ(last(), "");

@@ -22,7 +22,7 @@ TEST(TaskWord, TheFirstMethodOfTheFirstTaskIsNotNone) {
   EXPECT_EQ(TaskWord().word(), 0u);
 }
 
-TEST(TaskWord, NamesNoTaskWhereTheWordHasNone) {
+TEST(TaskWord, AWordWithoutATaskNamesNone) {
   EXPECT_FALSE(TaskWord().task().is_valid());
   EXPECT_FALSE(TaskWord::found(CHIMERA_CYCLE).task().is_valid());
   EXPECT_FALSE(TaskWord::found(CHIMERA_CYCLE).has_method());

@@ -54,7 +54,7 @@ TEST_F(CommandQueueTest, RefusesTheWholeListForOneWrongTask) {
             "answer 1 no: arm is in state ON, where clear is not legal; type `chimera clear traj`\n");
 }
 
-TEST_F(CommandQueueTest, TellsWhatWasDoneThoughOneFailed) {
+TEST_F(CommandQueueTest, ReportsCompletedTasksThoughAnotherFailed) {
   are_on({kArm, kPid});
   ask(Signal::kOff, {kArm, kPid});
   EXPECT_EQ(report(kPid, State::kError, {RefusalKind::kFault, "no answer from the drive", {}}), "");

@@ -35,7 +35,7 @@ TEST_F(OnQueueTest, BeginsOneTransactionAfterTheOther) {
             "goal traj 0\nanswer 1 yes traj OFF>ON\ngoal arm 2\ngoal pid 2\nsend servo: on arm pid\n");
 }
 
-TEST_F(OnQueueTest, LetsALaterRequestPassOneThatMustWait) {
+TEST_F(OnQueueTest, ALaterRequestPassesAWaitingOne) {
   goals.add(kArm, kGoalSpawn);
   (void)taken();
   ask(1, {kArm, kPid});

@@ -102,7 +102,7 @@ TEST_F(SubsystemRivals, OnIsAskedAgainUntilTheDeviceIsReady) {
   EXPECT_NE(end.find("answer 2 yes"), std::string::npos) << end;
 }
 
-TEST_F(SubsystemRivals, AListGoesOnBehindTheOneThatWasNotReady) {
+TEST_F(SubsystemRivals, AListGoesOnBehindATaskThatWasNotReady) {
   start();
   command(Signal::kOff, {kArm, kPid});
   for (TaskId task : {kPid, kArm}) report(task, State::kOff);

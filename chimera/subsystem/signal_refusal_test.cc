@@ -9,7 +9,7 @@ namespace {
 const SignalRefusal kNameless{RefusalKind::kOther, {}, {}};
 const SignalRefusal kIllegal{RefusalKind::kState, "pi is OFF", "type `chimera on pi`"};
 
-TEST(SignalRefusal, TellsItsReasonAndThenItsRemedy) {
+TEST(SignalRefusal, PrintsItsReasonAndThenItsRemedy) {
   EXPECT_EQ(kIllegal.text(), "pi is OFF; type `chimera on pi`");
   EXPECT_EQ(SignalRefusal({RefusalKind::kFault, "no sensor", {}}).text(), "no sensor");
   EXPECT_EQ(kIllegal.behind("on sent by traj: ").text(), "on sent by traj: pi is OFF; type `chimera on pi`");

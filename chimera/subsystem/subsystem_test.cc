@@ -308,7 +308,7 @@ TEST_F(SubsystemTest, ClearBringsBackLostTasksButNotKilledOnes) {
   EXPECT_EQ(subsystem->state(kReserve), State::kNotCreated);
 }
 
-TEST_F(SubsystemTest, AManagerThatMeetsAGivenUpRtpuSaysHowItsTasksComeBack) {
+TEST_F(SubsystemTest, ANewManagerNamesTheRemedyForAGivenUpRtpu) {
   start();
   remembered.started = true;
   remembered.handled[kServo.index] = 4;

@@ -236,7 +236,7 @@ TEST(Configuration, OrdersTasksOutsideTheStartSetToo) {
   EXPECT_EQ(names(made, made.spec().end_order), (Names{"sink", "gain", "source"}));
 }
 
-TEST(Configuration, TellsWhoProducesAndWhoUsesAVariable) {
+TEST(Configuration, NamesProducersAndUsersOfAVariable) {
   const Configuration made = legal(kRobot);
   for (const ConfiguredVariable& variable : made.variables()) {
     if (variable.name != "tau") continue;

@@ -35,7 +35,7 @@ struct RobotTest : ::testing::Test {
   }
 };
 
-TEST_F(RobotTest, TellsHowItIsBuiltAtInit) {
+TEST_F(RobotTest, PublishesItsGeometryAtInit) {
   Rig rig("mujoco_robot");
   start(rig, "q_ref");
   EXPECT_EQ(rig.get<std::int32_t>("ndof"), 2);

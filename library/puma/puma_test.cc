@@ -25,7 +25,7 @@ struct PumaTest : ::testing::Test {
   }
 };
 
-TEST_F(PumaTest, TellsItsRows) {
+TEST_F(PumaTest, PublishesItsDhRows) {
   start();
   EXPECT_EQ(rig.get<std::int32_t>("ndof"), 6);
   EXPECT_EQ(rig.get<library::DhLink>("dh", 1).a, .4318);

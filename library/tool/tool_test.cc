@@ -18,7 +18,7 @@ struct ToolTest : ::testing::Test {
   }
 };
 
-TEST_F(ToolTest, TellsItsFrameAndItsMassAtInitAndItsPlaceWhileItIsOn) {
+TEST_F(ToolTest, PublishesFrameAndMassAtInitAndItsPoseWhileOn) {
   ASSERT_TRUE(rig.init());
   EXPECT_EQ(rig.get<Pose>("tool").position[2], 0.2);
   EXPECT_EQ(rig.get<Pose>("tool").orientation[1], 0.6);
@@ -31,7 +31,7 @@ TEST_F(ToolTest, TellsItsFrameAndItsMassAtInitAndItsPlaceWhileItIsOn) {
   EXPECT_FALSE(rig.get<bool>("is_attached"));
 }
 
-TEST_F(ToolTest, TellsAnotherMassByReinit) {
+TEST_F(ToolTest, PublishesAnotherMassByReinit) {
   ASSERT_TRUE(rig.init());
   rig.set("mass", 2.5);
   ASSERT_TRUE(rig.reinit());

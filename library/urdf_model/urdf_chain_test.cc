@@ -50,7 +50,7 @@ TEST_F(UrdfChainTest, ThePumasFlangeStandsWhereItIsPublished) {
   }
 }
 
-TEST_F(UrdfChainTest, TellsNamesAndLimits) {
+TEST_F(UrdfChainTest, ReadsNamesAndLimits) {
   const Result<UrdfChain> puma = read_urdf(shipped_urdf("puma560.urdf"), "flange");
   ASSERT_TRUE(puma);
   EXPECT_EQ(puma->joints[4], "q5");

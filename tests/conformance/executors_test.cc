@@ -102,7 +102,7 @@ TEST_P(Executors, ShowAPublicationToTheNextReaderAndNothingBefore) {
   for (int i = 0; i < 3; ++i) EXPECT_EQ(cycles[static_cast<std::size_t>(i)].in, i + 1) << "at the same release";
 }
 
-TEST_P(Executors, PublishAtCompletionSoAReaderInBetweenSeesTheOldValue) {
+TEST_P(Executors, PublishAtCompletionSoAReaderBeforeItSeesTheOldValue) {
   app.add("writer", milliseconds(20), milliseconds(6));
   app.add("reader", milliseconds(5), milliseconds(1), "writer").offset = milliseconds(3);
   go(20, {}, Policy::kRm);

@@ -183,7 +183,7 @@ TEST_P(RecoveryTest, ATakeoverHasAReceipt) {
   EXPECT_TRUE(receipt.variables[0].step_of_cycle.is_beyond);
 }
 
-TEST_P(RecoveryTest, AnAttemptThatFailsHasAReceiptAndSoHasOneThatTheEndCuts) {
+TEST_P(RecoveryTest, AFailedAttemptAndOneCutByTheEndHaveReceipts) {
   fail_first_in(5);
   scene.on_of_spare = [n = 0](Cycle) mutable -> Outcome { return n++ == 0 ? fault("no voltage") : ok(); };
   go(milliseconds(5) + microseconds(100));

@@ -139,7 +139,7 @@ INSTANTIATE_TEST_SUITE_P(All, SameResource,
                          ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
                          [](const auto& one) { return kind_name(one.param); });
 
-TEST_P(SameResource, ASwitchClosesItForTheOneBeforeItOpensItForTheOther) {
+TEST_P(SameResource, ASwitchClosesTheDeviceBeforeItOpensItForTheOther) {
   const auto receipts = go(milliseconds(40), {to(kWithDrill, milliseconds(5)), to(kWithHand, milliseconds(25))});
   ASSERT_EQ(receipts.size(), 2u);
   for (const SwitchReceipt& receipt : receipts) {
@@ -280,7 +280,7 @@ TEST_P(SameResource, TheStartWaitsForADeviceAndGivesItUpAfterTenSeconds) {
   EXPECT_EQ(states(), (Story{"OFF", "NOT-CREATED", "OFF"}));
 }
 
-TEST_P(SameResource, SpawnByHandIsRefusedWhileTheOtherOneIsThere) {
+TEST_P(SameResource, SpawnByHandIsRefusedWhileTheOtherTaskIsCreated) {
   const auto signal = [](Nanoseconds at, Signal which, TaskId task) {
     return ScriptAct{at, ScriptAct::Kind::kSignal, which, task};
   };

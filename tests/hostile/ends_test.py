@@ -127,7 +127,7 @@ class Ends(unittest.TestCase):
             system.disarm()
             self.assertEqual(self.ended(system, lambda: system.process.send_signal(signal.SIGTERM))[0], 1)  # given up
 
-    def test_no_event_says_what_does_not_happen_when_all_processes_end_at_once(self):
+    def test_no_event_is_false_when_all_processes_end_at_once(self):
         slow = recorder("a", "u0", "x0", "x1", "1000 ms")
         text = application([("executive", "none", "none")], a=slow, b=recorder("b", "good", "x1", "x2"))
         with System(text + "operator: {x0: 0}\n") as system:

@@ -192,7 +192,7 @@ class ThePrintingProcessDies(unittest.TestCase):
 
 
 class TheStartHangs(unittest.TestCase):
-    def test_it_ends_and_names_what_was_not_ready(self):
+    def test_it_ends_and_names_tasks_that_are_not_ready(self):
         with tempfile.TemporaryDirectory() as folder:
             os.mkfifo(folder + "/pipe")  # for whose reader the logger waits
             words = ("--for", "0.2 s", "--start-limit", "4 s")

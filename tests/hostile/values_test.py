@@ -37,7 +37,7 @@ class Values(unittest.TestCase):
                               stdin=subprocess.DEVNULL)
         return done.returncode, done.stdout, done.stderr
 
-    def test_what_is_not_finite_in_the_unit_of_the_port_is_refused(self):
+    def test_a_value_that_is_not_finite_in_the_unit_of_the_port_is_refused(self):
         for value in ("inf V", "-inf V", "inf"):
             code, _, said = self.chimera("check", "FILE", text=GAIN.replace("VALUE", f"wanted: {value}"))
             self.assertEqual(code, 1, value + said)

@@ -64,7 +64,7 @@ class Kills(unittest.TestCase):
                 self.judge_end(system)
         self.assertEqual({name for name in set(os.listdir("/dev/shm")) - shared if "chimera" in name}, set())
 
-    def test_row_8_a_reader_of_a_producer_that_is_killed_sees_only_what_is_whole_and_never_older(self):
+    def test_row_8_a_reader_of_a_killed_producer_sees_only_whole_values_and_never_older_ones(self):
         for _ in range(ROUNDS):
             with System(WHOLE) as system:
                 before = system.task("judge")

@@ -172,7 +172,7 @@ class Protocol(unittest.TestCase):
             self.assertIsNotNone(self.client.exchange("check", text=text, file="a.yaml"))
             self.assertIsNotNone(self.client.exchange("schedule", text=text, file="a.yaml"))
 
-    def test_what_it_says_is_within_the_schema_before_and_after_faults(self):
+    def test_answers_fit_the_schema_before_and_after_faults(self):
         self.read_all()
         self.system.arm()
         self.system.await_state("victim", "ERROR")
@@ -264,7 +264,7 @@ class Schema(unittest.TestCase):
             used = f'"#/definitions/{name}"' in text
             self.assertTrue(used, name)
 
-    def test_the_methods_are_those_of_the_text_with_the_same_parameters(self):
+    def test_methods_and_parameters_agree_with_the_document(self):
         rows = re.findall(r"^\| `([a-z]+)` \|(.*?)(?<!\\)\|", (FORMATS / "control.md").read_text(), re.M)
         told = {name: row for name, row in rows if name in METHODS or f"{name}_result" in SCHEMA["definitions"]}
         self.assertEqual(sorted(told), sorted(METHODS))

@@ -129,7 +129,7 @@ class Again(unittest.TestCase):
             cases = frame.ctest_again("debug", labels, tries[0])
         return sorted((case.name, case.outcome, case.flaky) for case in cases), len(tries) - len(left)
 
-    def test_what_passes_later_is_flaky_with_its_first_words(self):
+    def test_a_test_that_passes_later_is_flaky_with_its_first_words(self):
         found = self.again([Case("a", PASSED), Case("b", FAILED, "late")], [Case("a", PASSED), Case("b", PASSED)])
         self.assertEqual(found, ([("a", PASSED, ""), ("b", PASSED, "late")], 2))
 
@@ -166,7 +166,7 @@ class Shares(unittest.TestCase):
         self.assertEqual(self.unlabelled("release", "unit"), [FAILED])
         self.assertEqual(self.unlabelled("release", "symbol"), [])
 
-    def test_quick_says_what_it_leaves_out(self):
+    def test_quick_names_the_parts_that_it_leaves_out(self):
         said = frame.left_out()
         self.assertIn("process (debug)", said)
         self.assertNotIn("unit (debug)", said)

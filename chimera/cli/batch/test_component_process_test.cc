@@ -134,7 +134,7 @@ TEST_F(TestComponent, FindsDescriptorsAndMemoryThatKillLeaves) {
             "  fails       leftovers     every two rounds of spawn and kill leave 2 blocks of memory");
 }
 
-TEST_F(TestComponent, FindsOneThatCompletesNothingOrDoesNotStart) {
+TEST_F(TestComponent, FindsAComponentThatCompletesNoCycleOrDoesNotStart) {
   EXPECT_EQ(misdeed(15, "cycles"),
             "  fails       cycles        none of 200 was completed, the first with \"thrown on purpose\" in cycle 0; "
             "NAME.test.yaml and --inputs give it something to work on");

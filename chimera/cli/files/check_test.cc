@@ -26,7 +26,7 @@ TEST(Check, ALegalDescriptionEarnsItsVerdict) {
             "  rtpu main on cpu 0: no budgets stated, so the load is not judged\n");
 }
 
-TEST(Check, TellsTheLoadOfStatedBudgets) {
+TEST(Check, PrintsTheLoadOfStatedBudgets) {
   const CommandResult output = checked("subsystem: s\ntasks:\n  a: {component: t_counter, budget: 250 us}\n");
   EXPECT_NE(output.out.find("rtpu main on cpu 0: budgets take 0.250 of at most 0.93\n"), std::string::npos)
       << output.out << output.err;
@@ -145,7 +145,7 @@ start: low
   EXPECT_EQ(output.err, "") << output.err;
 }
 
-TEST(CheckModes, TellsWhatHasNoBudgetAndWhatHasNothingToSwitchTo) {
+TEST(CheckModes, NamesTasksWithoutABudgetAndReactionsWithoutATarget) {
   const CommandResult output = modes_of(kModes, "c: {component: t_counter, rate: 100 Hz}",
                                         "c: {component: t_counter, rate: 100 Hz, budget: 1 ms}");
   EXPECT_NE(output.out.find("heavy -> light: fast; asked for by on_miss of a, an operator\n"

@@ -27,7 +27,7 @@ CommandResult scheduled(const std::string& text, const std::string& dispatch, co
   return schedule({file.path(), profile, "", dispatch, false}, test_place());
 }
 
-TEST(Schedule, TellsThatEverythingFits) {
+TEST(Schedule, SaysThatAllTasksFit) {
   const CommandResult output = scheduled(kTwo, "preemptive");
   EXPECT_EQ(output.code, kOk) << output.err;
   EXPECT_EQ(output.out,
@@ -45,7 +45,7 @@ TEST(Schedule, TellsThatEverythingFits) {
             "          . = idle\n");
 }
 
-TEST(Schedule, TellsWhoMissesInAnExecutiveAndWhatWouldHelp) {
+TEST(Schedule, NamesTheTaskThatMissesInAnExecutiveAndTheRemedies) {
   const CommandResult output = scheduled(kTwo, "executive");
   EXPECT_EQ(output.code, kRefused);
   EXPECT_NE(output.out.find("  a     fast  low    2 ms budget  10 ms   10 ms     at most 11 ms  9 ms     -       "
@@ -229,7 +229,7 @@ TEST(Schedule, TakesTimesFromAProfileAndSaysWhich) {
       << output.err;
 }
 
-TEST(Schedule, TellsWhatAProfileSaysOfTheBudgets) {
+TEST(Schedule, ComparesTheBudgetsWithAProfile) {
   RecordedProfile profile{"other", {{"a", 1000, milliseconds(3), milliseconds(1), milliseconds(1), {}}}};
   const TestFile file(to_json(profile));
   const std::string said = scheduled(kTwo, "preemptive", file.path()).err;

@@ -103,7 +103,7 @@ TEST(Command, ControlMdNamesEveryMethodAndEveryAct) {
   EXPECT_NE(text.str().find("Which words act: `" + acts + "`"), std::string::npos) << acts;
 }
 
-TEST(Command, HelpTellsUsageOptionsAndAnExample) {
+TEST(Command, HelpPrintsUsageOptionsAndAnExample) {
   EXPECT_EQ(help_text("events"),
             "events [--since N] [--kind KIND,...] [--each] [--follow]\n"
             "  Print the events of the subsystem, numbered without a gap\n"

@@ -76,7 +76,7 @@ TEST(Scope, IsNotArmedBeforeThePreTriggerIsFull) {
       << scope.summary();
 }
 
-TEST(Scope, WaitsForEveryTaskButNotForOneThatIsOff) {
+TEST(Scope, WaitsForEveryTaskThatIsOn) {
   Scope slow(request("error > 2 mrad", 2, 1));
   slow.add(pid(0, {{1, 1, 0}, {9, 2, 0.003}, {10, 3, 0}}));
   EXPECT_FALSE(slow.is_triggered()) << "arm has told nothing so far";

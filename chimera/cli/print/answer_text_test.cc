@@ -7,7 +7,7 @@
 namespace chimera::cli {
 namespace {
 
-TEST(AnswerText, JsonIsWrittenWhateverBytesANameHas) {
+TEST(AnswerText, JsonIsWrittenForANameOfAnyBytes) {
   EXPECT_EQ(json_line({{"file", "a\xff"}}), "{\"file\":\"a\xef\xbf\xbd\"}\n");
 }
 
@@ -36,7 +36,7 @@ TEST(AnswerText, TheFlagNamesTheProcessesThatKeepItUp) {
   EXPECT_EQ(flag_text(Json::parse(R"({"up": false, "by": []})")), "flag down\n");
 }
 
-TEST(AnswerText, ADrillTellsOfEachTaskWhetherItIsSafe) {
+TEST(AnswerText, ADrillPrintsWhetherEachTaskIsSafe) {
   EXPECT_EQ(drill_text(Json::parse(R"({"safe": false, "flag_ns": 31000000, "tasks": [
               {"task": "arm", "verdict": "safe", "after_ns": 28400000},
               {"task": "winch", "verdict": "cannot-tell", "after_ns": null},

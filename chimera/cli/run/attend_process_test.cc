@@ -161,7 +161,7 @@ class Attend : public ::testing::Test {
   AttendRequest request_;
 };
 
-TEST_F(Attend, TellsWhatWasGrantedWhatItSeesAndHowItWent) {
+TEST_F(Attend, PrintsRightsWatchedValuesAndTheVerdict) {
   request_.run.watch = {"q", "x"};
   request_.run.every = milliseconds(25);
   request_.run.expect = {"|q| < 3 rad", "x > 0 m"};

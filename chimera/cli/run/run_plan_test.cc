@@ -51,7 +51,7 @@ TEST(RunPlan, RunsTasksThatMayMissIfTheOptionNamesThem) {
   EXPECT_EQ(refusal(kTight, missing({"a", "b", "see"})), "error: --may-miss: no task 'see'\n");
 }
 
-TEST(RunPlan, AWordThatFitsNoDescriptionIsWrongUsage) {
+TEST(RunPlan, AnOptionThatFitsNoDescriptionIsWrongUsage) {
   const TestFile file(kCounterText);
   RunRequest request;
   request.file = file.path();
@@ -67,7 +67,7 @@ TEST(RunPlan, AWordThatFitsNoDescriptionIsWrongUsage) {
   std::fclose(out);
 }
 
-TEST(RunPlan, RunsInVirtualTimeWhateverMayBeMissed) {
+TEST(RunPlan, VirtualTimeRunsAnUnschedulableApplication) {
   RunRequest request;
   request.virtual_time = true;
   EXPECT_EQ(refusal(kTight, request), "");

@@ -84,7 +84,7 @@ std::string late(const std::string& reaction) {
   return text.replace(text.find("REACTION"), 8, reaction);
 }
 
-TEST(Run, TellsThatTheFlagIsUpAndWhoHadNoTime) {
+TEST(Run, ReportsTheFlagAndTheTaskWithoutTime) {
   RunRequest request = lasting(milliseconds(30));
   const Said said = said_by(request, late("flag"));
   EXPECT_NE(said.out.find("ran 0.030 s\nthe illegal-configuration flag is up\n"), std::string::npos) << said.out;

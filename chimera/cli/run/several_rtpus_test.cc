@@ -105,7 +105,7 @@ TEST(SeveralRtpus, ActsReachEveryRtpu) {
   EXPECT_TRUE(has(said.out, "source   OFF ")) << said.out;
 }
 
-TEST(SeveralRtpus, OneDiesAndTheOthersGoOn) {
+TEST(SeveralRtpus, TheOthersGoOnWhenOneDies) {
   RunRequest request = with_act("11 ms: die first");  // its second job is under way
   request.at.push_back("20 ms: on source");
   request.expect = {"x <= 0.01", "age >= 36 ms", "illegal >= 1", "count >= 40"};

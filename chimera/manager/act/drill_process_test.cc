@@ -43,7 +43,7 @@ TEST_F(DrillTest, HardwareIsATaskWithASafeStateOrAMovingResource) {
   EXPECT_EQ(hardware[1].verdict, DrillVerdict::kCannotTell);
 }
 
-TEST_F(DrillTest, RaisesTheFlagUntilTheDeviceIsSafeAndTellsTheTime) {
+TEST_F(DrillTest, RaisesTheFlagUntilTheDeviceIsSafeAndReportsTheTime) {
   begin(kHangLimit);
   EXPECT_EQ(flag(), kDrillFlag);
   EXPECT_EQ(flag_text(), R"({"by":["drill"],"up":true})");

@@ -63,7 +63,7 @@ TEST_F(StepRunnerTest, ResumesTheGoalsThatAPredecessorLeft) {
   EXPECT_EQ(goal("sensor"), 0u) << "nothing is asked for a second time";
 }
 
-TEST_F(StepRunnerTest, DoesNotDealTwiceWithADeathThatAPredecessorDealtWith) {
+TEST_F(StepRunnerTest, DoesNotRepeatTheReactionOfAPredecessorToADeath) {
   memory().started = 1;
   memory().handled[1] = 4;
   runner_.begin();

@@ -146,7 +146,7 @@ TEST_F(QuestionsTest, AnIdleAnalystIsEnded) {
   EXPECT_EQ(told_, "");
 }
 
-TEST_F(QuestionsTest, WithoutAProgramThereIsAnAnswerAllTheSame) {
+TEST_F(QuestionsTest, WithoutAnAnalystAQuestionIsAnswered) {
   make("/nowhere/chimera-manager");
   ask("one", 1);
   ASSERT_EQ(answers_.size(), 1u);

@@ -20,7 +20,7 @@ TEST(RtpuHealth, ReadsTheGrantedRights) {
   EXPECT_FALSE(none.is_locked);
 }
 
-TEST(RtpuHealth, TellsWhatIsNotAsGranted) {
+TEST(RtpuHealth, NamesTheRightsThatWereLost) {
   const GrantedRights granted{80, 1, true};
   EXPECT_EQ(lost_rights(granted, false, {{7, SCHED_FIFO, 80, 1}}, true), "");
   EXPECT_EQ(lost_rights(granted, false, {{7, SCHED_OTHER, 0, 1}}, true),

@@ -87,7 +87,7 @@ TEST(RtpuBlock, RingsOfDifferentPeersAreDifferentAndAllOfThemAreInside) {
   EXPECT_EQ(owner.head().magic, kBlockMagic);
 }
 
-TEST(RtpuBlock, AWordThatNoOwnerWritesReadsAsError) {
+TEST(RtpuBlock, AnInvalidStatusWordReadsAsError) {
   EXPECT_EQ(TaskStatus::of(4).state, State::kError);
   EXPECT_EQ(TaskStatus::of(255).state, State::kError);
   const TaskStatus status{State::kOff, false, 0xffffffff};

@@ -62,7 +62,7 @@ TEST_F(JobCycleTest, ALateJobIsJudgedAndHeld) {
   EXPECT_EQ(bare.first().group.sequence(), 0u);
 }
 
-TEST_F(JobCycleTest, AJobThatWasReportedLateIsLateWhateverTheClockSaysAtItsEnd) {
+TEST_F(JobCycleTest, AJobThatWasReportedLateStaysLateAtItsEnd) {
   CycleTime time;
   const Job job = BareTasks::job(kFirst, 10);
   const BodyEnd body = jobs.open_and_begin(job, time, false);

@@ -143,7 +143,7 @@ TEST_F(MissPolicyTest, WithoutAListenerNoCauseIsSearched) {
   EXPECT_EQ(bare.records[0].left, 0);
 }
 
-TEST_F(MissPolicyTest, AnAbandonedJobAndOneThatNeverStartedAreMisses) {
+TEST_F(MissPolicyTest, AbandonedAndUnstartedJobsAreMisses) {
   misses.abandon(BareTasks::job(kFirst, 10));
   misses.expire_unstarted(BareTasks::job(kFirst, 20));
   EXPECT_EQ(profile().missed, 2u);

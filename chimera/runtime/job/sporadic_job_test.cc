@@ -15,7 +15,7 @@ SporadicJob started(const ServerSpec& spec, Nanoseconds granularity = {}) {
   return job;
 }
 
-TEST(SporadicJob, AnswersOneEventAfterTheOther) {
+TEST(SporadicJob, AnswersEventsInTurn) {
   SporadicJob job = started(kSporadic);
   std::uint32_t waiting = 2;
   EXPECT_TRUE(job.accept(waiting, milliseconds(1)));

@@ -92,7 +92,7 @@ TEST(SwitchSchedule, AHotStandbyCountsBesideItsPrimaryAndAfterIt) {
   EXPECT_TRUE(scene.judge(0, 1));
 }
 
-TEST(SwitchSchedule, TellsOfACpuWhatWasConsidered) {
+TEST(SwitchSchedule, ReportsTheTasksThatItConsideredOnACpu) {
   Scene scene({task(10, 4), task(10, 0), task(20, 2, 1)}, {{kA, kC}, {kB, kC}});
   scene.standing[0].state = scene.standing[2].state = State::kOn;
   scene.schedule.consider(scene.standing, tasks_of(scene.spec, 1));

@@ -45,7 +45,7 @@ TEST(SwitchWish, ARequestOfListsIsReadWhole) {
   EXPECT_EQ(words.wish().number, 2);
 }
 
-TEST(SwitchWish, IsDealtWithInOneIncarnation) {
+TEST(SwitchWish, IsHandledInOneIncarnation) {
   EXPECT_NE(wish_dealt_with(1, 3), wish_dealt_with(2, 3));
   EXPECT_NE(wish_dealt_with(1, 3), wish_dealt_with(1, 4));
   EXPECT_NE(wish_dealt_with(1, 3), 0u);

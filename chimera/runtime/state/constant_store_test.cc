@@ -50,7 +50,7 @@ TEST_F(ConstantStoreTest, KnowsTheConstantsOfTheDescription) {
 
 TEST_F(ConstantStoreTest, HasRoomForTheLargestPort) { EXPECT_EQ(ConstantStore(spec, heap)[kMade].value.size(), 24u); }
 
-TEST_F(ConstantStoreTest, TellsWhetherAValueIsAnother) {
+TEST_F(ConstantStoreTest, ReportsWhetherAValueHasChanged) {
   ConstantStore store(spec, heap);
   const std::int64_t one[3] = {1, 2, 3}, other[3] = {1, 2, 4};
   EXPECT_TRUE(store.set(kMade, 0, bytes_of(one)));

@@ -69,7 +69,7 @@ TEST_F(VirtualProcessorTest, RecordsNoSliceWithoutTime) {
   EXPECT_EQ(slices(), "");
 }
 
-TEST_F(VirtualProcessorTest, ASliceThatIsRecordedInBetweenGoesOn) {
+TEST_F(VirtualProcessorTest, ASliceContinuesAfterItIsRecorded) {
   processor.give(kFirst, milliseconds(1));
   (void)processor.use(milliseconds(2));
   processor.record_slice();
