@@ -98,7 +98,7 @@ class Orphans(unittest.TestCase):
             if memory_holder:
                 system.kill(memory_holder, signal.SIGSTOP)
             system.kill(second)
-            await_that(lambda: not system.children(), "the end of the children of a unit that died")
+            await_that(lambda: not system.children(), "the end of the children of a dead rtpu")
             if memory_holder:
                 await_that(lambda: gone([memory_holder], system.marker), "the end of a stopped memory holder")
             self.assertGreater(system.task("steady")["cycles"], missed)
