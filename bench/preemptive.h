@@ -173,7 +173,7 @@ inline Cost run_fixed(const Load& load, Nanoseconds time, bool keep_late = false
 }
 inline Cost run_lowered(const Load& load, Nanoseconds time) { return run_threads(load, time, true, false); }
 
-/// One thread above the others that sleeps to each release and wakes the thread of the task, which reports its end.
+/// A dispatcher thread above the others sleeps to each release and wakes the thread of the task, which reports its end.
 class Dispatched {
  public:
   explicit Dispatched(const Load& load) : load_(load), bells_(load.n) {}

@@ -82,7 +82,7 @@ def follow(system, kept, who, began, takes_over):
 
 
 def lost(system):
-    """What the steady task has missed so far: cycles that were late or not run."""
+    """Cycles of the steady task that were late or not run so far."""
     task = system.task("steady")
     assert task["incarnation"] == 1 and task["faults"] == 0, task
     return task["dropped"] + task["missed"]

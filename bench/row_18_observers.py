@@ -37,7 +37,7 @@ OBSERVERS = {"alone": None, "control": None, "status": {"to": "status", "period_
 
 
 def look_on(client):
-    """Whatever comes in SECONDS, as bytes."""
+    """Bytes that arrive in SECONDS."""
     received, end = [], time.monotonic() + SECONDS
     client.socket.settimeout(0.05)
     while time.monotonic() < end:

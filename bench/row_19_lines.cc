@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Row 19: one cycle of each component that speaks over a line. What speaks in its cycle stands beside the bare system
-// calls for the same bytes, the other end answering in the same loop; what speaks beside the cycles stands beside the
-// law of its cycle, and its exchange beside that of the library it uses.
+// Row 19: one cycle of each component that uses a line. A component that sends in its cycle is compared with the bare
+// system calls for its bytes, while the other end answers in this loop. A component that sends beside its cycles is
+// compared with the law of its cycle, and its exchange with that of the library it uses.
 // Components: serial_frame udp_frame modbus_io
 #include <arpa/inet.h>
 #include <fcntl.h>

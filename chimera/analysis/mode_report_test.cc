@@ -69,7 +69,7 @@ const ModeEdge& edge(const ModeReport& report, const std::string& from, const st
   return *found;
 }
 
-/// "mass: light, heavy; arm": the constant, who makes it before and after, who uses it.
+/// "mass: light, heavy; arm": the constant, its producers before and after the switch, and its user.
 std::string text(const Configuration& made, const ModeConstant& constant) {
   const auto name = [&](std::size_t task) { return made.tasks()[task].name; };
   std::string text = constant.name + ": " + name(constant.before) + ", " + name(constant.after) + ";";

@@ -15,7 +15,7 @@ struct PlacesTest : ::testing::Test {
   void sit(std::size_t n, uid_t user, Rank rank, Standing standing = Standing::kIdle, Nanoseconds since = seconds(1)) {
     for (std::size_t i = 0; i < n; ++i) all.push_back({all.size() + 1, user, rank, standing, since});
   }
-  /// One each of users of their own.
+  /// Adds connections, each of another user.
   void crowd(std::size_t n, Rank rank, Standing standing = Standing::kIdle) {
     for (std::size_t i = 0; i < n; ++i) sit(1, 5000 + static_cast<uid_t>(all.size()), rank, standing);
   }

@@ -170,7 +170,7 @@ TEST_F(Outboxes, SkipsPostsThatNoSenderWrites) {
   bytes[4 * sizeof(Post) + offsetof(Post, why)] = 77;
   ASSERT_TRUE(inbox.take(post));
   EXPECT_EQ(post.command, 5u);
-  EXPECT_EQ(fill(outbox), kPosts);  // what was passed over is counted as taken
+  EXPECT_EQ(fill(outbox), kPosts);  // a skipped post counts as taken
 }
 
 TEST_F(Outboxes, EveryHappeningArrives) {

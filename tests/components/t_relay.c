@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Events in C: those of the named pipe that its resource port names ("none": rings of its doorbell), each passed on to
- * the doorbell of another task, or as a request for a configuration. */
+/* Events in C. They come from the named pipe of its resource port, or from its doorbell for "none". Each rings the
+ * doorbell of another task, or requests a configuration. */
 #define _POSIX_C_SOURCE 200809L
 #include <fcntl.h>
 #include <unistd.h>

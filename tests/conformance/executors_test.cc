@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every executor of one context must do, whatever its idea of time.
+// Rules for every executor of one context, in real and in virtual time.
 #include <gtest/gtest.h>
 
 #include "chimera/runtime/hosted/tap_rows.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A job that is not over at its deadline: what the others learn of it while it is still under way. Without real-time
-// levels, so also under the thread sanitizer. Who is to blame is proved on a stepped clock (miss_cause_test.cc,
-// edge_access_test.cc).
+// Reports about a job that misses its deadline, while it still runs. The tests need no real-time levels, so they run
+// under the thread sanitizer too. miss_cause_test.cc and edge_access_test.cc prove the blame on a stepped clock.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -18,7 +17,7 @@
 namespace chimera::toy {
 namespace {
 
-/// "late" stays in its second cycle until the test has seen what it waits for; "beside" looks at the flag.
+/// "late" stays in its second cycle until the test sets `has_seen`; "beside" reads the flag.
 class Late : public ::testing::Test {
  protected:
   Late() {
@@ -50,7 +49,7 @@ class Late : public ::testing::Test {
     return executor->run(time);
   }
   const Profile& profile() { return app.task("late").profile; }
-  /// Its second job was late, with the releases that it was in the way of; else the machine has held up another one.
+  /// True if only the second job of "late" missed, with the releases that it dropped. False: the host delayed a job.
   bool is_the_only_one_late() { return profile().missed == profile().dropped + 1; }
 
   Application app;

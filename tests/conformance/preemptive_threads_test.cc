@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The preemptive executor without real-time levels, where the section alone excludes: what it promises about data,
+// The preemptive executor without real-time levels, where only the critical section excludes: its guarantees for data,
 // states and counts, also under the thread sanitizer.
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What failed comes back by itself, on every executor of one context: standbys take over from tasks that went to ERROR,
-// and on_fault restarts tasks.
+// Recovery on every executor of one context: standbys take over from tasks that went to ERROR, and on_fault restarts
+// tasks.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -16,7 +16,7 @@ namespace {
 /// Actions of the components of a run, and the values that they read. One run at a time.
 struct Scene {
   std::function<Outcome(Cycle)> cycle_of_first, on_of_first, clear_of_first, cycle_of_spare, on_of_spare;
-  std::vector<double> u;         // that the reader read
+  std::vector<double> u;         // values that the reader read
   std::vector<bool> illegal;     // and whether the flag was up then
   std::vector<bool> valid;       // and whether that was valid
   std::vector<std::int64_t> spare_cycles;  // instants
@@ -307,8 +307,8 @@ TEST_P(RecoveryTest, AHotStandbyCyclesUnreadAndIsReadFromTheTakeoverOn) {
   EXPECT_EQ(scene.ons_of_spare, 1) << "no on at the takeover";
   EXPECT_EQ(task(kSpare).profile.takeovers, 1u);
   EXPECT_FALSE(was_up());
-  // It began in the gap behind the first cycles, and goes on from where it is: at 5 ms, in which `first` fails, what it
-  // published at 4 ms is read already.
+  // The standby began in the gap behind the first cycles and goes on. At 5 ms, when `first` fails, readers already have
+  // the value that the standby published at 4 ms.
   EXPECT_EQ(scene.u, (std::vector<double>{1, 2, 3, 4, 5, 103, 104, 105, 106, 107}));
 }
 
@@ -392,7 +392,7 @@ TEST_P(RecoveryTest, AnInputThatIsTooOldIsNotValid) {
   stale_ = {{kReader, microseconds(2500)}};
   fail_first_in(3);
   go(milliseconds(8), {signal(microseconds(6500), Signal::kClear, kFirst)});
-  // Published at 2 ms for the last time; what clear leaves as it was stays as old as it is.
+  // The last publication is from 2 ms. A value that `clear` does not change keeps its age.
   EXPECT_EQ(scene.valid, (std::vector<bool>{true, true, true, true, true, false, false, false}));
 }
 

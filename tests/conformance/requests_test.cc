@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tasks that ask for a configuration, on every executor of one context: the last request stands, none is lost while a
-// switch is under way, and one that changes nothing has no effect.
+// Requests of tasks for a configuration, on every executor of one context: the last request counts, none is lost during
+// a switch, and a request that changes nothing has no effect.
 #include <gtest/gtest.h>
 
 #include <functional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The executors behind one face, so that one suite runs over all of them; and what any of them leaves on its tap.
+// The executors behind one interface, so that one suite runs over all of them, and the records on their taps.
 #pragma once
 
 #include <memory>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A switch waits until what its configuration asks by `safe_when` holds, and until what an arriving task reads has a
-// value: on every executor of one context, and over several rtpus in virtual time, where the value comes from the other
-// rtpu.
+// A switch waits until `safe_when` of its configuration holds and until the inputs of arriving tasks have values: on
+// every executor of one context, and over several rtpus in virtual time, where the value comes from the other rtpu.
 #include <gtest/gtest.h>
 
 #include <cmath>

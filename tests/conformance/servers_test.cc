@@ -48,7 +48,7 @@ const Example kExamples[] = {
     {Policy::kRm, {{'A', 3, 10}, {'B', 4, 15}}, kSporadic, 2, 8, 0, {{2, 2}, {6, 2}}, "AASSABBBB.SSAAABBBB.AAA."},
     // Dynamic: due at 9 by the request at 3, at 12 by that at 6, and at 15 by what comes back at 9.
     {Policy::kEdf, {{'A', 2, 8}, {'B', 3, 12}}, kSporadic, 3, 6, 0, {{3, 2}, {6, 2}}, "AABSSBBSASA.BBB.AA......"},
-    // The same under maximum urgency: A is more critical than the server, B less.
+    // The example under maximum urgency: A is more critical than the server, B less.
     {Policy::kMuf, {{'A', 2, 8, 2}, {'B', 3, 12, 0}}, kSporadic, 3, 6, 1, {{3, 2}, {6, 2}},
      "AABSSBSBAAS.BBB.AA......"},
 };
@@ -91,7 +91,7 @@ std::vector<ScriptAct> add_example(Application& app, const Example& example) {
   return acts;
 }
 
-/// Which task had each millisecond: a letter of `names`, '.' if none.
+/// Task that had each millisecond: a letter of `names`, '.' if none.
 std::string timeline(const std::vector<TapRecord>& records, const std::string& names, std::size_t length) {
   std::string line(length, '.');
   for (const TapRecord& r : records) {

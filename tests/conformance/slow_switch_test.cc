@@ -17,7 +17,7 @@ namespace {
 struct Tools {
   std::vector<std::string> story;
   std::string fails;          // the method that answers with a fault: "on heavy"
-  double heavy = 3;           // what tool heavy weighs
+  double heavy = 3;           // mass of the tool heavy
   std::int32_t heavy_axes = 2;
   std::vector<std::pair<std::int64_t, bool>> arm;  // release, flag
   std::vector<double> weighed;                     // by the cycles of the arm
@@ -228,7 +228,7 @@ TEST_P(SlowSwitches, AFailureInAnyStepRestoresTasksAndConstants) {
     ASSERT_EQ(receipts[0].end, SwitchEnd::kAborted) << each.fails;
     EXPECT_EQ(receipts[0].said.view(), "no");
     EXPECT_EQ(receipts[0].way.slow, kSlowForConstants);
-    if (!each.is_back) continue;  // the default `error` leads to ERROR: told below
+    if (!each.is_back) continue;  // the default `error` leads to ERROR, which a test below checks
     EXPECT_EQ(tools.story, each.story) << each.fails;
     EXPECT_FALSE(receipts[0].not_back.is_valid());
     EXPECT_TRUE(are_on(with_light_)) << each.fails;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A preemptive context that switches among configurations again and again: who read what, by the release of the job.
+// A preemptive context that switches among configurations repeatedly: the values that each job read, by its release.
 #pragma once
 
 #include <gtest/gtest.h>

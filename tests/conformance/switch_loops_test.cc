@@ -12,10 +12,10 @@
 namespace chimera::toy {
 namespace {
 
-std::vector<double> seen;  // what the reader read in each cycle
+std::vector<double> seen;  // values that the reader read in each cycle
 Nanoseconds off_at = kNever;
 
-struct Link {  // passes on what it reads
+struct Link {  // publishes its input
   In<double> x{"x", "1"};
   Out<double> y{"y", "1", initial = 1.0};
   void on(Cycle) { *y = *x; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A switch of configurations on every executor of one context: no cycle is lost, who stays is not touched, what fails
-// leaves nothing behind.
+// A switch of configurations on every executor of one context: no cycle is lost, tasks that stay are not disturbed, and
+// a switch that fails leaves nothing behind.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -218,7 +218,7 @@ TEST_P(Switches, TenThousandAtRandomInstantsLoseNoCycleOfTasksThatStay) {
   EXPECT_EQ(losses(), 0u);
   EXPECT_TRUE(plant == scene.plant);
   EXPECT_TRUE(beacon == scene.beacon);
-  EXPECT_TRUE(u == scene.u);  // what `on` and `off` write is never read
+  EXPECT_TRUE(u == scene.u);  // values that `on` and `off` write are never read
   const auto& tasks = set_->tasks();
   const std::uint64_t releases = tasks[kPlant.index].profile.cycles;
   EXPECT_EQ(tasks[kOne.index].profile.cycles + tasks[kTwo.index].profile.cycles, releases);
@@ -324,7 +324,7 @@ TEST_P(Switches, AnOnThatOverrunsItsGapDoesNotChangeReleasedJobs) {
   const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600))});
   ASSERT_EQ(receipts[0].end, SwitchEnd::kDone);
   EXPECT_TRUE(std::equal(u.begin(), u.begin() + 7, scene.u.begin()));  // released at 0 to 6 ms: the predecessor's
-  EXPECT_NE(u[7], scene.u[7]);                                         // what `on` wrote
+  EXPECT_NE(u[7], scene.u[7]);                                         // value of `on`
   EXPECT_EQ(receipts[0].armed, milliseconds(6) + microseconds(200));
   // Plant, beacon and one were released at 6 ms: the change comes after the first of them, and waits for none.
   EXPECT_GE(receipts[0].at, receipts[0].armed);
@@ -342,7 +342,7 @@ TEST_P(Switches, AReleaseBeforeTheChangeIsMadeBeforeTheChange) {
   deadline_of_one_ = microseconds(900);
   const auto receipts = go(milliseconds(20), {to(kBare, microseconds(6200))});
   ASSERT_EQ(receipts[0].end, SwitchEnd::kDone);
-  // Preempting, beacon is late and goes on: the release at 6 ms waits for it until that at 7 ms takes its place.
+  // With preemption beacon is late and goes on: its release at 6 ms waits until the release at 7 ms replaces it.
   EXPECT_EQ(set_->tasks()[kOne.index].profile.cycles, GetParam() == Kind::kPreemptive ? 6u : 7u);
   EXPECT_EQ(state(kOne), chimera::State::kOff);
 }
@@ -398,7 +398,7 @@ TEST_P(Switches, ARaisedFlagUndoesAnUncommittedSwitch) {
   EXPECT_EQ(receipts[0].why, NoSwitch::kFlagRaised);
 }
 
-// What would break a promise if both were there goes the slow way: who leaves is OFF before who arrives is ON.
+// A switch that would break a guarantee with both sets ON is slow: leaving tasks are OFF before arriving ones are ON.
 TEST_P(Switches, OverWhichATaskMightMissItsDeadlineGoesTheSlowWay) {
   build();
   acts_ = {to(kObserved, milliseconds(5))};
@@ -432,7 +432,7 @@ TEST_P(Switches, RefusesSecondSwitchAtSameInstant) {
   }
 }
 
-// `on` is taken to need the budget: more than the shortest period is known before not to fit.
+// `on` is assumed to need the budget. A budget above the shortest period is refused at once.
 TEST_P(Switches, AnOnThatFitsNoGapGoesTheSlowWayAtOnce) {
   build();
   acts_ = {to(kObserved, milliseconds(5))};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Components made in the test: a task does what its Toy says and writes down every call of a method.
+// Components made in the test: a task follows its Toy and records every call of a method.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ struct Toy {
   std::array<std::deque<int>, CHIMERA_METHODS> answers;  // of the next calls; CHIMERA_OK when none is left
   std::deque<std::pair<Signal, std::string>> sends;      // one a cycle; an empty name: none
   std::function<int(const chimera_call&)> during;        // by cycle; its answer when it is not CHIMERA_OK
-  int descriptor = -1;                                   // where its events come from
+  int descriptor = -1;                                   // source of its events
   double value = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several rtpus in virtual time: who sees what of whom at which instant, and what follows when an rtpu dies.
+// Several rtpus in virtual time: the instants at which tasks see values of other rtpus, and the effects of a death.
 #include <gtest/gtest.h>
 
 #include "tests/conformance/rtpus_run.h"

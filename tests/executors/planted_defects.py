@@ -24,7 +24,7 @@ PROGRAMS = {name: f"{folder}/{name}" for folder, name in (
     ("chimera/runtime", "runtime_process_test"), ("tests/conformance", "conformance_process_test"))}
 LIMIT = 300  # seconds for one test program; one that hangs has caught the defect
 
-# What is wrong, the file, its text, and the text with the defect.
+# The defect in words, the file, its text, and the text with the defect.
 DEFECTS = (
     ("each event makes an active server active anew", "sporadic_job.cc",
      "if (!is_active_) server_.activate(now);", "server_.activate(now);"),
@@ -164,7 +164,7 @@ def make(copy):
 
 
 def build(copy):
-    """What the compiler said when it refused, else ""."""
+    """Output of the compiler if it refused, otherwise ""."""
     command = ["ninja", "-C", str(copy / "build/debug"), "-j", str(len(os.sched_getaffinity(0))), *PROGRAMS]
     done = subprocess.run(command, capture_output=True, text=True)
     return done.stdout[-3000:] if done.returncode else ""

@@ -66,7 +66,7 @@ class Listener(threading.Thread):
 
 class Ends(unittest.TestCase):
     def ended(self, system, how):
-        """Its exit code and what it said, after what ends it."""
+        """Its exit code and output, after the action that ends it."""
         how()
         return system.wait(), system.said()
 
@@ -106,7 +106,7 @@ class Ends(unittest.TestCase):
         with System(text) as system:
             system.signal("off", "asleep")
             listener = Listener(system)
-            system.arm()  # the loop of t0, to be told of while the rest goes on
+            system.arm()  # the loop of t0 must be reported while the rest goes on
             before, steady = system.rtpu("u1"), system.task("steady")
             self.assertTrue(system.kill(before["pid"], signal.SIGTERM))
             system.await_restart("u1", before)

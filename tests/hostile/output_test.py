@@ -182,7 +182,7 @@ class ThePrintingProcessDies(unittest.TestCase):
     def test_one_that_is_stopped_ends_the_run_all_the_same(self):
         with System(TWO_RTPUS, ("--for", "3 s", "--expect", "count >= 1")) as system:
             started, stopped = system.call("status")["started_ns"], self.printing(system)
-            # It is stopped at the end, and no other takes its place before: that comes after 2 s.
+            # The manager is stopped at the end. No other takes its place before: a new one comes after 2 s.
             await_that(lambda: system.call("status")["now_ns"] > started + 1.5e9, "1.5 s")
             self.assertTrue(system.kill(stopped, signal.SIGSTOP))
             code, said = system.wait(), system.said()

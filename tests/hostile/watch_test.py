@@ -111,7 +111,7 @@ def let_go(threads):
 
 
 def send_into_a_loop(pid):
-    """The main thread goes on with a jump to itself, where such bytes stand in its code. False: not possible."""
+    """Makes the main thread jump to itself, if its code has the bytes of such a jump. False: not possible."""
     if os.uname().machine != "x86_64" or libc.ptrace(PTRACE_SEIZE, pid, None, None) != 0:
         return False
     libc.ptrace(PTRACE_INTERRUPT, pid, None, None)

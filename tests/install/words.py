@@ -54,7 +54,7 @@ def said_by_completion(path, commands):
 
 
 def complete(path, program, words):
-    """What bash would offer for the last of `words`."""
+    """Completions of bash for the last of `words`."""
     script = ('source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _chimera; '
               'printf "%s\\n" "${COMPREPLY[@]}"')
     run = subprocess.run(["bash", "-c", script, "bash", str(path), program, *words], capture_output=True, text=True,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the trials of this folder write into a group, and how a reader knows that it came whole: each word says of which
-// writer and of which publication it is.
+// Publications of the trials of this folder. Each word depends on its writer and its publication, so that a reader sees
+// whether a publication is whole.
 #pragma once
 
 #include <array>

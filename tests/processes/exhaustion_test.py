@@ -26,7 +26,7 @@ class Exhaustion(unittest.TestCase):
         print(f"failed calls: {sum(cls.outcomes.values())} ({dict(cls.outcomes)})", file=sys.stderr)
 
     def attempt(self, program, n, once):
-        """One start in which the n-th call fails; what failed, None when there was none."""
+        """One start in which the n-th call fails. Returns the failed call, or None if there was no n-th."""
         shim = BUILD / "tests/processes/libfailing_calls.so"
         with System(TWO_RTPUS, ("--for", "0.1 s"), wait=False, environment={
                 "LD_PRELOAD": str(shim), "CHIMERA_FAIL": f"{program} {n}{' once' if once else ''}",

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a fault of one rtpu does to the others: only what is declared. The manager dies, too. What is decided about
-deaths: tests/stepped/deaths_test.cc."""
+"""A fault of one rtpu has only its declared effects on others. The manager dies, too. Decisions about deaths:
+tests/stepped/deaths_test.cc."""
 import pathlib
 import shutil
 import signal

@@ -67,7 +67,7 @@ class Drive:
             self.take()
 
     def take(self):
-        """As a device takes a stream: a start byte that begins no frame is passed over."""
+        """Reads a stream as a device does: skips a start byte that begins no frame."""
         self.fills += self.held.count(bytes(FILL))
         end = self.payload + 4
         while len(self.held) >= end:

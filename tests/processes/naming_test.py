@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which subsystem a command reaches: one that was started in this terminal or folder, or one that is named."""
+"""A command reaches the subsystem that was started in its terminal or folder, or a subsystem by name."""
 import subprocess
 import unittest
 

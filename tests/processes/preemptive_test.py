@@ -8,7 +8,7 @@ from system import System, await_that, duration
 
 REAL_TIME = ("--priority", "40")
 
-# `watch` stands above everything on its CPU: what it misses the machine took. `below` gives way to the jobs that hang.
+# `watch` has the highest priority on its CPU: only the host can make it miss. `below` gives way to the jobs that hang.
 APPLICATION = """
 subsystem: subject
 rtpus:

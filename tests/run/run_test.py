@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What `chimera run` prints and answers when it runs an application by processes."""
+"""Output and exit codes of `chimera run` when it runs an application in processes."""
 import json
 import pathlib
 import re
@@ -26,7 +26,7 @@ TWO = ("subsystem: subject\nrtpus: {first: {cpu: 0}, second: {cpu: 0}}\ntasks:\n
 
 
 def run(text, *arguments):
-    """The exit code of a run that ends by itself, and its output."""
+    """Exit code and output of a run that ends by itself."""
     with System(text, arguments, wait=False) as system:
         code = system.wait()
         said = system.said()

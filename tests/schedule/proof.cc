@@ -10,7 +10,7 @@ using brute::Scenario;
 using brute::Seen;
 using brute::Tick;
 
-/// The worlds that one set is played in. The first releases everything at once and asks for all of every time.
+/// Scenarios for one set. In the first, all tasks are released together and use all of their times.
 class Worlds {
  public:
   Worlds(const TaskSet& set, std::uint32_t seed) : set_(set), random_(seed ^ 0x9e3779b9u) {

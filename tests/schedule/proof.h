@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The proof of the analysis: random task sets, each played in several worlds (brute_force.h) and held against what
-// analyse() said of it.
+// The proof of the analysis: random task sets, each simulated in several scenarios (brute_force.h) and compared with
+// the verdict of analyse().
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The proof of the analysis of transitions: two random sets with tasks in common, played on their grids with the change
-// at every instant that makes a difference, and held against what analyse_transition() said of them.
+// The proof of the analysis of transitions: two random sets with common tasks, simulated on their grids with the change
+// at every instant that makes a difference, and compared with the verdict of analyse_transition().
 #pragma once
 
 #include <array>

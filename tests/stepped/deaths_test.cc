@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the death of an rtpu or of the manager, and a method that fails, do to the tasks: nothing but what is declared.
+// The death of an rtpu or of the manager, and a method that fails, have only their declared effects on the tasks.
 #include <gtest/gtest.h>
 
 #include "tests/stepped/stepped_subsystem.h"

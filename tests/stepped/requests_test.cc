@@ -7,7 +7,7 @@
 namespace chimera::manager::requests_test {
 namespace {
 
-// `asker` asks for what the operator variable `wish` says: 1 for `first`, 2 for `second`.
+// `asker` requests a configuration by the operator variable `wish`: 1 for `first`, 2 for `second`.
 const std::string kTasksAsk = R"(subsystem: subject
 rtpus: {first: {cpu: 0, policy: edf}, second: {cpu: 1, policy: edf}}
 tasks:
@@ -141,7 +141,7 @@ TEST(SteppedReactions, LeadToAnotherConfigurationAfterAMissAndAfterAnOverrun) {
   }
 }
 
-/// The first fault was dealt with by the manager that dies; the second one comes before its successor.
+/// The manager that dies has handled the first fault; the second fault comes before its successor.
 TEST(SteppedReactions, AskAgainForTheSameWhileTheManagerIsDead) {
   SteppedSubsystem system(replaced(kFails, "REACTION", "{switch: less}"));
   ASSERT_TRUE(system.until([&] { return system.manager().is_ready() && system.ends() == "less done\n"; }));

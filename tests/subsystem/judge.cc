@@ -206,7 +206,7 @@ void Judge::manager_dies() {
   turning_.assign(turning_.size(), false);
   ended_.assign(ended_.size(), false);
   is_rolling_back_ = false;
-  for (TaskId task : world_.plan.spec.init_order) asked_up(task);  // what it was about to do, the next one may finish
+  for (TaskId task : world_.plan.spec.init_order) asked_up(task);  // the next manager may finish its last step
 }
 
 void Judge::wanted_down(TaskId task) {
@@ -264,7 +264,7 @@ void Judge::look_at_the_end() {
     const State last = process.word(task).state;
     const bool is_lost = !process.is_alive() && last != State::kNotCreated && goal == 0;
     const State truth = is_lost ? State::kError : process.state(task);
-    // One that died again before it was brought back is missed too, though the last words do not know it.
+    // A task that died again before it came back is missing too, though its last status does not show it.
     const bool is_missed = !process.is_alive() && subsystem.state(task) == State::kError && goal == 0;
     if (subsystem.state(task) != truth && !is_missed)
       world_.fail(name(task) + " is said to be " + state_name(subsystem.state(task)) + " and is " + state_name(truth));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What must always hold in the simulation, checked at every event.
+// Invariants of the simulation, checked at every event.
 #pragma once
 
 #include <span>
@@ -22,7 +22,7 @@ class Judge {
   void changed();
   /// After every event: the flag.
   void look();
-  /// Nothing goes on any more: nothing may be lost.
+  /// After the last event: nothing may be lost.
   void look_at_the_end();
   /// The ON set by the words, of processes that live by the keeper's page.
   std::vector<bool> on_as_seen() const;
@@ -55,7 +55,7 @@ class Judge {
   void process_dies(RtpuId rtpu);
   void process_hangs();
   bool is_turning() const noexcept;
-  /// Those that are ON and produce what the task produces.
+  /// Tasks that are ON and produce a variable of the task.
   std::vector<TaskId> rivals(TaskId task) const;
 
  private:

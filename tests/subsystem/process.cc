@@ -135,7 +135,7 @@ void Process::request(TaskId from, TaskId target) {
   world_.driver->poke();
 }
 
-// A signal that meets a method under way is taken after it; of one task all are taken in their order.
+// A signal waits until the running method of its task ends. Signals of one task keep their order.
 bool Process::is_blocked(const Letter& letter, std::size_t before) const {
   return std::any_of(letter.tasks.begin(), letter.tasks.end(), [&](TaskId task) {
     if (word(task).in_service) return true;

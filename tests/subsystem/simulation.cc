@@ -32,7 +32,7 @@ class Chaos {
   }
 
  private:
-  // Who was to die and did not pass the point, dies now.
+  // A process that did not pass its point of death dies now.
   void end() {
     if (world_.signals < 200) return world_.agenda.after(seconds(1), [this] { end(); });
     for (auto& process : world_.processes)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`chimera test DIR`: what it finds, how it judges, what a build machine reads, and what it refuses."""
+"""`chimera test DIR`: its files, its verdicts, its report for a build machine, and its refusals."""
 import json
 import unittest
 import xml.etree.ElementTree

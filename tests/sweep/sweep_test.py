@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`chimera sweep`: its table, its files, and what it refuses."""
+"""`chimera sweep`: its table, its files, and its refusals."""
 import csv
 import json
 import os

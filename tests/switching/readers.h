@@ -27,7 +27,7 @@ class Readers {
   void change(Nanoseconds at, std::uint32_t life) { changes_.push_back({at, life}); }
   /// Releases of this reader up to `until` may be lost.
   void excuse(TaskId reader, Nanoseconds until) { excused_[reader.index] = until; }
-  /// It was not ON.
+  /// The reader was not ON.
   void forget(TaskId reader) { last_[reader.index] = kNever; }
 
   /// Error in a cycle of a reader; "": none. `outcome_of(plan)`: 1 committed, 0 open, -1 aborted.

@@ -43,7 +43,7 @@ class Recorder {
   struct Progress {
     std::uint32_t adopted = 0, over = 0;
   };
-  // Who finds a plan aborted adopts nothing.
+  // An rtpu that finds the plan aborted adopts nothing.
   void look_at(std::uint32_t rtpu) {
     const SwitchProgress& words = rtpus_.rtpus[rtpu]->segment.block.head().switching;
     const Progress now{words.adopted.load(), words.over.load()};

@@ -186,10 +186,10 @@ class Run {
     if (!is_changing && n_producers != 1) fail(std::to_string(n_producers) + " producers are ON");
   }
 
-  // What the manager does when an rtpu has come back, or a signal or an error has changed the set: the first set again.
+  // Acts as the manager after a restart of an rtpu, a signal or an error: orders the first set again.
   void heal() {
     readers_.let_loose();
-    rest(milliseconds(2));  // who came last has met the others
+    rest(milliseconds(2));  // the last rtpu has attached to the others
     for (int turn = 0; turn < 40 && is_well(); ++turn) {
       bool is_whole = true;
       for (std::size_t t = 0; t < n_tasks(); ++t) {
@@ -289,7 +289,7 @@ class Run {
   void signal() {
     const TaskId members[] = {kNear, kExtra, kShape, kFar};
     const TaskId id = members[draw(4)];
-    if (!all_live() || !readers_.is_strict()) return;  // they may not have met yet
+    if (!all_live() || !readers_.is_strict()) return;  // they may not be attached yet
     ++tally_.signals;
     readers_.let_loose();
     rtpus_.send(one_in(3) ? Signal::kKill : Signal::kOff, {id});

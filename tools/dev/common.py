@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the commands of ./dev share: lines for people, the build trees, the machine-wide real-time lock."""
+"""Common parts of the commands of ./dev: output, build trees, the machine-wide real-time lock."""
 import contextlib
 import csv
 import fcntl

@@ -119,7 +119,7 @@ class Again(unittest.TestCase):
     """Tests that touch real scheduling run again; the others never."""
 
     def again(self, *tries, labels="process"):
-        """What is left of these tries of the program p, each a list of cases; how often it ran."""
+        """Result of these tries of the program p, each a list of cases, and the number of its runs."""
         for cases in tries:
             for case in cases:
                 case.program = "p"

@@ -148,7 +148,7 @@ std::vector<Line> random_lines(std::mt19937& random) {
   return lines;
 }
 
-// What is said to fit is tried: the changed description is analysed again.
+// Applies each remedy: the changed description is analysed again and must fit.
 TEST(Schedule, ItsAdviceIsTrue) {
   std::mt19937 random(3);
   std::map<std::string, int> tried;
@@ -205,7 +205,7 @@ TEST(Schedule, ATaskThatMovesTakesAlongTheBandOfItsRtpu) {
   EXPECT_EQ(remedies[remedies.size() - 1], Json({{"task", "a"}, {"rtpu", nullptr}})) << remedies;
 }
 
-TEST(Schedule, JudgesEachUnitAsTheDescriptionHasIt) {
+TEST(Schedule, JudgesEachRtpuAsTheDescriptionHasIt) {
   std::string text = kTwo;
   text.replace(text.find("policy: rm"), 10, "policy: rm, executor: preemptive");
   const CommandResult mixed = scheduled(text, "");

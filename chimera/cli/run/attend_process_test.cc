@@ -25,7 +25,7 @@ namespace {
 
 using control::RpcResponse;
 
-/// One task `pid` on two rtpus; what it answers may be changed before it is asked.
+/// A backend with one task `pid` and two rtpus. A test may change its answers before the request.
 class MadeUp final : public control::ControlBackend {
  public:
   void call(const control::MethodRule& method, const Json& parameters, const control::Caller&,

@@ -145,7 +145,7 @@ TEST_F(SwitchJournalTest, EachNumberHasOneReceiptThoughManagersAreKilled) {
         break;
       case 4:
         for (const auto& [number, text] : journal.unfiled()) {
-          if (filed.count(number) == 0) filed.insert(number);  // as the file does: it knows its receipts
+          if (filed.count(number) == 0) filed.insert(number);  // as the file, which knows its receipts, does
           if (random() % 8 == 0) break;  // killed between the file and the journal
           journal.filed(number);
         }

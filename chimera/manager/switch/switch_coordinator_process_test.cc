@@ -337,8 +337,8 @@ TEST_F(SwitchCoordinatorTest, ForgetsASwitchThatWasNeverAnnounced) {
   EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', " + kByAnn);
 }
 
-// The manager was killed between the journal and the plan of another try. The first try was late: the successor reports
-// that, or tries again.
+// The manager was killed between the journal and the plan of another try. The successor reports that the first try was
+// late, or tries again.
 TEST_F(SwitchCoordinatorTest, ATryThatWasNotAnnouncedIsMadeAgain) {
   ask(kRest);
   SwitchJournal journal(fake.loop().state().own.block().journal());

@@ -12,7 +12,7 @@
 namespace chimera {
 namespace {
 
-struct Sender {  // signals the other task when told
+struct Sender {  // signals the other task if `turns_off` is set
   Out<double> x{"x", "1", initial = 0.0};
   void cycle(Cycle c) {
     *x = 1;

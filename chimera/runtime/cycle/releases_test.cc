@@ -10,7 +10,7 @@
 namespace chimera {
 namespace {
 
-struct Sender {  // signals the other task, or fails for ever, when told
+struct Sender {  // signals the other task, or fails for ever, by its flags
   Out<double> x{"x", "1", initial = 0.0};
   Outcome cycle(Cycle c) {
     if (std::exchange(turns_off, false)) c.signal(Signal::kOff, "slow");

@@ -56,7 +56,7 @@ struct TaskHostTest : ::testing::Test {
   ModelledClock clock;
 };
 
-/// Keeps what it is given.
+/// Records the arguments of keep().
 struct KeptFrames final : SafeFrames {
   std::span<SafeFrame, kSafeFrames> of(TaskId task) noexcept override {
     return std::span<SafeFrame, kSafeFrames>(frames[task.index], kSafeFrames);

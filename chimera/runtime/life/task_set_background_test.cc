@@ -17,7 +17,7 @@
 namespace chimera::task_set_background_test {
 namespace {
 
-// What the one instance of a test did, in letters: i b(ackground) c k d(estroyed).
+// Calls of the one instance of a test, in letters: i b(ackground) c k d(estroyed).
 struct Story {
   std::string letters;                 // of the thread that signals
   std::atomic<int> backgrounds{0};

@@ -28,7 +28,7 @@ struct Last {
 
 constexpr TaskId kOne{0u}, kTwo{1u}, kThree{2u}, kUser{3u}, kLast{4u};
 
-/// Three tools, of which `one` starts; a user of the mass of the tools and one of what it makes of it.
+/// Three tools, of which `one` starts; `user` reads the mass of the tools, `last` the load of `user`.
 struct RivalsTest : ::testing::Test {
   void SetUp() override {
     for (const char* name : {"one", "two", "three"}) app.add(name, testing::component<Tool>("tool"));

@@ -116,7 +116,7 @@ TEST_F(SlowPlanTest, AnArrivingTaskIsReinitialisedToo) {
                                                 {SlowAct::kOn, kLaw}}));
 }
 
-// Whatever uses what a tool makes may be absent, so nothing can be checked before the tool is there.
+// Users of the constants of a tool may be absent, so nothing can be checked before the tool is created.
 TEST_F(SlowPlanTest, ToolsWithOneDeviceTakeTurnsWithIt) {
   const std::vector<std::byte> tty = testing::bytes_of("tty0");
   for (const TaskId tool : {kLight, kHeavy}) app.port(tool.index, 4).value = tty;

@@ -164,8 +164,8 @@ TEST_F(SwitchAgreementTest, ASlowPlanCountsItsStepsForwardsAndBackAndCommitsAtOn
   EXPECT_FALSE(agreement.commit(8, kOrigin));
 }
 
-// Fault row 27, the stale plan after a restart: acts of plans before, any of them, between any two steps of the present
-// one, which is committed or aborted all the same.
+// Fault row 27, the stale plan after a restart: any acts of earlier plans come between any two steps of the present
+// plan, which is still committed or aborted.
 TEST_F(SwitchAgreementTest, AHundredThousandActsOfOlderPlansChangeNothing) {
   std::mt19937 random(27);
   int replays = 0;

@@ -66,7 +66,7 @@ TEST(TakeoverRing, ADeathInAWriteKeepsTheOlderTakeovers) {
   for (std::uint32_t n = oldest; n <= kKept + 1; ++n) EXPECT_TRUE(ring.read(n, false, read)) << n;
 }
 
-// A takeover that is kept no more has no place to be told anew in: that is a younger one's.
+// A takeover that was overwritten cannot be stored again: its place belongs to a younger one.
 TEST(TakeoverRing, AnOverwrittenTakeoverKeepsTheYoungerOnes) {
   TakeoverRing ring;
   for (std::uint32_t n = 1; n <= kKept + 2; ++n) ring.put(takeover(n, n == 1 ? kNever : seconds(1)));

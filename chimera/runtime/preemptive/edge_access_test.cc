@@ -27,7 +27,7 @@ struct EdgeAccessTest : testing::PreemptiveParts, ::testing::Test {
     testing::Idle::during_off = std::move(during);
     EXPECT_EQ(access().call(job(task).task, Method::kOff, at(0)), Answer::kOk);
   }
-  /// As the edge does.
+  /// Acts as an edge.
   void settle(std::uint32_t task, Nanoseconds now) { releases().settlement().settle_at_once(TaskId(task), now); }
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop ends itself out of the body of a job, or is asked to end by the test. Periods are of many seconds, so that
-// which releases have come does not depend on how fast the machine is.
+// The loop ends itself out of the body of a job, or is asked to end by the test. Periods are many seconds long, so that
+// the number of releases does not depend on the speed of the machine.
 #include "chimera/runtime/preemptive/job_loop.h"
 
 #include <gtest/gtest.h>

@@ -46,7 +46,7 @@ TEST_F(JobThreadTest, LosesNoWakeThatCameBeforeTheWait) {
   job.wait(heard, kNever);
 }
 
-// A job that is preempted between its begin and its first look at the clock began when it went on.
+// A job that is preempted between its begin and its first reading of the clock began when it continued.
 TEST_F(JobThreadTest, TheFirstSliceBeginsOnce) {
   JobThread job(task_);
   EXPECT_EQ(job.slice(), kNever);

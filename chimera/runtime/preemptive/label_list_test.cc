@@ -42,7 +42,7 @@ class Kernel {
   }
   void rekey(std::uint32_t task, const Urgency& urgency) { apply(list.rekey(TaskId(task), urgency)); }
 
-  // Which job the kernel would run: the highest level; "?" when two share it.
+  // Job that the kernel would run: the one at the highest level; "?" if two share it.
   std::string runs() const {
     std::int32_t top = 0;
     std::string who;

@@ -160,7 +160,7 @@ TEST_P(VirtualStandbysTest, APrimaryThatPublishesNothingForTooLongIsKilledAndThe
   EXPECT_EQ(rtpus->peers().died(RtpuId(0u)) - rtpus->rtpus().origin(), milliseconds(7));
   EXPECT_EQ(state(kSpare), State::kOn);
   EXPECT_EQ(scene.illegal, std::vector<std::int64_t>{});
-  // Published last at 3 ms, with the cycle released then: that is older than 3 ms with the look at 7 ms, which kills.
+  // The last publication is from the cycle of 3 ms: it is older than 3 ms at the check of 7 ms, which kills the rtpu.
   EXPECT_EQ(scene.u, (std::vector<double>{0, 1, 2, 3, 4, 4, 4, 4, 104, 204, 304}));
 }
 

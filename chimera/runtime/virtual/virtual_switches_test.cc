@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A switch over several rtpus in virtual time: no cycle is lost, who stays is not touched.
+// A switch over several rtpus in virtual time: no cycle is lost, and tasks that stay are not disturbed.
 #include "chimera/runtime/virtual/virtual_switches.h"
 
 #include <gtest/gtest.h>
@@ -139,7 +139,7 @@ TEST_P(VirtualSwitchesTest, ALaterRequestForTheRunningSwitchTakesBackAnEarlierOn
   EXPECT_TRUE(rtpus->are_on(kSets[kObserved]));
 }
 
-// One that chatters in each cycle, of which the receipts that there is room for are kept.
+// Two tasks request a switch in each cycle. Receipts are kept while there is room.
 TEST_P(VirtualSwitchesTest, RequestsInEveryCycleFillNoMemory) {
   scene.in_reader = [](Cycle c) { c.request(c.count() % 10 < 5 ? "observed" : "beside"); };
   scene.in_plant = [](Cycle c) { c.request(c.count() % 10 < 5 ? "observed" : "beside"); };
