@@ -136,7 +136,7 @@ TEST_F(DoorLimits, ASlowReaderSkipsToTheLatestAndAStuckOneIsDropped) {
   ::close(other);
 }
 
-TEST_F(DoorLimits, AnIdleDoorIsDueWhenThePatienceWithAPeerEnds) {
+TEST_F(DoorLimits, AnIdleServerIsDueWhenTheTimeOfAClientEnds) {
   const int fd = plain();
   backend.ballast = 900'000;
   ask(fd, "");

@@ -68,7 +68,7 @@ class ManagerBackendTest : public ::testing::Test {
   std::unique_ptr<ManagerBackend> backend_;
 };
 
-TEST_F(ManagerBackendTest, CarriesOutEveryMethodButThoseOfTheDoorItself) {
+TEST_F(ManagerBackendTest, CarriesOutEveryMethodButThoseOfTheServer) {
   using Kind = control::ParameterKind;
   for (const control::MethodRule& rule : control::methods()) {
     const bool is_of_the_door =

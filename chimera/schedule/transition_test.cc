@@ -59,7 +59,7 @@ TEST(Transition, ALikeForLikeSwitchFitsIfTheLongerTimeFits) {
     }
 }
 
-TEST(Transition, OnAnotherGridMeetsTheLastJobOfTheOneBefore) {
+TEST(Transition, OnAnotherGridATaskMeetsTheLastJobOfItsPredecessor) {
   // The same rates and times. The first release after the change comes 9 ms after the last one before it.
   const Judged far({work(10, 6), work(10, 6, 9)}, {Part::kLeaves, Part::kArrives}, {use(Policy::kEdf)});
   EXPECT_FALSE(far.fits());

@@ -46,7 +46,7 @@ TEST_F(SubsystemRivals, SpawnAndOnAreRefusedWithTheWayToIt) {
   EXPECT_EQ(command(Signal::kSpawn, {kReserve}), "goal reserve 1\nsend spare: spawn reserve\n");
 }
 
-TEST_F(SubsystemRivals, AGoalWaitsUntilTheOtherOneIsKilledAndIsGivenUpAfterTenSeconds) {
+TEST_F(SubsystemRivals, AGoalWaitsForTheKillOfItsRivalAtMostTenSeconds) {
   make_rivals();
   start_without_reserve();
   die(kServo);  // while it is dead, a switch creates reserve

@@ -68,7 +68,7 @@ TEST(UnitSystem, SaysWhereItLookedForTheFile) {
   EXPECT_EQ(loaded.error().message.view(), "no unit file; looked for /nowhere/a.xml /nowhere/b.xml");
 }
 
-TEST(UnitSystem, RefusesAFileThatIsNone) {
+TEST(UnitSystem, RefusesAnInvalidUnitFile) {
   const std::string files[] = {testing::TempDir() + "chimera_no_units.xml"};
   std::ofstream(files[0]) << "kind: not even XML\n";
   const auto loaded = UnitSystem::load(files);

@@ -56,7 +56,7 @@ TEST_F(ComparatorTest, FollowsALevelThatMoves) {
   EXPECT_EQ(answers({11}), "0");
 }
 
-TEST_F(ComparatorTest, GoesOnFromTheAnswerThatStands) {
+TEST_F(ComparatorTest, StartsAtItsLastAnswer) {
   give("above", 0, 2);
   ASSERT_TRUE(rig.init());
   EXPECT_EQ(answers({12}), "1");

@@ -169,7 +169,7 @@ TEST_F(GinvkinTest, StartsAtTheHandedOverCommandOrTheMeasurement) {
   EXPECT_EQ(rig.six("q_ref")[2], kBent[2]);
 }
 
-TEST_F(GinvkinTest, RefusesLimitsThatAreNone) {
+TEST_F(GinvkinTest, RefusesInvalidLimits) {
   rig.set("q_min", 1.0, 3);
   rig.set("q_max", 0.5, 3);
   EXPECT_EQ(rig.init().text, "a joint limit is not a number, or q_min is above q_max");

@@ -44,7 +44,7 @@ TEST_F(PidJointTest, StaysWithinTheTorqueOfTheDrives) {
   EXPECT_EQ(rig.get<double>("tau", 0), 50);
 }
 
-TEST_F(PidJointTest, GoesOnFromTheTorqueThatStands) {
+TEST_F(PidJointTest, StartsAtItsLastTorque) {
   start();
   rig.set("q_ref", 0.2, 0);
   for (int i = 0; i < 500; ++i) ASSERT_TRUE(rig.cycle());
@@ -57,7 +57,7 @@ TEST_F(PidJointTest, GoesOnFromTheTorqueThatStands) {
   EXPECT_NEAR(rig.get<double>("tau", 0), stands, 1e-3);
 }
 
-TEST_F(PidJointTest, GoesOnFromTheTorqueThatIsHandedOverAndNotFromAnOldOne) {
+TEST_F(PidJointTest, StartsAtAFreshHandedOverTorqueOnly) {
   start();
   rig.set("q_ref", 0.1, 0);
   rig.set("tau", 20.0, 0);

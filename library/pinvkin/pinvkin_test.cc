@@ -80,7 +80,7 @@ TEST_F(PinvkinTest, ComesThroughTheSingularPosesOfThePuma) {
   }
 }
 
-TEST_F(PinvkinTest, RefusesAPoseThatIsNoneAndGoesOnAfterIt) {
+TEST_F(PinvkinTest, RefusesAnInvalidPoseAndGoesOnAfterIt) {
   for (const Pose& bad : {Pose{{kNotANumber, 0, 0}, {1, 0, 0, 0}}, Pose{{0.5, 0, 0}, {0, 0, 0, 0}}}) {
     rig.set("xr", bad);
     EXPECT_EQ(rig.refusal(), "xr is not finite or no orientation");

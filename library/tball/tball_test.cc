@@ -104,7 +104,7 @@ TEST_F(TballTest, TwoRunsOfARecordingAgreeToTheBit) {
   }
 }
 
-TEST_F(TballTest, GoesOnFromTheReferenceThatIsHandedOver) {
+TEST_F(TballTest, StartsAtTheHandedOverReference) {
   rig.instances("xm", 1);
   rig.set("xm", Pose{{1, 2, 3}, {1, 0, 0, 0}});
   rig.set("xd", Pose{{1, 2, 4}, {1, 0, 0, 0}});

@@ -93,7 +93,7 @@ TEST(CFace, MethodsReachTheirPortsByName) {
   EXPECT_TRUE(rig.kill());
 }
 
-TEST(CFace, GoesOnFromTheOutputThatStands) {
+TEST(CFace, StartsAtItsLastOutput) {
   Ball rig;
   rig.set("xd", 5.0, 0);
   ASSERT_TRUE(rig.on());

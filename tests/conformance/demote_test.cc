@@ -103,7 +103,7 @@ TEST_F(Demote, ReleasesDuringADemotedJobWaitForItsEnd) {
   EXPECT_EQ(profile().cycles, 3u);
 }
 
-TEST_F(Demote, TheFirstThatWasDemotedGoesOnUntilItEnds) {
+TEST_F(Demote, TheFirstDemotedJobContinuesToItsEnd) {
   add_bad(40, 6, 1).on_overrun = OnMiss::kDemote;
   TaskSpec& spec = app.add("a", milliseconds(40), milliseconds(4));
   spec.budget = milliseconds(2);

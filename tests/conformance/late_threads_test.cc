@@ -97,7 +97,7 @@ TEST_F(Late, DoesNotRaiseTheFlagWhenTheMissIsTolerated) {
     has_seen = true;
   };
   run(milliseconds(600));
-  EXPECT_GE(listener.of(app.id("late")).size(), 1u) << "the miss is reported though the job is alone";
+  EXPECT_GE(listener.of(app.id("late")).size(), 1u) << "a tolerated miss is reported too";
   EXPECT_FALSE(has_flag && is_the_only_one_late());
   EXPECT_GE(profile().tolerated, 1u);
 }

@@ -120,7 +120,7 @@ TEST_P(Requests, DoNotWaitForFirstCycles) {
   EXPECT_TRUE(is_on(kLow));
 }
 
-TEST_P(Requests, TheSameThatIsRefusedIsTakenTenTimesASecondAndAnotherOneAtOnce) {
+TEST_P(Requests, RepeatsARefusedRequestTenTimesASecondAndTakesAnotherAtOnce) {
   scene.on_of_high = [](Cycle) { return fault("no"); };
   scene.first = [](Cycle c) { (void)c.request(c.count() == 270 ? "other" : "high"); };
   const auto receipts = go(milliseconds(300));

@@ -131,7 +131,7 @@ struct Entangled {
   std::unique_ptr<RtpusRun> run;
 };
 
-TEST(RtpusTwins, ARunRepeatsInWhicheverOrderTheContextsAreMade) {
+TEST(RtpusTwins, ARunRepeatsForEachOrderOfTheContexts) {
   for (std::uint32_t seed = 1; seed <= 25; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Entangled first(seed), again(seed), turned(seed, {2, 0, 1});

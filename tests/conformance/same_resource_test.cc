@@ -230,7 +230,7 @@ TEST_P(SameResource, OnThatIsNeverReadyIsTakenBackWithItsOff) {
   EXPECT_EQ(end, (Story{"off drill", "kill drill", "init hand", "on hand"}));
 }
 
-TEST_P(SameResource, AFastSwitchToADeviceThatIsNotReadyGoesTheSlowWay) {
+TEST_P(SameResource, AFastSwitchToAnUnreadyDeviceBecomesSlow) {
   is_shared_ = true;
   device.users = -1;
   device.not_ready = 3;

@@ -118,7 +118,7 @@ TEST(Servers, TheTextbookExamplesComeOutToTheLetter) {
   }
 }
 
-TEST(Servers, AJobLongerThanTheCapacityGoesOnWheneverSomeIsBack) {
+TEST(Servers, AJobLongerThanTheCapacityContinuesWhenCapacityReturns) {
   for (const ServerKind kind : {kDeferrable, kSporadic}) {
     Application app;
     add_served(app, "S", kind, 2, 5);

@@ -399,7 +399,7 @@ TEST_P(Switches, ARaisedFlagUndoesAnUncommittedSwitch) {
 }
 
 // A switch that would break a guarantee with both sets ON is slow: leaving tasks are OFF before arriving ones are ON.
-TEST_P(Switches, OverWhichATaskMightMissItsDeadlineGoesTheSlowWay) {
+TEST_P(Switches, ASwitchThatRisksADeadlineIsSlow) {
   build();
   acts_ = {to(kObserved, milliseconds(5))};
   app_->tasks[kObserver.index].budget = milliseconds(2);
@@ -432,8 +432,8 @@ TEST_P(Switches, RefusesSecondSwitchAtSameInstant) {
   }
 }
 
-// `on` is assumed to need the budget. A budget above the shortest period is refused at once.
-TEST_P(Switches, AnOnThatFitsNoGapGoesTheSlowWayAtOnce) {
+// `on` is assumed to need the budget. If the budget is above the shortest period, the switch is slow at once.
+TEST_P(Switches, AnOnThatFitsNoGapMakesTheSwitchSlowAtOnce) {
   build();
   acts_ = {to(kObserved, milliseconds(5))};
   app_->tasks[kObserver.index].budget = milliseconds(2);
@@ -467,8 +467,8 @@ TEST_P(Switches, AnOnThatWasHeldUpOnceIsNotSlowForEver) {
   for (const SwitchReceipt& receipt : runner_->receipts()) EXPECT_EQ(receipt.end, SwitchEnd::kDone);
 }
 
-// Without a gap that `on` would fit in, it goes the slow way after 10 s.
-TEST_P(Switches, WithoutAGapItGoesTheSlowWayAfterTenSeconds) {
+// Without a gap that `on` fits in, the switch becomes slow after 10 s.
+TEST_P(Switches, WithoutAGapTheSwitchIsSlowAfterTenSeconds) {
   build();
   acts_ = {to(kObserved, milliseconds(5))};
   app_->tasks[kObserver.index].budget = microseconds(600);

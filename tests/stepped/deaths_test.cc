@@ -44,7 +44,7 @@ TEST_F(Deaths, ADeadRtpuIsNamedWithItsCauseAndComesBackWithItsTasks) {
   }
 }
 
-TEST_F(Deaths, AnRtpuThatDiesFourTimesIsGivenUpUntilAPersonSaysClear) {
+TEST_F(Deaths, AnRtpuThatDiesFourTimesIsGivenUpUntilClear) {
   SteppedSubsystem system(kTwoRtpus);
   ASSERT_TRUE(system.until_started());
   for (int n = 0; n < 4; ++n) {

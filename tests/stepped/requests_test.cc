@@ -142,7 +142,7 @@ TEST(SteppedReactions, LeadToAnotherConfigurationAfterAMissAndAfterAnOverrun) {
 }
 
 /// The manager that dies has handled the first fault; the second fault comes before its successor.
-TEST(SteppedReactions, AskAgainForTheSameWhileTheManagerIsDead) {
+TEST(SteppedReactions, RepeatTheirRequestWhileTheManagerIsDead) {
   SteppedSubsystem system(replaced(kFails, "REACTION", "{switch: less}"));
   ASSERT_TRUE(system.until([&] { return system.manager().is_ready() && system.ends() == "less done\n"; }));
   EXPECT_EQ(system.signal("kill", "thrower"), "");

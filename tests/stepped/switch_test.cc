@@ -119,7 +119,7 @@ TEST(SteppedSwitch, IsRefusedWithTheNearestNameAndWithTheCommandThatHelps) {
   EXPECT_EQ(switched(system, "quick")["end"], "done");
 }
 
-TEST(SteppedSwitch, OverWhichATaskMightMissItsDeadlineGoesTheSlowWayUnderTheFlag) {
+TEST(SteppedSwitch, ASwitchThatRisksADeadlineIsSlowUnderTheFlag) {
   std::string text = kSwitch;
   const auto replace = [&](const std::string& what, const std::string& with) {
     for (std::size_t at = 0; (at = text.find(what, at)) != text.npos; at += with.size())

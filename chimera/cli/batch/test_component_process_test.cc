@@ -188,7 +188,7 @@ TEST_F(TestComponent, PlaysARecording) {
   EXPECT_EQ(run().err, options_.inputs + ":1:3: error: no in-var of the component is called 'v'\n");
 }
 
-TEST_F(TestComponent, NamesTheNearestWhenThereIsNone) {
+TEST_F(TestComponent, NamesTheNearestComponentForAnUnknownOne) {
   options_.components = {"t_misfitt"};
   const CommandResult output = run();
   EXPECT_EQ(output.code, kRefused);

@@ -266,7 +266,7 @@ TEST(Schedule, RefusesAnIllegalDescriptionAsCheckDoes) {
   EXPECT_NE(output.err.find("nothing"), std::string::npos);
 }
 
-TEST(Schedule, RefusesAProfileThatIsNone) {
+TEST(Schedule, RefusesAFileThatIsNoProfile) {
   const TestFile file("{}");
   const CommandResult output = scheduled(kTwo, "", file.path());
   EXPECT_EQ(output.code, kRefused);

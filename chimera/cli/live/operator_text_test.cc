@@ -35,7 +35,7 @@ TEST(OperatorText, OnlyTheValuesThatDifferChange) {
             "configurations:\n  run: [a]");
 }
 
-TEST(OperatorText, AValueThatSaysTheSameStaysAsItIsWritten) {
+TEST(OperatorText, AnEqualValueStaysAsItIsWritten) {
   EXPECT_EQ(edited(kText, {{"goal", "3.141592653589793 rad"}, {"kp", "[100 N.m/rad, 90 N.m/rad]"},
                            {"name", "\"it's # here\""}, {"pose", "{y: 2 m, x: 1 m}"}}),
             kText);

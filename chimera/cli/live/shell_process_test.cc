@@ -311,7 +311,7 @@ TEST_F(ShellTest, WatchGoesOnUntilCtrlC) {
   EXPECT_EQ(said.rfind("0|error = 0.0 rad\nerror = 0.0 rad\n", 0), 0u) << said;
 }
 
-TEST_F(ShellTest, SaveWritesTheFileOnceAndOnlyWhenItIsAsItWas) {
+TEST_F(ShellTest, SaveWritesTheFileOnceAndOnlyIfItIsUnchanged) {
   subject.file = path("arm.yaml");
   const std::string before = "subsystem: puma_pid\ntasks: {a: }\noperator:\n  kp: [3 N.m/rad, 2 N.m/rad]  # gains\n";
   std::ofstream(subject.file) << before;

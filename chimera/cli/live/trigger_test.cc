@@ -47,7 +47,7 @@ TEST(Trigger, FiresAtTheEdgeOnly) {
   EXPECT_EQ(edges(settled("ready == true", "1"), {0, 1, 1}), "010");
 }
 
-TEST(Trigger, ANumberThatIsNoneHoldsNoComparison) {
+TEST(Trigger, NotANumberHoldsNoComparison) {
   EXPECT_EQ(edges(settled("e != 0", "1"), {0, NAN, 1}), "001");
   EXPECT_EQ(edges(settled("e > 1", "1"), {NAN, 2}), "01");
 }

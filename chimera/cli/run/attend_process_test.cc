@@ -207,7 +207,7 @@ TEST_F(Attend, PrintsTheReceiptsOfItsOwnRunForRequestsOfAllClients) {
   EXPECT_EQ(told["receipts_left_out"], 2) << "1 and 2 are not given out any more";
 }
 
-TEST_F(Attend, ANumberThatIsNoneSatisfiesNothing) {
+TEST_F(Attend, NotANumberSatisfiesNoExpectation) {
   backend_.values["q"] = reading(Json::array({1.0, nullptr}), "[1 nan] rad");
   request_.run.expect = {"q < 3 rad"};
   request_.bounds = {3};

@@ -39,7 +39,7 @@ TEST_F(ExpectationText, NamesTheNearestVariable) {
   EXPECT_EQ(refusal("cont < 1"), "--expect 'cont < 1': no state variable 'cont'; did you mean 'count'?");
 }
 
-TEST_F(ExpectationText, RefusesBoundsThatAreNone) {
+TEST_F(ExpectationText, RefusesInvalidBounds) {
   for (const char* text : {"dt < ", "dt < nan s", "dt < 1e999 s", "dt < 1 kg", "dt < 1", "dt << 1 s", "dt < 1 s < 2 s"})
     EXPECT_EQ(refusal(text).rfind(std::string("--expect '") + text + "': ", 0), 0u) << refusal(text);
 }

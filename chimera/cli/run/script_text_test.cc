@@ -110,7 +110,7 @@ TEST_F(ScriptText, NamesTheNearestSignalAndTask) {
 
 TEST_F(ScriptText, ABlankAfterTheNameIsNoPartOfIt) { EXPECT_EQ(refusal("1 s: off counter  "), "accepted"); }
 
-TEST_F(ScriptText, RefusesTimesThatAreNone) {
+TEST_F(ScriptText, RefusesInvalidTimes) {
   for (const char* time : {"", "2", "-1 s", "nan s", "1e400 s", "2 m", "1 s s"})
     EXPECT_EQ(refusal(std::string(time) + ": off counter").rfind(std::string("--at '") + time, 0), 0u) << time;
 }

@@ -38,7 +38,7 @@ TEST_F(SilenceTest, ATaskThatIsNotOnMayBeSilent) {
   EXPECT_TRUE(look(true, 5));
 }
 
-TEST_F(SilenceTest, ALookThatComesLateCountsForNothing) {
+TEST_F(SilenceTest, ALateCheckDoesNotCount) {
   EXPECT_FALSE(look(true, 5));
   for (int i = 0; i < 10; ++i) {
     now = silence.due() + milliseconds(6);

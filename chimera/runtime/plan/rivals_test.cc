@@ -68,7 +68,7 @@ TEST_F(RivalsTest, TheSameTextMakesRivals) {
   EXPECT_EQ(rivals.resource(kOne, kThree), "");
 }
 
-TEST_F(RivalsTest, SharedByEitherOrTogetherInAConfigurationTheyAreNone) {
+TEST_F(RivalsTest, SharedOrConfiguredTogetherTheyAreNoRivals) {
   app.port(kThree.index, 1).shared = true;
   with_two.push_back(kOne);
   make();

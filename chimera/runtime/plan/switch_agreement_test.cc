@@ -50,7 +50,7 @@ TEST_F(SwitchAgreementTest, TheOrderArrivesAsItWasWritten) {
   EXPECT_FALSE(agreement.run(8));
 }
 
-TEST_F(SwitchAgreementTest, AnOrderThatDoesNotFitTheApplicationIsNone) {
+TEST_F(SwitchAgreementTest, RefusesAnOrderThatDoesNotFitTheApplication) {
   agreement.announce(some_order());
   EXPECT_FALSE(agreement.order(agreement.plan(), 1, 70)) << "there is no set 1";
   EXPECT_FALSE(agreement.order(agreement.plan(), 2, 66)) << "there is no task 66";
@@ -66,7 +66,7 @@ TEST_F(SwitchAgreementTest, AnOrderThatDoesNotFitTheApplicationIsNone) {
   EXPECT_FALSE(agreement.order(agreement.plan(), 2, 70)) << "the order has no members";
 }
 
-TEST_F(SwitchAgreementTest, AnOrderWhoseTimesCannotBeAddedIsNone) {
+TEST_F(SwitchAgreementTest, RefusesAnOrderWhoseTimesOverflow) {
   for (const std::int64_t far : {INT64_MAX, INT64_MAX / 2, INT64_MIN, std::int64_t{-1}}) {
     SwitchOrder late = some_order(), early = some_order();
     late.until = {far};

@@ -13,7 +13,7 @@ TEST(SwitchWish, ComesBackFromItsWord) {
   EXPECT_FALSE(SwitchWish::of(0).is_there());
 }
 
-TEST(SwitchWish, HasAnotherNumberThanTheOneBefore) {
+TEST(SwitchWish, HasANewNumberEachTime) {
   SwitchWish wish;
   wish = wish.next({3, SwitchCause::kMiss, TaskId{7u}});
   EXPECT_EQ(wish, (SwitchWish{1, 3, 7, SwitchCause::kMiss}));
