@@ -78,7 +78,7 @@ bool fits_exactly(const Set& set, double utilisation) {
   return true;
 }
 
-// The largest utilisation, in steps of 0.01, at which `fits` still holds below every larger one that was tried.
+// Bisects for the largest utilisation, in steps of 0.01, at which `fits` holds.
 template <class Fits>
 double breakdown(Fits fits) {
   int low = 0, high = 100;

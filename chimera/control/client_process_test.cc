@@ -101,7 +101,7 @@ TEST_F(ClientTest, DoesNotHideThatSubscriptionsAreLost) {
   open_door();
   start();
   EXPECT_EQ(client->call("status").message, "the connection to the subsystem was lost");
-  EXPECT_TRUE(client->call("status").is_good()) << "that they are lost has been told";
+  EXPECT_TRUE(client->call("status").is_good()) << "the loss was reported once";
 }
 
 TEST_F(ClientTest, ConnectsAnewAfterItsSubscriptionsWereLostOrDropped) {

@@ -125,7 +125,7 @@ TEST_F(DoorLimits, ASlowReaderSkipsToTheLatestAndAStuckOneIsDropped) {
   backend.ballast = 200'000;
   ask(fd, request("subscribe", R"({"to":"values","period_ms":20})"));
   for (int i = 0; i < 2000; ++i) serve();
-  EXPECT_LT(backend.pulls, 10) << "what the peer does not take is not made";
+  EXPECT_LT(backend.pulls, 10) << "no status is made while the client does not read";
   EXPECT_EQ(server->connections(), 2u);
   EXPECT_NE(ask(other, request("hello")).find("\"result\""), std::string::npos) << "others do not notice";
   for (int i = 0; i < 400 && server->connections() == 2; ++i) serve(milliseconds(10));

@@ -73,7 +73,7 @@ TEST_F(DoorPlaces, AConnectionWithAPendingRequestNeverGivesWay) {
   EXPECT_EQ(take(late),
             error("null", -32002,
                   ("too many connections: the 16 of user " + std::to_string(::getuid()) + " are all in use").c_str()));
-  EXPECT_TRUE(told.empty()) << "who finds no place was not inside";
+  EXPECT_TRUE(told.empty()) << "a refused connection is not reported as closed";
 }
 
 TEST_F(DoorPlaces, ASubscriberThatReadsNothingGivesWay) {
@@ -102,7 +102,7 @@ TEST_F(DoorPlaces, TwelveOfAUserMaySubscribe) {
   EXPECT_EQ(ask(fds[12], subscribe),
             error("1", -32002,
                   ("too many connections: 12 of user " + std::to_string(::getuid()) + " have subscriptions").c_str()));
-  EXPECT_NE(ask(fds[11], subscribe).find("\"subscription\":13"), std::string::npos) << "one more of the same";
+  EXPECT_NE(ask(fds[11], subscribe).find("\"subscription\":13"), std::string::npos) << "one more of a listener";
   ::close(fds[0]);
   fds[0] = -1;
   serve();

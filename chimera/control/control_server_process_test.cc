@@ -166,7 +166,7 @@ TEST_F(DoorTest, ActsComeBeforeTheQuestionsOfOthersAndATurnEnds) {
   ASSERT_FALSE(backend.called.empty());
   EXPECT_EQ(backend.called[0], "flag");
   EXPECT_LE(backend.called.size(), 4u) << "of 30 questions that take 2 ms each two or three are a turn";
-  EXPECT_NE(take(quiet).find("\"result\""), std::string::npos) << "answered in the same turn";
+  EXPECT_NE(take(quiet).find("\"result\""), std::string::npos) << "answered in this turn";
   EXPECT_LE(server->next_due(), now) << "there is more to do";
   serve();
   EXPECT_EQ(backend.called.size(), 31u);
@@ -182,7 +182,7 @@ TEST_F(DoorTest, QuestionsOfConnectionsAreAnsweredInTurnAndEachInItsOrder) {
   say(b, request("get") + request("profile"));
   serve();
   EXPECT_EQ(backend.called, (std::vector<std::string>{"status", "get", "hello", "flag", "profile", "hello"}))
-      << "an act waits for what its own connection asked before, not for others";
+      << "an act waits for earlier requests of its own connection only";
   ::close(a);
   ::close(b);
 }

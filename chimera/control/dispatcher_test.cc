@@ -81,7 +81,7 @@ TEST_F(DispatcherTest, AskersTakeTurnsFromOneTurnToTheNext) {
   say(a, "get");
   say(b, "get");
   run_turns();
-  EXPECT_EQ(backend_.called[3], "2 get") << "a was the last one whose question was carried out";
+  EXPECT_EQ(backend_.called[3], "2 get") << "the turn before ended with connection a";
 }
 
 TEST_F(DispatcherTest, AnActBehindAQuestionOfItsConnectionDoesNotOvertakeIt) {

@@ -77,7 +77,7 @@ TEST_F(PlacesTest, AConnectionNeverGivesWayToALowerRank) {
   crowd(10, Rank::kObserve, Standing::kListens);
   crowd(30, Rank::kOperate, Standing::kIdle);
   EXPECT_EQ(refusal(1, Rank::kObserve), "the 40 of the roles up to operate are all in use");
-  EXPECT_EQ(in_place_of(2, Rank::kOperate), 11u) << "idle of one's own rank before one that listens";
+  EXPECT_EQ(in_place_of(2, Rank::kOperate), 11u) << "an idle connection of equal rank before a listener";
 }
 
 TEST_F(PlacesTest, ForANewConnectionOnlyOneOfTheSameUserGivesWay) {

@@ -430,7 +430,7 @@ TEST_F(ServedTest, StatusHasTheServerAndTheTimeSinceOn) {
   EXPECT_EQ(profile["server"], server);
   EXPECT_GE(profile["on_ns"].as_int64(), 2'000'000'000);
   (void)good("signal", {{"signal", "off"}, {"tasks", {"lamp"}}});
-  EXPECT_EQ(good("status")["tasks"][1]["on_ns"], 0) << "what it was ON for has not been told";
+  EXPECT_EQ(good("status")["tasks"][1]["on_ns"], 0) << "its time of `on` is unknown";
 }
 
 TEST_F(ServedTest, RefusesARingForATaskThatCannotAnswer) {

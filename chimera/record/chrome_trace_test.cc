@@ -47,7 +47,7 @@ TEST(ChromeTrace, KeepsEveryNanosecond) {
   const TapRecord records[] = {record(TapKind::kRun, 1001, 1, CHIMERA_CYCLE, 12'345),
                                record(TapKind::kMiss, 999, 0, 0, 7)};
   const auto events = trace_of(records, 3)["traceEvents"];
-  EXPECT_EQ(events[3]["name"], "miss") << "what came first stands first";
+  EXPECT_EQ(events[3]["name"], "miss") << "the first record comes first";
   EXPECT_EQ(events[3]["args"]["ns"], -1);
   EXPECT_EQ(events[3]["args"]["late_ns"], 7);
   EXPECT_EQ(events[4]["ph"], "X");

@@ -19,7 +19,7 @@ struct GroupClaimsTest : ::testing::Test {
 
 TEST_F(GroupClaimsTest, OneRtpuAtATimeHasAGroup) {
   EXPECT_TRUE(first.take(0));
-  EXPECT_TRUE(first.take(0)) << "its own";
+  EXPECT_TRUE(first.take(0)) << "the claim is its own";
   EXPECT_FALSE(second.take(0));
   EXPECT_TRUE(second.take(1));
   first.give_back();
@@ -35,7 +35,7 @@ TEST_F(GroupClaimsTest, AClaimOfADeadProcessIsFree) {
   EXPECT_TRUE(second.take(0));
   keeper.alive[0] = 2;  // its successor
   first.give_back();
-  EXPECT_NE(decision.claims[0], 0u) << "not its own any more";
+  EXPECT_NE(decision.claims[0], 0u) << "the claim is of its successor now";
 }
 
 TEST_F(GroupClaimsTest, AnInvalidClaimHoldsNoGroup) {

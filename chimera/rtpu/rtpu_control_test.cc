@@ -168,7 +168,7 @@ TEST_F(EdgeTest, TheFlagGoesUpEverywhereWhenAProducerLeaves) {
   rtpus->send(Signal::kOff, {kSource});
   rtpus->run(milliseconds(3));
   EXPECT_TRUE(rtpus->flag_is_up());
-  EXPECT_TRUE(Follower::illegal) << "the consumer in another rtpu was told";
+  EXPECT_TRUE(Follower::illegal) << "the consumer in another rtpu sees the flag";
   rtpus->send(Signal::kOn, {kSource});
   rtpus->run(milliseconds(3));
   EXPECT_FALSE(rtpus->flag_is_up());
@@ -236,7 +236,7 @@ TEST_F(EdgeTest, AChangedConstantReinitialisesItsUsersInOtherRtpusAndOnlyThen) {
   all_on();
   rtpus->send(Signal::kReinit, {kSource}, 1);
   rtpus->run(milliseconds(2));
-  EXPECT_EQ(Follower::reinits, 0) << "the same value";
+  EXPECT_EQ(Follower::reinits, 0) << "the value has not changed";
   Source::wanted = 5;
   rtpus->send(Signal::kReinit, {kSource}, 2);
   rtpus->run(milliseconds(3));

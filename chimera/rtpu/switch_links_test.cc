@@ -106,7 +106,7 @@ TEST_F(SwitchLinksTest, ARequestStaysUntilTheManagerHandlesIt) {
   (void)rtpus->switch_to(kObserved);
   rtpus->run(milliseconds(10));
   EXPECT_TRUE(are_on(kSets[kObserved]));
-  EXPECT_EQ(wish().number, 3) << "what is under way, and in force later, is not asked for again";
+  EXPECT_EQ(wish().number, 3) << "the running switch, in force later, is not requested again";
 }
 
 TEST_F(SwitchLinksTest, ARequestIsRepeatedThoughTheManagerOfTheLastIsDead) {

@@ -93,7 +93,7 @@ TEST_F(OnTransactionTest, FailsWhenAMemberLeavesOnByItself) {
   (void)report(kArm, State::kOn);
   is(kArm, State::kError);
   transaction.on_task_seen(kArm);
-  EXPECT_EQ(report(kTraj, State::kOn), "send spare: off traj\n") << "and no off to one that is in ERROR";
+  EXPECT_EQ(report(kTraj, State::kOn), "send spare: off traj\n") << "and no off to a task in ERROR";
   EXPECT_EQ(report(kTraj, State::kOff),
             "goal arm 0\ngoal traj 0\ngoal pid 0\nanswer 7 no: arm: went from ON to ERROR\n");
 }
@@ -140,7 +140,8 @@ TEST_F(OnTransactionTest, ResumesTheGoalsOfAnEarlierManager) {
   transaction.begin({0, {kArm, kPid}, TaskId{}, true});
   (void)taken();
   EXPECT_EQ(advance(), "send servo: on pid\n");
-  EXPECT_EQ(report(kPid, State::kOff, kNoSensor), "send servo: off arm\n") << "what the earlier one turned on, too";
+  EXPECT_EQ(report(kPid, State::kOff, kNoSensor), "send servo: off arm\n")
+      << "the earlier manager turned arm ON";
   EXPECT_EQ(report(kArm, State::kOff), "refused: pid: no sensor\ngoal arm 0\ngoal pid 0\n");
 }
 

@@ -187,7 +187,7 @@ TEST_F(SubsystemTest, AKillThatIsUnderWayIsWaitedForNoLongerThanItsLimit) {
   now = subsystem->next_due();
   EXPECT_EQ(step(Tick{}), "answer 1 no: no answer from rtpu spare reserve OFF>OFF\n");
   EXPECT_EQ(subsystem->next_due(), kNever);
-  EXPECT_EQ(report(kReserve, State::kNotCreated), "") << "it ends later all the same";
+  EXPECT_EQ(report(kReserve, State::kNotCreated), "") << "it ends later nevertheless";
 }
 
 TEST_F(SubsystemTest, AKillWaitsForAnInitNoLongerThanItsLimitEither) {
@@ -352,7 +352,7 @@ TEST_F(SubsystemTest, TheNextManagerHandlesADeathWithoutAManager) {
             "rtpu-restarted: servo is restarted, 1 of at most 3 times in 10 s\n");
   rebirth();
   for (TaskId task : {kArm, kPid}) seen(task, State::kOn);
-  EXPECT_EQ(die(kServo), "start servo\n") << "dealt with, but a task of it has goals";
+  EXPECT_EQ(die(kServo), "start servo\n") << "handled, but a task of it has goals";
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ TEST_F(UdpFrameTest, TheSafeFrameHasANumberThatADeviceStillTakes) {
   say(bytes);
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(count("old"), 0);
-  EXPECT_EQ(count("received"), 2) << "this side stands for the device: it drops what is old";
+  EXPECT_EQ(count("received"), 2) << "this side acts as the device and drops old datagrams";
   ASSERT_TRUE(rig.off());
   EXPECT_EQ(rig.safe_frame(0).size, 0u);
 }

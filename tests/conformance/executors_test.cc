@@ -99,7 +99,7 @@ TEST_P(Executors, ShowAPublicationToTheNextReaderAndNothingBefore) {
   go(30);
   const auto cycles = app.calls_of("reader", Method::kCycle);
   ASSERT_EQ(cycles.size(), 3u);
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(cycles[static_cast<std::size_t>(i)].in, i + 1) << "at the same release";
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(cycles[static_cast<std::size_t>(i)].in, i + 1) << "at this release";
 }
 
 TEST_P(Executors, PublishAtCompletionSoAReaderBeforeItSeesTheOldValue) {
@@ -108,7 +108,7 @@ TEST_P(Executors, PublishAtCompletionSoAReaderBeforeItSeesTheOldValue) {
   go(20, {}, Policy::kRm);
   const auto cycles = app.calls_of("reader", Method::kCycle);
   ASSERT_GE(cycles.size(), 2u);
-  // Released at 3 while the writer works till 6: preempted, it is read as it was; else it ran afterwards.
+  // Released at 3 while the writer works until 6. With preemption the job reads the old value, otherwise it runs later.
   EXPECT_EQ(cycles[0].in, GetParam() == Kind::kPreemptive ? 0 : 1);
   EXPECT_EQ(cycles[1].in, 1);
 }

@@ -177,7 +177,7 @@ Counted count_on_two_rtpus() {
   });
 }
 
-// To a set in which nothing is ON, and back.
+// Switches to a set in which no task is ON, and back.
 std::vector<ScriptAct> with_switches(std::span<const ScriptAct> acts) {
   std::vector<ScriptAct> all(acts.begin(), acts.end());
   for (const std::uint32_t to : {1u, 0u}) {

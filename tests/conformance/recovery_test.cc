@@ -178,7 +178,7 @@ TEST_P(RecoveryTest, ATakeoverHasAReceipt) {
   EXPECT_EQ(receipt.variables[0].handover.from.task, kFirst);
   EXPECT_EQ(receipt.variables[0].handover.to.task, kSpare);
   EXPECT_TRUE(receipt.variables[0].step_of_on.is_known);
-  EXPECT_EQ(receipt.variables[0].step_of_on.size, 0) << "it goes on from what stands";
+  EXPECT_EQ(receipt.variables[0].step_of_on.size, 0) << "it continues from the last value";
   EXPECT_EQ(receipt.variables[0].step_of_cycle.size, 95) << "from 5 to 100";
   EXPECT_TRUE(receipt.variables[0].step_of_cycle.is_beyond);
 }

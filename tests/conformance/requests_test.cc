@@ -135,7 +135,7 @@ TEST_P(Requests, RepeatsARefusedRequestTenTimesASecondAndTakesAnotherAtOnce) {
   EXPECT_EQ(receipts[3].end, SwitchEnd::kDone);
   EXPECT_EQ(receipts[3].after, kOtherSet);
   EXPECT_LT(receipts[3].at, milliseconds(272));
-  EXPECT_LT(receipts[4].asked, milliseconds(273)) << "it is not the one that was taken last";
+  EXPECT_LT(receipts[4].asked, milliseconds(273)) << "the request before was for another set";
   EXPECT_TRUE(is_on(kOther));
 }
 
@@ -269,17 +269,17 @@ TEST_P(Requests, ForAnUnknownConfigurationAreRefusedCountedAndNotedOnce) {
 TEST_P(Requests, ARequestForTasksDependsOnTheTasksThatAreOn) {
   scene.first = [](Cycle c) {
     if (c.count() == 3) ask(c, "--on high");
-    if (c.count() == 4 || c.count() == 8) ask(c, "--on high --off low");  // what is under way, and what is in force
+    if (c.count() == 4 || c.count() == 8) ask(c, "--on high --off low");  // at 4 under way, at 8 in force
     if (c.count() == 12) ask(c, "--off second");
     if (c.count() == 20) ask(c, "--on low --off high");
   };
   const auto receipts = go(milliseconds(30), {to(kOtherSet, milliseconds(25))});
   EXPECT_EQ(scene.answers, std::vector<bool>(5, true));
   ASSERT_EQ(receipts.size(), 4u);
-  EXPECT_EQ(receipts[0].after, kHighSet) << "`high` alone: who produces the same goes OFF";
+  EXPECT_EQ(receipts[0].after, kHighSet) << "`high` alone: its rival producer goes OFF";
   EXPECT_EQ(receipts[0].cause, SwitchCause::kRequest);
   EXPECT_EQ(receipts[0].by, kFirst);
-  EXPECT_EQ(receipts[1].after, kNoSet) << "it is none of them";
+  EXPECT_EQ(receipts[1].after, kNoSet) << "it is no configuration";
   EXPECT_EQ(receipts[2].before, kNoSet);
   for (const SwitchReceipt& receipt : receipts) EXPECT_EQ(receipt.end, SwitchEnd::kDone);
   EXPECT_TRUE(runner_->asked().refused().empty());

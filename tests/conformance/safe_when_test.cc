@@ -240,7 +240,7 @@ TEST_P(SafeWhen, AnInputThatNeverHasAValueEndsTheSwitchByItsName) {
 }
 
 // `on` takes 5 ms, in which the value changes. With one context no task cycles during `on`.
-TEST_P(SafeWhen, AConditionThatFailsBeforeTheProposalAbortsTheSwitch) {
+TEST_P(SafeWhen, OnSeveralRtpusAConditionThatFailsBeforeTheProposalAborts) {
   scene.on_of_hand = [](Cycle c) { c.spend(milliseconds(5)); };
   const SwitchReceipt receipt = go({"speed", 0, Relation::kMore, 5.5}, milliseconds(40));
   EXPECT_EQ(receipt.end, GetParam() >= How::kTwoRtpus ? SwitchEnd::kAborted : SwitchEnd::kDone);

@@ -198,7 +198,7 @@ TEST_P(SameResource, ADeviceThatCannotBeOpenedAgainIsNamed) {
   EXPECT_EQ(receipt.why, NoSwitch::kFlagRaised);
   EXPECT_EQ(receipt.not_back, kHand);
   EXPECT_EQ(states(), (Story{"NOT-CREATED", "NOT-CREATED", "ON"}));
-  EXPECT_EQ(device.users, 0) << "what the drill had begun is ended, and its device closed";
+  EXPECT_EQ(device.users, 0) << "the drill is ended, and its device closed";
 }
 
 TEST_P(SameResource, OnMayTakeSomeCycles) {

@@ -177,7 +177,7 @@ TEST_P(SlowSwitches, EqualBytesOrNoUserThatStaysAreFast) {
   ASSERT_EQ(receipts[1].end, SwitchEnd::kDone) << static_cast<int>(receipts[1].why);
   EXPECT_EQ(receipts[1].way.slow, 0);
   EXPECT_EQ((std::vector<TaskId>{receipts[1].reinitialised.begin(), receipts[1].reinitialised.end()}),
-            (std::vector<TaskId>{kArm, kLaw})) << "who arrives has the constants of the set, too";
+            (std::vector<TaskId>{kArm, kLaw})) << "arriving tasks have the constants of the set, too";
   EXPECT_EQ(tools.weighed.back(), 3);
 }
 

@@ -21,7 +21,7 @@
 
 namespace chimera::toy {
 
-/// One call of a method, as the component saw it.
+/// Arguments of one call of a method.
 struct Call {
   std::string task;
   Method method = Method::kInit;

@@ -105,7 +105,7 @@ TEST(Twins, APreemptiveProcessorRunsOneJobAtATimeAndMissesNothingUnderLightLoad)
     }
     std::int64_t used = 0;
     for (int i = 0; i < 4; ++i) used += app.task("t" + std::to_string(i)).profile.execution[CHIMERA_CYCLE].sum.count;
-    EXPECT_LE(ran - used, 500'000) << "all of it belongs to cycles, but for one that the end cut";
+    EXPECT_LE(ran - used, 500'000) << "all time belongs to cycles, but for one that the end cut";
     EXPECT_GE(ran, used);
   }
 }

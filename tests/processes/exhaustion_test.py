@@ -43,7 +43,7 @@ class Exhaustion(unittest.TestCase):
     def judge(self, failed, code, said, system):
         where = f"{failed}: exit {code}:\n{said}"
         self.assertFalse(system.socket.exists(), where)
-        if code == 0:  # it did not need that, or tried again
+        if code == 0:  # it does without the call, or repeats it
             for task in ("steady", "beside"):
                 self.assertRegex(said, rf"(?m)^{task} +ON ", where)
             Exhaustion.outcomes["coped with"] += 1

@@ -12,7 +12,7 @@ import unittest
 from campaign import ROUNDS, begin, counted
 from system import CHAIN, RTPUS, System, await_that, processes_of
 
-# The producer is in the middle of what it writes for half of the time.
+# The producer spends half of its time in the middle of a publication.
 WHOLE = RTPUS + """
 tasks:
   whole: {component: t_whole, rtpu: second, rate: 1 kHz, constants: {spend: 500000 ns}}

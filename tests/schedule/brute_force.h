@@ -149,7 +149,7 @@ class Processor {
       t.is_active = true;
       t.release = now_;
       t.deadline = now_ + works_[i].period.count;
-      t.pending_release = t.left;  // what was taken
+      t.pending_release = t.left;  // capacity of the chunk
       event_[works_[i].rtpu] = true;
       return;
     }

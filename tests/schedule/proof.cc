@@ -52,7 +52,7 @@ class Worlds {
     world.horizon += longest_;
     return world;
   }
-  /// One begins a tick before all others.
+  /// One task begins a tick before all others.
   Scenario behind(std::size_t blocker) {
     Scenario world = together();
     for (std::size_t i = 0; i < set_.works.size(); ++i) {

@@ -42,7 +42,7 @@ TEST(SteppedReceipts, DoneAbortedAndRefusedSwitchesAreFiledAlike) {
   EXPECT_EQ(system.ends(), "quick done\nwild aborted\ngentle done\nquick refused\n");
   const Json filed = system.receipts();
   ASSERT_EQ(filed.size(), 4u);
-  EXPECT_EQ(filed[std::size_t{0}], done) << "the answer is what is filed";
+  EXPECT_EQ(filed[std::size_t{0}], done) << "the filed receipt equals the answer";
   EXPECT_EQ(filed[std::size_t{1}], aborted);
   EXPECT_EQ(filed[std::size_t{2}], back);
   EXPECT_EQ(filed[std::size_t{3}]["why"], "task 'fast' is not there: spawn it first");

@@ -41,7 +41,7 @@ TEST(ValueList, ListsTextsAndUnitsOfTheirOwnStayWhole) {
   ASSERT_TRUE(mixed);
   EXPECT_EQ(mixed->shown, (Texts{"500 mm", "1 m"}));
   EXPECT_EQ(mixed->unit, "");
-  EXPECT_TRUE(mixed->numbers.empty()) << "half a metre is not 500 of what the other is 1 of";
+  EXPECT_TRUE(mixed->numbers.empty()) << "the values have different units";
 }
 
 TEST(ValueList, RefusesAMalformedList) {

@@ -245,7 +245,7 @@ TEST_F(Attend, ARefusalAfterTheStartIsNoFailureOfTheStart) {
   EXPECT_EQ(err_, "");
   const std::string line = "refused at 0.002 s: pid: kill sent by other: not legal in state ON\n";
   ASSERT_NE(out_.find(line), std::string::npos) << out_;
-  EXPECT_EQ(out_.find(line, out_.find(line) + 1), std::string::npos) << "told once";
+  EXPECT_EQ(out_.find(line, out_.find(line) + 1), std::string::npos) << "printed once";
   backend_.started_ns = nullptr;
   backend_.events[0]["at_ns"] = started - 1;
   EXPECT_EQ(attend(), kRefused);

@@ -8,7 +8,7 @@
 namespace chimera::cli {
 namespace {
 
-/// Which rtpu each kind of record came from.
+/// The rtpu of each kind of record.
 class Tracks final : public RecordSink {
  public:
   void begin(const ApplicationSpec&, Nanoseconds, Nanoseconds) override {}
@@ -80,7 +80,7 @@ TEST(SeveralRtpus, RunEachOnItsProcessor) {
   EXPECT_TRUE(has(said.out, "clean: no deadline missed")) << said.out;
   const std::set<std::pair<std::uint32_t, std::uint32_t>> each = {{0, 0}, {2, 1}, {2, 2}};
   EXPECT_EQ(tracks.runs, each);
-  EXPECT_EQ(said_by(request).out, said.out) << "the same bytes every time";
+  EXPECT_EQ(said_by(request).out, said.out) << "each run gives equal bytes";
 }
 
 TEST(SeveralRtpus, TheReportNamesTheRtpuOfEachTask) {

@@ -78,7 +78,7 @@ TEST_F(StepRunnerTest, ForgetsTheStatesOfTasksWhenADeathIsHandled) {
   runner_.begin();
   for (const char* name : {"law", "sensor"}) state().own.block().set_status(task(name), {State::kOn});
   runner_.step(subsystem::RtpuDown{RtpuId(1u), 3, "ended by signal 9 (SIGKILL)"});
-  EXPECT_EQ(state().own.block().view().status(task("law")).state, State::kNotCreated) << "it is a goal by now";
+  EXPECT_EQ(state().own.block().view().status(task("law")).state, State::kNotCreated) << "it is a goal now";
   EXPECT_EQ(state().own.block().view().status(task("sensor")).state, State::kOn) << "of the other rtpu";
 }
 
@@ -131,7 +131,7 @@ TEST_F(StepRunnerTest, AnswersEachCommandOnceAndLogsItsWords) {
   EXPECT_NE(log.find("command: off law, filter: refused: "), std::string::npos) << log;
   EXPECT_NE(log.find("command: on law: refused: " + refusal), std::string::npos) << log;
   const LoggedEvent& event = state().log.at(state().log.last());
-  EXPECT_EQ(event.task, task("law")) << "the one that was refused";
+  EXPECT_EQ(event.task, task("law")) << "the refused task";
   const std::string both = answers_;
   runner_.step(subsystem::Tick{});
   EXPECT_EQ(answers_, both);

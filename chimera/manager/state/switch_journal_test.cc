@@ -87,12 +87,12 @@ TEST_F(SwitchJournalTest, AFiledReceiptFreesItsRoomAndIsNotHandedOn) {
   EXPECT_TRUE(journal.put(1, half));
   EXPECT_TRUE(journal.put(2, half));
   EXPECT_FALSE(journal.put(3, half)) << "there is no room";
-  EXPECT_EQ(journal.next(), 4u) << "its number is given out all the same";
+  EXPECT_EQ(journal.next(), 4u) << "its number is used nevertheless";
   journal.filed(1);
   SwitchJournal next = successor();
   ASSERT_EQ(next.unfiled().size(), 1u);
   EXPECT_EQ(next.unfiled()[0].number, 2u);
-  EXPECT_TRUE(next.put(4, half)) << "a successor takes over what is not filed";
+  EXPECT_TRUE(next.put(4, half)) << "a successor takes over unfiled receipts";
   next.filed(2);
   next.filed(4);
   EXPECT_EQ(memory->pages().end, 0u);

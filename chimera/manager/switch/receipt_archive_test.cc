@@ -93,7 +93,7 @@ TEST_F(ReceiptArchiveTest, KeepsAReceiptThatCannotBeFiledAndTriesAgain) {
   ASSERT_TRUE(until([this] { return answered == "1 2 "; }));
   EXPECT_EQ(lone.told(), "note: receipts are not filed: " + archive->path() +
                              ": cannot be opened: Is a directory; they are kept and tried again\n")
-      << "told once";
+      << "reported once";
   std::filesystem::remove(archive->path());
   ASSERT_TRUE(until([this] {
     archive->look(now() + ReceiptArchive::kTryAgain + seconds(1));

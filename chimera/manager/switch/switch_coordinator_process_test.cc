@@ -153,7 +153,7 @@ TEST_F(SwitchCoordinatorTest, OneAtATimeAndItCanBeCancelled) {
   EXPECT_EQ(got->receipt.end, SwitchEnd::kAborted);
   EXPECT_EQ(got->receipt.why, NoSwitch::kCancelled);
   EXPECT_EQ(got->receipt.said.view(), "configure:4000000002");
-  EXPECT_EQ(third, got->json) << "who cancelled gets the same receipt";
+  EXPECT_EQ(third, got->json) << "the client that cancelled gets this receipt";
 }
 
 TEST_F(SwitchCoordinatorTest, ACommittedSwitchIsNotCancelled) {
@@ -185,7 +185,7 @@ TEST_F(SwitchCoordinatorTest, ForeseesASwitchAndChangesNothing) {
   over(0);
   over(1);
   ASSERT_TRUE(until_answered());
-  EXPECT_EQ(got->receipt.number, 1u) << "what was foreseen has no number";
+  EXPECT_EQ(got->receipt.number, 1u) << "a foreseen switch has no number";
   EXPECT_EQ(filed().size(), 1u);
 }
 
@@ -449,7 +449,7 @@ TEST_F(SwitchCoordinatorTest, ADeathClosesThePlanBeforeTheGoalsOfTheRtpuAreDecid
   EXPECT_FALSE(agreement().agree(number, 1));
   fake.kill_rtpu(1, SIGKILL);
   ASSERT_TRUE(fake.until([&] { return fake.loop().state().state(fake.task("law")) != State::kOn; }));
-  EXPECT_FALSE(agreement().agree(number, 0)) << "else law comes back although it is not in the set";
+  EXPECT_FALSE(agreement().agree(number, 0)) << "otherwise law comes back although it is not in the set";
   EXPECT_EQ(agreement().plan().phase, SwitchPhase::kAborted);
   over(0);
   over(1);

@@ -71,7 +71,7 @@ TEST_F(SwitchWishesTest, AreCarriedOutAndNameTheRequester) {
   EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', asked for by on_fault of law");
   carry_out();
   rounds();
-  EXPECT_EQ(plan().number, 1) << "dealt with once";
+  EXPECT_EQ(plan().number, 1) << "handled once";
   EXPECT_FALSE(coordinator().is_under_way());
   EXPECT_NE(fake.told("switch").find("by on_fault of law from 'run' to 'rest'"), std::string::npos)
       << fake.told("switch");

@@ -145,7 +145,7 @@ TEST_F(EdgeSignalsTest, TheFlagThatASignalRaisesIsRecordedWithIt) {
   const std::vector expected{TapKind::kSignal, TapKind::kFlag, TapKind::kState};
   EXPECT_EQ(recorded(), expected) << "the reader has no producer that is ON";
   EXPECT_TRUE(releases->is_illegal());
-  EXPECT_TRUE(guest.reports.empty()) << "it knows what it did itself";
+  EXPECT_TRUE(guest.reports.empty()) << "its own signal is not reported to it";
 }
 
 TEST_F(EdgeSignalsTest, TasksJoinAndLeaveWithTheirStatesAndShowTheirProfiles) {

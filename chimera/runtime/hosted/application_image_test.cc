@@ -89,7 +89,7 @@ struct Sample {
   ApplicationSpec spec;
 };
 
-// Where the fields of the header lie: docs/formats/image.md.
+// Offsets of the fields of the header: docs/formats/image.md.
 constexpr std::size_t kVersionAt = 8, kHashAt = 24, kBodyAt = 32;
 
 void set_hash(std::vector<std::byte>& bytes) {

@@ -149,7 +149,7 @@ TEST_F(MissCauseTest, SaysThatAJobWaitsInASystemCall) {
   EXPECT_EQ(verdict.used, microseconds(300));
   EXPECT_TRUE(verdict.is_blocked);
   cause.missed(kSecond, milliseconds(110));
-  EXPECT_FALSE(judged(kSecond, 120).is_blocked) << "it is another one that waits";
+  EXPECT_FALSE(judged(kSecond, 120).is_blocked) << "another job waits";
 }
 
 TEST_F(MissCauseTest, BlamesTheTaskThatTookHalfOfTheTimeThoughTheJobIsBlocked) {
@@ -178,7 +178,7 @@ TEST_F(MissCauseTest, BlamesAJobWithoutABudgetForItsOwnLateness) {
   under_way.used[kThird.index] = milliseconds(6);
   cause.missed(kThird, milliseconds(10));
   const MissCause::Verdict verdict = judged(kThird, 20);
-  EXPECT_EQ(verdict.culprit, kThird) << "the first one came nearer to what it may use";
+  EXPECT_EQ(verdict.culprit, kThird) << "the first task came nearer to its budget";
   EXPECT_EQ(verdict.used, milliseconds(6));
 }
 

@@ -55,7 +55,7 @@ TEST(SporadicJob, RunsUntilTheCapacityIsUsedAndAgainWhenItIsBack) {
   job.charge(milliseconds(2));
   const SporadicJob::Grant exhausted = job.grant(milliseconds(5));
   EXPECT_FALSE(exhausted.may_run);
-  EXPECT_TRUE(exhausted.has_another_deadline) << "what was used comes back one period after the job began";
+  EXPECT_TRUE(exhausted.has_another_deadline) << "used capacity comes back one period after the job began";
   EXPECT_EQ(job.next_change(milliseconds(5)), milliseconds(13));
   EXPECT_TRUE(job.grant(milliseconds(13)).may_run);
   EXPECT_EQ(job.deadline(), milliseconds(23));

@@ -96,7 +96,7 @@ TEST_F(ExecutionTime, IncludesEveryCopyOfTheOutputsOfAJob) {
     if (next.sequence != end.sequence + 1) continue;
     ++publications;
     EXPECT_EQ(end.staged[0], publications) << "the body has run";
-    EXPECT_EQ(end.staged[1], 100) << "what it did not write was staged before";
+    EXPECT_EQ(end.staged[1], 100) << "unwritten outputs were staged before";
     EXPECT_EQ(std::memcmp(end.staged, next.latest, kValues), 0);
     EXPECT_NE(next.staged[0], next.latest[0]) << "the next outputs are staged in the time of the next job";
   }

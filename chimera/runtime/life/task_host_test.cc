@@ -173,7 +173,7 @@ TEST_F(TaskHostTest, KeepsARequestForAConfigurationIfRequestsAreAllowed) {
   EXPECT_EQ(host().request(context(), "near"), CHIMERA_OK);
   EXPECT_EQ(task().requested_set, 0u);
   EXPECT_EQ(host().request(context(), "fa"), CHIMERA_FAULT);
-  EXPECT_EQ(task().faults.notes, 1u) << "told once";
+  EXPECT_EQ(task().faults.notes, 1u) << "reported once";
   EXPECT_EQ(task().requests_refused, 2u);
 }
 

@@ -117,7 +117,7 @@ TEST_F(TaskSetBackground, AStalledOneIsLeftAloneAndTheTaskCanBeMadeAnew) {
   const int begun = for_ever.backgrounds;
   for_ever.is_stalled = false;
   std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  EXPECT_EQ(for_ever.backgrounds, begun) << "what was left alone is not asked again";
+  EXPECT_EQ(for_ever.backgrounds, begun) << "an abandoned background is not called again";
   for_ever.letters.clear();
   set->methods().run_by({nullptr, nullptr, &writer});
   EXPECT_TRUE(set->life().signal(TaskId{0u}, Signal::kSpawn, {}).is_accepted);

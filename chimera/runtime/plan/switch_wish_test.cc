@@ -23,7 +23,7 @@ TEST(SwitchWish, HasANewNumberEachTime) {
 
 TEST(SwitchWish, TheLastRequestStands) {
   EXPECT_TRUE(is_new_wish(false, false, false));
-  EXPECT_FALSE(is_new_wish(false, true, false)) << "it is in force, and nothing else is asked for";
+  EXPECT_FALSE(is_new_wish(false, true, false)) << "it is in force, and no other request is open";
   EXPECT_TRUE(is_new_wish(false, true, true)) << "it takes another one back";
   EXPECT_FALSE(is_new_wish(true, false, true)) << "it is asked for already";
 }

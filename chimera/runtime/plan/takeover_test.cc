@@ -57,7 +57,7 @@ TEST(TakeoverRing, ADeathInAWriteKeepsTheOlderTakeovers) {
   TakeoverRing ring;
   for (std::uint32_t n = 1; n <= kKept + 1; ++n) ring.put(takeover(n, seconds(1)));
   const std::uint32_t oldest = ring.oldest();
-  std::uint32_t last;  // the word that is stored last stands first
+  std::uint32_t last;  // the first word, which is stored last
   std::memcpy(&last, static_cast<const void*>(&ring), sizeof last);
   ASSERT_EQ(last, kKept + 1);
   ring.put(takeover(kKept + 2, seconds(1)));

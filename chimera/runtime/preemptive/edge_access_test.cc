@@ -175,7 +175,7 @@ TEST_F(EdgeAccessTest, WakesAThreadWhoseReleaseCameWhileItWasHeld) {
   const std::uint32_t heard = job(0).heard();
   clock.time = at(29);
   access().let_release(TaskId(0u));
-  EXPECT_EQ(job(0).heard(), heard) << "its own alarm comes";
+  EXPECT_EQ(job(0).heard(), heard) << "its own alarm wakes it";
   access().hold_releases(at(30));
   clock.time = at(30);
   access().let_release(TaskId(0u));
@@ -198,7 +198,7 @@ TEST_F(EdgeAccessTest, AnAwaitedJobStaysAwaitedWhenItsTaskIsClaimed) {
   access().await_job(TaskId(0u));
   EXPECT_TRUE(job(0).is_awaited);
   EXPECT_TRUE(access().claim(TaskId(0u)));
-  EXPECT_TRUE(job(0).is_awaited) << "the one who awaits is another than the one who claims";
+  EXPECT_TRUE(job(0).is_awaited) << "awaiting and claiming are independent";
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ struct JobLoopTest : testing::PreemptiveParts, ::testing::Test {
     };
     loop->run(job(task), n_attached);
   }
-  /// The loop of the task has a thread of its own, which sleeps by now.
+  /// The loop of the task has its own thread, which sleeps now.
   void start_and_await_sleep(std::uint32_t task) {
     job(task).start([this, task] { loop->run(job(task), n_attached); });
     while (n_attached.load() == 0 || !is_asleep(job(task).thread())) std::this_thread::yield();

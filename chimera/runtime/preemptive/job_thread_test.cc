@@ -34,7 +34,7 @@ TEST_F(JobThreadTest, CountsTheTimeOfItsThreadFromTheBeginOfTheJob) {
     passed = used_by_this_thread() - before;
   });
   testing::join_and_await_end(job);
-  EXPECT_LE(used, passed) << "what came before is not the job's";
+  EXPECT_LE(used, passed) << "time before the job does not count";
   EXPECT_GE(job.used_before(), milliseconds(5));
   EXPECT_EQ(job.used(), Nanoseconds{}) << "the thread is gone";
 }

@@ -65,7 +65,7 @@ class Kernel {
     const auto jobs = list.jobs();
     ASSERT_EQ(jobs.size(), level_.size());
     for (std::size_t i = 0; i < jobs.size(); ++i) {
-      EXPECT_EQ(level_.at(jobs[i].task.index), jobs[i].level) << "the kernel was told";
+      EXPECT_EQ(level_.at(jobs[i].task.index), jobs[i].level) << "the kernel has the level of the list";
       EXPECT_LT(jobs[i].level, kCeiling);
       if (i < list.parked()) {
         EXPECT_EQ(jobs[i].level, kBase);

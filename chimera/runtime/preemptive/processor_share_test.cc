@@ -60,7 +60,7 @@ TEST_F(ProcessorShareTest, DemotesAnImportantOneOnlyWhenAllIsUsedUp) {
   ProcessorShare s = share();
   run(s, kImportant, kNow, milliseconds(900));
   const Nanoseconds now = kNow + milliseconds(900);
-  EXPECT_FALSE(s.may_demote(kImportant, false, true, now)) << "the most urgent one that kept to its budget goes on";
+  EXPECT_FALSE(s.may_demote(kImportant, false, true, now)) << "the most urgent job within its budget goes on";
   EXPECT_TRUE(s.may_demote(kImportant, true, true, now));
   EXPECT_TRUE(s.may_demote(kImportant, false, false, now));
 }

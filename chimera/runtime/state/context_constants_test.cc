@@ -111,7 +111,7 @@ TEST_F(ContextConstantsTest, KnowsTheUsersOfAChangedConstant) {
   ASSERT_TRUE(constants.give(kUser, why));
   EXPECT_FALSE(constants.uses_changed(kUser));
   ASSERT_TRUE(constants.collect(kMaker, why));
-  EXPECT_FALSE(constants.has_new()) << "made again with the same value";
+  EXPECT_FALSE(constants.has_new()) << "made again with an equal value";
   makes(4);
   ASSERT_TRUE(constants.collect(kMaker, why));
   EXPECT_TRUE(constants.has_new());

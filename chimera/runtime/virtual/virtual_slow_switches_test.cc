@@ -61,7 +61,7 @@ TEST_P(VirtualSlowSwitches, TheStepFromATaskOfAnotherRtpuIsFromItsLastCycle) {
   const SwitchReceipt& receipt = rtpus->receipts()[0];
   ASSERT_EQ(receipt.end, SwitchEnd::kDone) << static_cast<int>(receipt.why);
   ASSERT_EQ(receipt.variables.size(), 1u);
-  EXPECT_EQ(receipt.variables[0].step_of_on.size, 0) << "heavy takes over what light wrote last";
+  EXPECT_EQ(receipt.variables[0].step_of_on.size, 0) << "heavy takes over the last value of light";
   EXPECT_EQ(receipt.variables[0].usual.size, 1);
 }
 

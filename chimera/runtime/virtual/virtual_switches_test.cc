@@ -135,7 +135,7 @@ TEST_P(VirtualSwitchesTest, ALaterRequestForTheRunningSwitchTakesBackAnEarlierOn
   };
   ScriptAct first = act_at(microseconds(5950), ScriptAct::Kind::kSwitch, kObserved);
   const auto receipts = go(milliseconds(30), {first});
-  ASSERT_EQ(receipts.size(), 1u) << "the wish of the second rtpu, for what is under way, takes that of the first back";
+  ASSERT_EQ(receipts.size(), 1u) << "the request of the second rtpu for the running switch replaces that of the first";
   EXPECT_TRUE(rtpus->are_on(kSets[kObserved]));
 }
 
