@@ -24,7 +24,7 @@ PROGRAMS = {name: f"{folder}/{name}" for folder, name in (
     ("chimera/runtime", "runtime_process_test"), ("tests/conformance", "conformance_process_test"))}
 LIMIT = 300  # seconds for one test program; one that hangs has caught the defect
 
-# What is wrong, the file, its text, and the text with the defect.
+# The defect in words, the file, its text, and the text with the defect.
 DEFECTS = (
     ("each event makes an active server active anew", "job/sporadic_job.cc",
      "if (!is_active_) server_.activate(now);", "server_.activate(now);"),
@@ -95,7 +95,7 @@ DEFECTS = (
      "if (spec.stand_in(task, by) && is_on(by)) return true;", "(void)by, (void)task;"),
     ("an on that fits no gap is tried for ten seconds", "plan/switch_way.cc",
      "if (needed <= longest_gap) continue;", "if (true || needed <= longest_gap) continue;"),
-    ("a takeover that is kept no more is told in the place of a younger one", "plan/takeover.h",
+    ("an overwritten takeover is reported in the place of a younger one", "plan/takeover.h",
      "    if (takeover.number < oldest()) return;\n", ""),
     ("all devices have ten seconds together on the way back", "switch/slow_steps.cc",
      "  back_until_ = kNever;  // the next device has as long\n", ""),
@@ -168,7 +168,7 @@ def make(copy):
 
 
 def build(copy):
-    """What the compiler said when it refused, else ""."""
+    """Output of the compiler if it refused, otherwise ""."""
     command = ["ninja", "-C", str(copy / "build/debug"), "-j", str(len(os.sched_getaffinity(0))), *PROGRAMS]
     done = subprocess.run(command, capture_output=True, text=True)
     return done.stdout[-3000:] if done.returncode else ""
