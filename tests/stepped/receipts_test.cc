@@ -53,7 +53,7 @@ TEST(SteppedReceipts, DoneAbortedAndRefusedSwitchesAreFiledAlike) {
   }
   EXPECT_EQ(done["from"], "gentle");
   EXPECT_EQ(aborted["from"], "quick");
-  EXPECT_EQ(done["variables"][std::size_t{0}]["rtpu"], "m/s");
+  EXPECT_EQ(done["variables"][std::size_t{0}]["unit"], "m/s");
   EXPECT_EQ(system.result("receipts", {{"last", 2}})["receipts"].size(), 2u);
 }
 

@@ -174,6 +174,7 @@ class SteppedSubsystem {
 
   const ApplicationSpec& spec() const { return configuration_->spec(); }
   std::uint32_t n_rtpus() const { return static_cast<std::uint32_t>(spec().rtpus.size()); }
+  bool has_manager() const { return manager_ != nullptr; }
   ManagerLoop& manager() { return *manager_; }
   testing::TestRtpu& rtpu(std::string_view name) { return *rtpus_[index(name)]; }
   KeeperPage& page() { return *reinterpret_cast<KeeperPage*>(keeper_.writable().data()); }
@@ -241,7 +242,7 @@ class SteppedSubsystem {
     std::vector<LibraryEntry> named;
     for (const LibraryEntry& entry : all.entries())
       if (description.find("component: " + entry.descriptor.name) != description.npos) named.push_back(entry);
-    return {"0.1.0", "test.yaml", description, {}, {}, {}, Library::of_entries(std::move(named), all.rtpus())};
+    return {"0.1.0", "test.yaml", description, {}, {}, {}, Library::of_entries(std::move(named), all.units())};
   }
   /// Objects stay open for all tests of the process: what a component keeps in static variables is shared.
   const chimera_component* component_of(const TaskSpec& task) {
