@@ -88,15 +88,5 @@ TEST_F(RtpuProcess, SaysWhyItCannotStart) {
                "component t_counter was rebuilt after it was verified; run again");
 }
 
-TEST(RtpuProgram, SaysThatItIsNotForPeople) {
-  const std::string program = build_path("bin/chimera-rtpu");
-  const char* arguments[] = {"chimera-rtpu"};
-  auto process = Process::start(program.c_str(), arguments, {});
-  ASSERT_TRUE(process);
-  ProcessEnd ended;
-  ASSERT_TRUE(process->wait(ended, kHangLimit.count));
-  EXPECT_EQ(ended.code, 2);
-}
-
 }  // namespace
 }  // namespace chimera
