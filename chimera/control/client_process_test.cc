@@ -19,7 +19,7 @@ namespace {
 struct ClientTest : DoorTest {
   void start() {
     done = false;
-    server = std::thread([this] {
+    serving = std::thread([this] {
       while (!done) {
         pollfd one{server->descriptor(), POLLIN, 0};
         ::poll(&one, 1, 5);
@@ -29,13 +29,13 @@ struct ClientTest : DoorTest {
   }
   void stop() {
     done = true;
-    if (server.joinable()) server.join();
+    if (serving.joinable()) serving.join();
   }
   void TearDown() override {
     stop();
     DoorTest::TearDown();
   }
-  std::thread server;
+  std::thread serving;
   std::atomic<bool> done = false;
 };
 

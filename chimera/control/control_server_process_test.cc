@@ -226,7 +226,7 @@ std::string as_stranger(const std::string& path, gid_t group, const std::string&
 
 struct StrangerTest : DoorTest {
   void SetUp() override {
-    if (::getuid() != 0) GTEST_SKIP() << "only root can become somebody else";
+    if (::getuid() != 0) GTEST_SKIP() << "only root can become another user";
     DoorTest::SetUp();
     std::filesystem::permissions(folder, std::filesystem::perms::all);
     std::filesystem::permissions(path, std::filesystem::perms::all);

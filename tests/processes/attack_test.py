@@ -149,7 +149,7 @@ print(json.dumps("good" if error["code"] in (-32000, -32005, -32602)
 '''
 
 
-@unittest.skipUnless(os.getuid() == 0, "only root can become somebody else")
+@unittest.skipUnless(os.getuid() == 0, "only root can become another user")
 class Attack(unittest.TestCase):
     def as_stranger(self, code, *arguments, groups=()):
         done = subprocess.run(["/usr/bin/python3", "-c", code, *map(str, arguments)], user=NOBODY, group=STRANGERS,

@@ -132,7 +132,7 @@ struct ShellTest : ::testing::Test {
   }
   void open(int listening) {
     server = *control::ControlServer::open(listening, subject, ::getuid(), {});
-    server = std::thread([this] {
+    serving = std::thread([this] {
       sigset_t all;
       ::sigfillset(&all);
       ::pthread_sigmask(SIG_BLOCK, &all, nullptr);
@@ -145,7 +145,7 @@ struct ShellTest : ::testing::Test {
   }
   void stop() {
     is_over = true;
-    if (server.joinable()) server.join();
+    if (serving.joinable()) serving.join();
     server.reset();
   }
   void TearDown() override {
@@ -180,7 +180,7 @@ struct ShellTest : ::testing::Test {
   int keepers = -1;  ///< the listening socket, which outlives a ControlServer
   FakeSubject subject;
   std::unique_ptr<control::ControlServer> server;
-  std::thread server;
+  std::thread serving;
   std::atomic<bool> is_over{false};
 };
 
