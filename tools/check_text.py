@@ -66,7 +66,7 @@ NOT_YET = (
     "chimera/manager/answer/tap_feed_process_test.cc", "chimera/manager/answer/why_test.cc",
     "chimera/manager/manager_backend_process_test.cc", "chimera/manager/manager_loop_process_test.cc",
     "chimera/manager/state/switch_journal_test.cc", "chimera/manager/switch/receipt_archive_test.cc",
-    "chimera/manager/switch/switch_coordinator_process_test.cc", "chimera/manager/switch/switch_wishes_process_test.cc",
+    "chimera/manager/switch/switch_coordinator_process_test.cc",
     "chimera/manager/watch/method_watch_test.cc", "chimera/record/chrome_trace_test.cc",
     "chimera/rtpu/group_claims_test.cc", "chimera/rtpu/rtpu_control_test.cc", "chimera/rtpu/rtpu_end_test.cc",
     "chimera/rtpu/standby_links_test.cc", "chimera/rtpu/switch_links_test.cc",
