@@ -39,7 +39,7 @@ tasks:
   }
   text += "  maker: {component: t_constants, rtpu: " + some_rtpu() + ", rate: 100 Hz}\n";
   text += "  user: {component: t_extent, rtpu: " + some_rtpu() + ", rate: 100 Hz}\n";
-  return text + R"(operator: {q: [0, 0, 0]}
+  return text + R"(operator: {q: 1 rad}
 configurations:
   all: [s0, a0, z0, t0, s1, a1, z1, t1, s2, a2, z2, t2, maker, user]
   other: [s0, b0, z0, t0, s1, b1, z1, t1, s2, b2, z2, t2, maker, user]
@@ -73,7 +73,7 @@ class Chaos {
     if (kind == 0 && is_alive(rtpu)) system_.die(rtpu, chance_.percent(50) ? SIGSEGV : SIGKILL);
     else if (kind == 1) stop(rtpu, chance_.percent(20) ? milliseconds(2500) : milliseconds(20));
     else if (kind == 2 && system_.has_manager()) die_manager();
-    else if (kind == 3) system_.stop_keeper(!keeper_is_stopped_), keeper_is_stopped_ = !keeper_is_stopped_;
+    else if (kind == 3 && system_.has_manager()) system_.stop_keeper(keeper_is_stopped_ = !keeper_is_stopped_);
     else if (!system_.has_manager()) system_.start_manager();
     else if (kind < 8) ask("switch", {{"configuration", chance_.percent(50) ? "all" : "other"}});
     else if (kind < 12) exchange();
@@ -109,6 +109,7 @@ class Chaos {
     system_.stop(rtpu, true);
     pass(time);
     system_.stop(rtpu, false);
+    pass(milliseconds(2));  // it acts on what it missed
     stopped_.clear();
   }
   void die_manager() {
@@ -121,10 +122,9 @@ class Chaos {
       if (kRtpus[r] == rtpu) return system_.page().alive[r] != 0;
     return false;
   }
+  const std::string& rtpu_of(std::size_t task) const { return kRtpus[system_.spec().tasks[task].rtpu.index]; }
   bool is_on(std::size_t t) {
-    const TaskSpec& task = system_.spec().tasks[t];
-    const std::string& rtpu = kRtpus[task.rtpu.index];
-    return is_alive(rtpu) && rtpu != stopped_ && system_.rtpu(rtpu).state(TaskId(t)) == State::kOn;
+    return is_alive(rtpu_of(t)) && system_.rtpu(rtpu_of(t)).state(TaskId(t)) == State::kOn;
   }
   void pass(Nanoseconds time) {
     for (const Nanoseconds end = now() + time; now() < end && !::testing::Test::HasFailure();) {
@@ -132,12 +132,14 @@ class Chaos {
       look();
     }
   }
-  /// No variable has two producers, and an ON set that is illegal for long has raised a flag.
+  /// No variable has two producers that cycle, and an ON set that is illegal for long has raised a flag.
   void look() {
     std::vector<bool> on(system_.spec().tasks.size());
     for (std::size_t t = 0; t < on.size(); ++t) on[t] = is_on(t);
     for (const Variable& variable : system_.spec().variables) {
-      const auto n = std::ranges::count_if(variable.producers, [&](const PortOf& port) { return on[port.task.index]; });
+      const auto n = std::ranges::count_if(variable.producers, [&](const PortOf& port) {
+        return on[port.task.index] && rtpu_of(port.task.index) != stopped_;
+      });
       EXPECT_LE(n, 1) << variable.name << " has two producers that are ON";
     }
     bool is_up = false, is_any_alive = false;
@@ -153,17 +155,17 @@ class Chaos {
       return true;
     });
   }
-  /// An `on` or `off` that is accepted was done for each task.
+  /// An `on` or `off` that is accepted was done for each task; a task whose rtpu is dead is not ON.
   static void judge(const Asked& one) {
     if (!(*one.answer)->is_good() || (one.word != "on" && one.word != "off")) return;
     for (const Json& task : SteppedSubsystem::result_of(**one.answer)["tasks"])
-      EXPECT_EQ(task["after"], one.word == "on" ? "ON" : "OFF") << task;
+      EXPECT_EQ(task["after"] == "ON", one.word == "on") << task;
   }
 
   /// Nothing happens any more: each command is answered, and the manager knows the truth.
   void calm_down() {
-    if (keeper_is_stopped_) system_.stop_keeper(false);
     if (!system_.has_manager()) system_.start_manager();
+    system_.stop_keeper(false);
     const auto is_calm = [&] {
       look();
       return asked_.empty() && system_.manager().is_ready() && system_.manager().state().logic.is_settled();
@@ -173,26 +175,16 @@ class Chaos {
     for (std::size_t t = 0; t < system_.spec().tasks.size(); ++t) {
       const TaskSpec& task = system_.spec().tasks[t];
       const std::string& rtpu = kRtpus[task.rtpu.index];
-      EXPECT_TRUE(is_alive(rtpu) || is_given_up(rtpu)) << rtpu << " is dead and is not started again";
+      EXPECT_TRUE(is_alive(rtpu) || system_.manager().state().logic.is_given_up(task.rtpu)) << rtpu << " stays dead";
       const State truth = is_alive(rtpu) ? system_.rtpu(rtpu).state(TaskId(t)) : system_.state(task.name);
       EXPECT_EQ(system_.state(task.name), truth) << task.name;
     }
   }
-  bool is_given_up(const std::string& rtpu) {
-    return std::ranges::all_of(system_.spec().tasks, [&](const TaskSpec& task) {
-      const State state = system_.state(task.name);
-      return kRtpus[task.rtpu.index] != rtpu || state == State::kError || state == State::kNotCreated;
-    });
-  }
   void command_all(const char* word, State from) {
-    Json names = Json::array();
     for (const TaskSpec& task : system_.spec().tasks)
-      if (task.name[0] != 't' && system_.state(task.name) == from) names.push_back(std::string(task.name));
-    const std::string refusal =
-        names.size() > 0 ? system_.refusal("signal", {{"signal", word}, {"tasks", names}}) : std::string();
-    EXPECT_EQ(refusal, "") << names;
+      if (system_.state(task.name) == from) (void)system_.signal(word, std::string(task.name));
   }
-  /// A person brings the tasks back from wherever they are.
+  /// A person brings the tasks back from wherever they are. Those that fail in a method are left OFF or in ERROR.
   void repair() {
     command_all("off", State::kOn);
     command_all("clear", State::kError);
@@ -238,7 +230,7 @@ class Chaos {
 
 TEST(SteppedChaos, EndsInALegalStateThatAPersonCanRepair) {
   const char* const one = std::getenv("CHIMERA_SEED");
-  const std::uint64_t first = one == nullptr ? 1 : std::strtoull(one, nullptr, 10), n = one == nullptr ? 12 : 1;
+  const std::uint64_t first = one == nullptr ? 1 : std::strtoull(one, nullptr, 10), n = one == nullptr ? 6 : 1;
   for (std::uint64_t seed = first; seed < first + n && !HasFailure(); ++seed) {
     SCOPED_TRACE("replay: CHIMERA_SEED=" + std::to_string(seed));
     Chaos(seed).run();
