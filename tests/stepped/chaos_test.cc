@@ -158,7 +158,8 @@ class Chaos {
   /// An `on` or `off` that is accepted was done for each task; a task whose rtpu is dead is not ON.
   static void judge(const Asked& one) {
     if (!(*one.answer)->is_good() || (one.word != "on" && one.word != "off")) return;
-    for (const Json& task : SteppedSubsystem::result_of(**one.answer)["tasks"])
+    const Json result = SteppedSubsystem::result_of(**one.answer);
+    for (const Json& task : result["tasks"])
       EXPECT_EQ(task["after"] == "ON", one.word == "on") << task;
   }
 
