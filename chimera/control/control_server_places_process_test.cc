@@ -51,17 +51,6 @@ TEST_F(DoorPlaces, TheLongestIdleConnectionOfTheUserGivesWay) {
   EXPECT_FALSE(is_closed(fds[0]));
 }
 
-TEST_F(DoorPlaces, AHalfLineGivesWayBeforeAnIdleConnection) {
-  for (int i = 0; i < 16; ++i) more();
-  serve();
-  say(fds[7], "{");
-  serve(seconds(2));
-  more();
-  serve(seconds(1));
-  EXPECT_EQ(take(fds[7]), closed("a line without an end for 1 s; its place was needed"));
-  EXPECT_EQ(told.size(), 1u);
-}
-
 TEST_F(DoorPlaces, AConnectionWithAPendingRequestNeverGivesWay) {
   for (int i = 0; i < 16; ++i) more();
   for (int i = 1; i < 16; ++i) say(fds[static_cast<std::size_t>(i)], request("signal", kOff));
@@ -92,21 +81,6 @@ TEST_F(DoorPlaces, ASubscriberThatReadsNothingGivesWay) {
   EXPECT_NE(take(fds[1]).find("idle for 6"), std::string::npos);
   EXPECT_TRUE(is_closed(fds[1]));
   EXPECT_EQ(told.size(), 1u);
-}
-
-TEST_F(DoorPlaces, TwelveOfAUserMaySubscribe) {
-  for (int i = 0; i < 13; ++i) more();
-  const std::string subscribe = request("subscribe", R"({"to":"events"})");
-  for (std::size_t i = 0; i < 12; ++i)
-    EXPECT_NE(ask(fds[i], subscribe).find("\"subscription\""), std::string::npos) << i;
-  EXPECT_EQ(ask(fds[12], subscribe),
-            error("1", -32002,
-                  ("too many connections: 12 of user " + std::to_string(::getuid()) + " have subscriptions").c_str()));
-  EXPECT_NE(ask(fds[11], subscribe).find("\"subscription\":13"), std::string::npos) << "one more of a listener";
-  ::close(fds[0]);
-  fds[0] = -1;
-  serve();
-  EXPECT_NE(ask(fds[12], subscribe).find("\"subscription\""), std::string::npos);
 }
 
 TEST_F(DoorPlaces, FourObserversLeavePlacesForHigherRoles) {

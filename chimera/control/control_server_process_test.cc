@@ -77,20 +77,6 @@ TEST_F(DoorTest, RefusesALineThatIsNoRequestAndGoesOn) {
   ::close(fd);
 }
 
-TEST_F(DoorTest, NamesTheNearestMethod) {
-  const int fd = plain();
-  EXPECT_EQ(ask(fd, request("statsu")),
-            R"({"error":{"code":-32601,"data":{"nearest":"status","where":"method"},"message":"no method 'statsu'"},)"
-            R"("id":1,"jsonrpc":"2.0"})"
-            "\n");
-  EXPECT_EQ(ask(fd, request("flag", R"({"up":1})")),
-            R"({"error":{"code":-32602,"data":{"where":"up"},"message":"'up' must be true or false"},"id":1,)"
-            R"("jsonrpc":"2.0"})"
-            "\n");
-  EXPECT_EQ(backend.calls, 0);
-  ::close(fd);
-}
-
 TEST_F(DoorTest, ARequestWithoutIdIsCarriedOutAndNotAnswered) {
   const int fd = plain();
   EXPECT_EQ(ask(fd, R"({"jsonrpc":"2.0","method":"flag","params":{"up":true}})"
@@ -100,32 +86,6 @@ TEST_F(DoorTest, ARequestWithoutIdIsCarriedOutAndNotAnswered) {
   EXPECT_EQ(ask(fd, R"({"jsonrpc":"2.0","method":"flog"})"
                     "\n"),
             "");
-  ::close(fd);
-}
-
-TEST_F(DoorTest, AnAnswerMayComeLaterAndOnlyOnce) {
-  const int fd = plain();
-  const std::string off = request("signal", R"({"signal":"off","tasks":["a"]})", 9);
-  EXPECT_EQ(ask(fd, off), "");
-  ASSERT_EQ(backend.later.size(), 1u);
-  backend.later[0](RpcResponse::error(kRefused, "not now"));
-  backend.later[0](RpcResponse::error(kRefused, "still not"));
-  EXPECT_LE(server->next_due(), now) << "an answer given between two turns is sent at once";
-  serve();
-  EXPECT_EQ(take(fd), error("9", -32000, "not now"));
-  EXPECT_EQ(ask(fd, off), "");
-  ::close(fd);
-  serve();
-  EXPECT_EQ(server->connections(), 0u);
-  backend.later[1](RpcResponse::good(Json::object()));  // the connection is gone: harmless
-  server.reset();
-  backend.later[1](RpcResponse::good(Json::object()));
-  backend.later.clear();
-}
-
-TEST_F(DoorTest, AReplyThatIsDroppedIsAnAnswerToo) {
-  const int fd = plain();
-  EXPECT_EQ(ask(fd, request("library")), error("1", -32006, "the subsystem gave no answer"));
   ::close(fd);
 }
 
@@ -172,19 +132,6 @@ TEST_F(DoorTest, ActsComeBeforeTheQuestionsOfOthersAndATurnEnds) {
   EXPECT_EQ(backend.called.size(), 31u);
   ::close(loud);
   ::close(quiet);
-}
-
-TEST_F(DoorTest, QuestionsOfConnectionsAreAnsweredInTurnAndEachInItsOrder) {
-  const int a = plain(), b = plain();
-  serve();
-  backend.busy_us = 1;
-  say(a, request("status") + request("hello") + request("flag", R"({"up":true})") + request("hello"));
-  say(b, request("get") + request("profile"));
-  serve();
-  EXPECT_EQ(backend.called, (std::vector<std::string>{"status", "get", "hello", "flag", "profile", "hello"}))
-      << "an act waits for earlier requests of its own connection only";
-  ::close(a);
-  ::close(b);
 }
 
 TEST_F(DoorTest, TheBackendForgetsAConnectionThatIsClosed) {

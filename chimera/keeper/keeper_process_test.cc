@@ -261,16 +261,6 @@ TEST_F(KeeperProcess, AFaceThatDiesAgainAndAgainEndsEverything) {
   EXPECT_TRUE(nobody_is_left());
 }
 
-TEST_F(KeeperProcess, NoProcessIsLeftWhenTheKeeperIsKilled) {
-  start(2);
-  ASSERT_TRUE(wait_for("face begin"));
-  ASSERT_TRUE(wait_for("2.1 peer 1 1"));
-  ASSERT_TRUE(wait_for("2.1 peer 0 1"));
-  ::kill(keeper_, SIGKILL);  // not reaped yet: still its process id
-  EXPECT_EQ(code_of_keeper(), 256 + SIGKILL);
-  EXPECT_TRUE(nobody_is_left());
-}
-
 TEST_F(KeeperProcess, AManagerThatDiesAgainAndAgainIsStartedMoreAndMoreSlowly) {
   order("1", "exit 1");
   start(1);

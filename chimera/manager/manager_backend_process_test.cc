@@ -229,13 +229,6 @@ TEST_F(ManagerBackendTest, ASignalIsOneTransactionAndReturnsTheStateOfEachTask) 
   EXPECT_EQ(good("signal", {{"signal", "on"}, {"tasks", {"law"}}})["tasks"][0]["after"], "ON");
 }
 
-TEST_F(ManagerBackendTest, NoAnswerNamesTheRtpuAndItsMethod) {
-  fake_.rtpu(1).block().head().running = TaskWord(fake_.task("law"), Method::kCycle).word();
-  fake_.rtpu(1).is_deaf = true;
-  EXPECT_EQ(refusal("signal", {{"signal", "off"}, {"tasks", {"law"}}}),
-            "-32006 no answer from rtpu spare {\"rtpu\":\"spare\",\"running\":\"law.cycle\"}");
-}
-
 TEST_F(ManagerBackendTest, SetPublishesAndSaveWritesItBackInTheWordsOfADescription) {
   const Json answer = good("set", {{"values", {{"kp", "[100 90] N.m/rad"}}}});
   EXPECT_EQ(answer["values"]["kp"]["value"], Json::array({100.0, 90.0}));
@@ -255,16 +248,6 @@ TEST_F(ManagerBackendTest, TheOperatorsFlagStaysUntilItIsLowered) {
   EXPECT_EQ(good("flag", {{"up", false}}), (Json{{"up", false}, {"by", Json::array()}}));
   EXPECT_EQ(good("status")["flag"]["up"], false);
   EXPECT_EQ(fake_.told("flag"), "the operator raised the flag\nthe operator lowered the flag\n");
-}
-
-TEST_F(ManagerBackendTest, EventsAreNumberedWithoutAGap) {
-  const Json events = good("events", {{"since", 0}, {"limit", 3}});
-  EXPECT_EQ(events["first"], 1);
-  ASSERT_EQ(events["events"].size(), 3u);
-  EXPECT_EQ(events["events"][0]["kind"], "manager-started");
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(events["events"][i]["number"], i + 1);
-  const std::uint64_t last = events["last"].as_uint64();
-  EXPECT_EQ(good("events", {{"since", last + 1}})["events"].size(), 0u);
 }
 
 TEST_F(ManagerBackendTest, WhyFindsTheProducerThatIsOff) {
@@ -289,65 +272,6 @@ TEST_F(ManagerBackendTest, ProfileIsThatOfEveryOtherFace) {
   ASSERT_EQ(profile["tasks"].size(), 3u);
   EXPECT_EQ(profile["tasks"][0]["task"], "sensor");
   EXPECT_GT(profile["tasks"][0]["execution_ns"]["cycle"]["count"].as_int64(), 0);
-}
-
-TEST_F(ManagerBackendTest, EndGoesToTheKeeper) {
-  EXPECT_EQ(good("end", {{"code", 3}}), Json::object());
-  ASSERT_TRUE(fake_.until([&] { return fake_.end_asked.has_value(); }));
-  EXPECT_EQ(*fake_.end_asked, 3);
-}
-
-TEST_F(ManagerBackendTest, WhileEverythingEndsNoSignalIsTaken) {
-  fake_.page().ending = 1;
-  EXPECT_EQ(refusal("signal", {{"signal", "off"}, {"tasks", {"law"}}}), "-32007 the subsystem is ending");
-  ASSERT_TRUE(fake_.until([&] { return !fake_.told("ending").empty(); }));
-}
-
-TEST_F(ManagerBackendTest, SubscribersOfEventsMissNone) {
-  ASSERT_TRUE(backend_->open(7, {{"to", "events"}, {"since", 0}}).is_good());
-  (void)good("flag", {{"up", true}});
-  std::uint64_t next = 1;
-  for (std::shared_ptr<const Json> news; (news = backend_->pull(7)) != nullptr;) {
-    EXPECT_EQ((*news)["lost"], 0);
-    for (const Json& event : (*news)["events"]) EXPECT_EQ(event["number"], next++);
-  }
-  EXPECT_EQ(next, state().log.last() + 1);
-  backend_->close(7);
-}
-
-TEST_F(ManagerBackendTest, ASubscriberGetsTheNumberOfLostEvents) {
-  ASSERT_TRUE(backend_->open(7, {{"to", "events"}, {"since", 1}}).is_good());
-  for (std::size_t i = 0; i < kEventsKept + 5; ++i) state().tell("command", TaskId{}, RtpuId{}, "x", now());
-  const auto news = backend_->pull(7);
-  ASSERT_NE(news, nullptr);
-  EXPECT_EQ((*news)["lost"], state().log.first() - 1);
-  EXPECT_EQ((*news)["events"][0]["number"], state().log.first());
-}
-
-TEST_F(ManagerBackendTest, SubscriptionsOfStateGiveTheLatest) {
-  ASSERT_TRUE(backend_->open(1, {{"to", "status"}}).is_good());
-  ASSERT_TRUE(backend_->open(2, {{"to", "values"}, {"variables", {"x"}}}).is_good());
-  EXPECT_EQ((*backend_->pull(1))["subsystem"], "fake");
-  EXPECT_EQ((*backend_->pull(2))["values"].size(), 1u);
-  EXPECT_EQ(backend_->open(3, {{"to", "values"}, {"variables", {"nix"}}}).code, control::kUnknown);
-}
-
-TEST_F(ManagerBackendTest, SubscriptionsOfTheTapGiveRows) {
-  ASSERT_TRUE(backend_->open(1, {{"to", "tap"}, {"variables", {"x"}}}).is_good());
-  std::shared_ptr<const Json> news;
-  ASSERT_TRUE(fake_.until([&] { return (news = backend_->pull(1)) != nullptr; }));
-  EXPECT_EQ((*news)["task"], "sensor");
-  EXPECT_EQ((*news)["first"], 0);
-  EXPECT_GT((*news)["rows"].size(), 0u);
-  backend_->close(1);
-  EXPECT_FALSE(state().own.block().view().is_tapped(fake_.task("sensor")));
-}
-
-TEST_F(ManagerBackendTest, SubscriptionsOfTheTapMayBeginWithTheOldestRecord) {
-  ASSERT_TRUE(backend_->open(1, {{"to", "tap"}, {"since", 0}}).is_good());
-  const auto news = backend_->pull(1);
-  ASSERT_NE(news, nullptr);
-  EXPECT_EQ((*news)["records"][0][0], fake_.rtpu(0).block().tap().records[0].at.count);
 }
 
 TEST_F(ManagerBackendTest, TheTapIsReadAgainOnlyWhenAllThatWasReadIsTaken) {

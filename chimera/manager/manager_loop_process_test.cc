@@ -23,47 +23,6 @@ TEST(ManagerLoop, BringsTheStartSetUp) {
   EXPECT_NE(fake.told("state").find("law: OFF -> ON\n"), std::string::npos) << fake.told("state");
 }
 
-TEST(ManagerLoop, CarriesOutACommandAndReturnsTheResult) {
-  FakeSubsystem fake;
-  fake.start_manager();
-  ASSERT_TRUE(fake.until_on("law"));
-  std::optional<subsystem::CommandAnswer> got;
-  fake.loop().command(Signal::kOff, {fake.task("law")},
-                        [&](const subsystem::CommandAnswer& answer) { got = answer; });
-  ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
-  EXPECT_TRUE(got->is_accepted()) << got->refusal.text();
-  ASSERT_EQ(got->outcomes.size(), 1u);
-  EXPECT_EQ(got->outcomes[0].before, State::kOn);
-  EXPECT_EQ(got->outcomes[0].after, State::kOff);
-  EXPECT_EQ(fake.told("command"), "off law: done\n");
-}
-
-TEST(ManagerLoop, ARefusedCommandChangesNothing) {
-  FakeSubsystem fake;
-  fake.start_manager();
-  ASSERT_TRUE(fake.until_on("law"));
-  std::optional<subsystem::CommandAnswer> got;
-  fake.loop().command(Signal::kClear, {fake.task("law")},
-                        [&](const subsystem::CommandAnswer& answer) { got = answer; });
-  ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
-  EXPECT_FALSE(got->is_accepted());
-  EXPECT_EQ(fake.loop().state().state(fake.task("law")), State::kOn);
-}
-
-TEST(ManagerLoop, ReportsADeadRtpuWithItsMethodAndRestartsItsTasks) {
-  FakeSubsystem fake;
-  fake.start_manager();
-  ASSERT_TRUE(fake.until_on("law"));
-  fake.rtpu(0).block().head().running = TaskWord(fake.task("filter"), Method::kCycle).word();
-  fake.kill_rtpu(0, SIGSEGV);
-  ASSERT_TRUE(fake.until([&] { return !fake.told("rtpu-ended").empty(); }));
-  EXPECT_EQ(fake.told("rtpu-ended"), "servo ended by signal 11 (SIGSEGV) in filter.cycle\n");
-  EXPECT_TRUE(fake.until_on("filter"));
-  EXPECT_EQ(fake.rtpu(0).incarnation(), 2u);
-  EXPECT_EQ(fake.loop().state().rtpus[0].restarts, 1u);
-  EXPECT_EQ(fake.loop().state().rtpus[0].last_end, "ended by signal 11 (SIGSEGV) in filter.cycle");
-}
-
 TEST(ManagerLoop, ANewManagerResumesAfterAKillAtAnyTime) {
   FakeSubsystem fake;
   fake.start_manager();
@@ -100,18 +59,6 @@ TEST(ManagerLoop, TheNextManagerReportsEventsFromTheGap) {
   ASSERT_TRUE(fake.until([&] { return fake.loop().is_ready(); }));
   EXPECT_EQ(fake.told("fault"), "filter: cycle: joint 3 at its limit\n");
   EXPECT_EQ(fake.told("state"), "filter: ON -> ERROR\n");
-}
-
-TEST(ManagerLoop, TheNextManagerRestartsAnRtpuThatDiedInTheGap) {
-  FakeSubsystem fake;
-  fake.start_manager();
-  ASSERT_TRUE(fake.until_on("law"));
-  fake.kill_manager();
-  fake.kill_rtpu(1, SIGKILL);
-  fake.start_manager();
-  ASSERT_TRUE(fake.until([&] { return fake.loop().state().rtpus[1].restarts == 1; }));
-  EXPECT_EQ(fake.told("rtpu-ended"), "spare ended by signal 9 (SIGKILL)\n");
-  EXPECT_TRUE(fake.until_on("law"));
 }
 
 TEST(ManagerLoop, TurnsTasksOnAgainAfterTheirRtpuOverwroteItsMemory) {
@@ -175,16 +122,6 @@ TEST(ManagerLoop, ReportsALivingRtpuWithOverwrittenMemoryAndItsRemedy) {
   EXPECT_TRUE(fake.until_on("law"));
 }
 
-TEST(ManagerLoop, ReportsTheFaultOfATaskInItsWords) {
-  FakeSubsystem fake;
-  fake.start_manager();
-  ASSERT_TRUE(fake.until_on("law"));
-  fake.rtpu(0).fail(fake.task("filter"), "joint 3 at its limit");
-  ASSERT_TRUE(fake.until([&] { return !fake.told("fault").empty(); }));
-  EXPECT_EQ(fake.told("fault"), "filter: cycle: joint 3 at its limit\n");
-  EXPECT_TRUE(fake.until([&] { return fake.loop().state().state(fake.task("filter")) == State::kError; }));
-}
-
 TEST(ManagerLoop, ReportsTheNoteOfATaskInItsWords) {
   FakeSubsystem fake;
   fake.start_manager();
@@ -217,35 +154,6 @@ TEST(ManagerLoop, ReportsImpossibleCountersAsAFaultAndNotAsNumbers) {
   ASSERT_TRUE(fake.until([&] { return !fake.told("fault").empty(); }));
   EXPECT_EQ(fake.told("fault"), "law: its counters are wrong: something in its rtpu has overwritten them\n");
   EXPECT_EQ(fake.told("overrun"), "");
-}
-
-TEST(ManagerLoop, ADeafRtpuFailsTheCommandInTime) {
-  FakeSubsystem fake;
-  fake.start_manager();
-  ASSERT_TRUE(fake.until_on("law"));
-  fake.rtpu(1).is_deaf = true;
-  std::optional<subsystem::CommandAnswer> got;
-  fake.loop().command(Signal::kOff, {fake.task("law")},
-                        [&](const subsystem::CommandAnswer& answer) { got = answer; });
-  ASSERT_TRUE(fake.until([&] { return got.has_value(); }));
-  EXPECT_FALSE(got->is_accepted());
-  EXPECT_EQ(got->refusal.text(), "no answer from rtpu spare");
-}
-
-TEST(ManagerLoop, WithoutTasksItIsReadyAtOnce) {
-  FakeSubsystem fake("");
-  fake.start_manager();
-  EXPECT_TRUE(fake.until([&] { return fake.loop().is_ready(); }));
-  EXPECT_FALSE(fake.loop().state().configuration.has_value());
-}
-
-TEST(ManagerLoop, EndsWhenTheKeeperIsGoneAndAsksItToEnd) {
-  FakeSubsystem fake;
-  fake.start_manager();
-  ASSERT_TRUE(fake.until_on("law"));
-  fake.loop().end(3);
-  ASSERT_TRUE(fake.until([&] { return fake.end_asked.has_value(); }));
-  EXPECT_EQ(*fake.end_asked, 3);
 }
 
 }  // namespace

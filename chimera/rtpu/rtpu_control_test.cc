@@ -275,18 +275,6 @@ TEST_F(EdgeTest, AFaultIsReportedWithItsTextInTheFaultGroup) {
   EXPECT_EQ(fault.last.code, 7);
 }
 
-TEST_F(EdgeTest, AManagerThatIsReplacedIsServedAndItsPredecessorsSignalsAreNot) {
-  all_on();
-  rtpus->start_manager(2);
-  rtpus->run(milliseconds(1));
-  rtpus->send(Signal::kOff, {kKiller}, 77);
-  rtpus->run(milliseconds(1));
-  EXPECT_EQ(first().state(kKiller), State::kOff);
-  const auto reports = rtpus->take(PostKind::kReport);
-  ASSERT_EQ(reports.size(), 1u);
-  EXPECT_EQ(reports[0].command, 77u);
-}
-
 TEST_F(EdgeTest, TheEndTurnsConsumersOffBeforeTheirProducersOverAllRtpus) {
   all_on();
   first().edge->rtpu_end().tell(false);

@@ -55,45 +55,6 @@ class Bench {
   std::vector<DroppedRelease> dropped;
 };
 
-TEST(ReadyQueue, OrdersByPeriodUnderRm) {
-  Bench b(Policy::kRm, {spec(15), spec(6), spec(12), spec(10)});
-  b.join_all();
-  b.release(0);
-  EXPECT_EQ(b.drain(), "BDCA");
-  EXPECT_TRUE(b.dropped.empty());
-}
-
-TEST(ReadyQueue, OrdersByDeadlineUnderEdfAcrossClasses) {
-  Bench b(Policy::kEdf, {spec(30), spec(10), spec(20)});
-  b.join_all();
-  b.release(0);
-  EXPECT_EQ(b.drain(), "BCA");
-  b.release(20);  // B again (deadline 30) and C again (40)
-  EXPECT_EQ(b.drain(), "BC");
-  EXPECT_EQ(b.queue.next_release(), milliseconds(30));
-}
-
-TEST(ReadyQueue, PutsCriticalityFirstUnderMuf) {
-  Bench b(Policy::kMuf, {spec(5), spec(20, 1, 2), spec(10, 1, 2)});
-  b.join_all();
-  b.release(0);
-  EXPECT_EQ(b.drain(), "CBA");
-}
-
-TEST(ReadyQueue, PutsLeastLaxityFirst) {
-  Bench b(Policy::kLlf, {spec(10, 1), spec(20, 15), spec(12, 2)});
-  b.join_all();
-  b.release(0);
-  EXPECT_EQ(b.drain(), "BAC");
-}
-
-TEST(ReadyQueue, BreaksTiesByUserPriorityThenOrderOfTheTasks) {
-  Bench b(Policy::kEdf, {spec(10), spec(10), spec(10, 1, 0, 7), spec(10)});
-  b.join_all();
-  b.release(0);
-  EXPECT_EQ(b.drain(), "CABD");
-}
-
 TEST(ReadyQueue, DropsAReleaseThatNeverStartedWhenTheNextOneComes) {
   Bench b(Policy::kEdf, {spec(10), spec(10)});
   b.join_all();

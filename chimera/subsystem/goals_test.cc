@@ -51,17 +51,6 @@ TEST_F(GoalsTest, ACommandForATaskThatIsBroughtUpWaitsAndIsFulfilledByIt) {
             "goal arm 0\ngoal pid 0\nstarted: arm pid are ON\nanswer 1 yes arm OFF>ON pid OFF>ON\n");
 }
 
-// docs/formats/control.md, `signal`: only `on` is one transaction over all rtpus.
-TEST_F(GoalsTest, ARefusedOffOfAListDoesNotUndoOtherTasks) {
-  const std::string asked = command(Signal::kOff, {kArm, kTraj});
-  EXPECT_NE(asked.find("send servo: off arm\n"), std::string::npos) << asked;
-  EXPECT_NE(asked.find("send spare: off traj\n"), std::string::npos) << asked;
-  EXPECT_EQ(report(kTraj, State::kOff), "");
-  EXPECT_EQ(refuse(kArm, Refusal::kFault, "the brake does not hold"),
-            "answer 1 no: off: arm: the brake does not hold traj ON>OFF arm ON>ON\n");
-  EXPECT_EQ(states[kTraj.index], State::kOff);
-}
-
 TEST_F(GoalsTest, OffTakesTheGoalOnBackWhileTheProcessIsRestarted) {
   die(kServo);
   EXPECT_EQ(command(Signal::kOff, {kArm, kPid}),
@@ -81,16 +70,6 @@ TEST_F(GoalsTest, ATaskWithAPendingKillDoesNotComeBack) {
             "answer 1 no: spare ended by signal 11 (SIGSEGV) in pid.cycle reserve ERROR>ERROR\n");
   step(RtpuUp{kSpare, 2});
   EXPECT_EQ(subsystem->state(kReserve), State::kNotCreated);
-}
-
-TEST_F(GoalsTest, AnInitThatEndsItsProcessIsNotTriedAgain) {
-  command(Signal::kKill, {kReserve});
-  report(kReserve, State::kNotCreated);
-  command(Signal::kSpawn, {kReserve});
-  const std::string said = die(kSpare);
-  EXPECT_NE(said.find("goal reserve 0\n"), std::string::npos) << said;
-  EXPECT_NE(said.find("answer 2 no: spare ended by signal 11 (SIGSEGV) in pid.cycle"), std::string::npos) << said;
-  EXPECT_EQ(step(RtpuUp{kSpare, 2}), "send spare: spawn traj\n");
 }
 
 TEST_F(GoalsTest, GoalsOutliveADeathInTheMiddleOfTheirTransaction) {

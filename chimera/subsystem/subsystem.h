@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decides for a subsystem: a step function (event, time) -> actions without any system call. On Linux, chimera/manager
-// calls it; in virtual time, simulated processes do. docs/formats/processes.md.
+// Decides for a subsystem: a step function (event, time) -> actions without any system call. chimera/manager calls it;
+// tests/stepped runs both on a stepped clock. docs/formats/processes.md.
 //
 // Events report the state of the processes. ManagerLoop carries out the actions in order and stores the contents of all
 // Remember... actions. A new Subsystem that gets them continues the work of its predecessor.

@@ -65,23 +65,6 @@ TEST_F(StartTest, AnRtpuThatNeverServesIsNotWaitedForForever) {
             "refused: ref would have no producer; the smallest legal set is: arm pid traj\ngoal arm 0\ngoal pid 0\n");
 }
 
-TEST_F(SubsystemTest, OffOfAListIsOneStepAgainstTheDataFlow) {
-  EXPECT_EQ(command(Signal::kOff, {kArm, kTraj, kPid}),
-            "send servo: off pid\nsend spare: off traj\nsend servo: off arm\n");
-  report(kPid, State::kOff);
-  report(kArm, State::kOff);
-  EXPECT_EQ(report(kTraj, State::kOff), "answer 1 yes pid ON>OFF traj ON>OFF arm ON>OFF\n");
-}
-
-TEST_F(SubsystemTest, NothingOfAListIsSentWhenOneOfItIsIllegal) {
-  EXPECT_EQ(command(Signal::kClear, {kArm}), "answer 1 no: arm is in state ON, where clear is not legal\n");
-  EXPECT_EQ(command(Signal::kSpawn, {kArm}), "answer 2 no: arm is in state ON, where spawn is not legal\n");
-  command(Signal::kKill, {kReserve});
-  report(kReserve, State::kNotCreated);
-  EXPECT_EQ(command(Signal::kOff, {kArm, kReserve}),
-            "answer 4 no: reserve is in state NOT-CREATED, where off is not legal; type `chimera off arm`\n");
-}
-
 TEST_F(SubsystemTest, ATaskInTheWantedStateIsDoneAlready) {
   EXPECT_EQ(command(Signal::kOn, {kArm, kPid}), "answer 1 yes arm ON>ON already pid ON>ON already\n");
   EXPECT_EQ(command(Signal::kOff, {kReserve}), "answer 2 yes reserve OFF>OFF already\n");
@@ -89,14 +72,6 @@ TEST_F(SubsystemTest, ATaskInTheWantedStateIsDoneAlready) {
   EXPECT_EQ(report(kPid, State::kOff), "answer 3 yes reserve OFF>OFF already pid ON>OFF\n");
   EXPECT_EQ(command(Signal::kOn, {kPid, kArm}), "goal pid 2\nsend servo: on pid\n");
   EXPECT_EQ(report(kPid, State::kOn), "goal pid 0\nanswer 4 yes pid OFF>ON arm ON>ON already\n");
-}
-
-TEST_F(SubsystemTest, AFailedOnLeavesTasksOnThatWereOnAlready) {
-  command(Signal::kOff, {kPid});
-  report(kPid, State::kOff);
-  EXPECT_EQ(command(Signal::kOn, {kPid, kArm}), "goal pid 2\nsend servo: on pid\n");
-  EXPECT_EQ(refuse(kPid, Refusal::kFault, "no sensor"), "goal pid 0\nanswer 2 no: pid: no sensor\n")
-      << "and no off is sent to arm";
 }
 
 TEST_F(SubsystemTest, ARefusalHasARemedyForTheWholeList) {
@@ -110,61 +85,6 @@ TEST_F(SubsystemTest, ARefusalHasARemedyForTheWholeList) {
   EXPECT_EQ(command(Signal::kOn, {kArm, kPid, kTraj, kReserve}),
             "answer 2 no: arm is in state ERROR, where on is not legal; type `chimera spawn reserve`, "
             "`chimera clear arm pid`, then `chimera on arm pid reserve`\n");
-}
-
-TEST_F(SubsystemTest, ASecondProducerIsRefused) {
-  EXPECT_EQ(command(Signal::kOn, {kReserve}), "answer 1 no: tau would have two producers: pid and reserve\n");
-}
-
-TEST_F(SubsystemTest, OnWaitsForAnOffThatIsNotReportedYet) {
-  EXPECT_EQ(command(Signal::kOff, {kPid}), "send servo: off pid\n");
-  EXPECT_EQ(command(Signal::kOn, {kReserve}), "");
-  EXPECT_EQ(report(kPid, State::kOff),
-            "goal reserve 2\nsend spare: on reserve\nanswer 1 yes pid ON>OFF\n") << "the word says OFF already";
-  EXPECT_EQ(report(kReserve, State::kOn), "goal reserve 0\nanswer 2 yes reserve OFF>ON\n");
-}
-
-TEST_F(SubsystemTest, AFailedTransactionTurnsOffItsTasksInReverse) {
-  command(Signal::kOff, {kArm, kTraj, kPid});
-  for (TaskId task : {kPid, kTraj, kArm}) report(task, State::kOff);
-  EXPECT_EQ(command(Signal::kOn, {kPid, kTraj, kArm}), "goal arm 2\ngoal traj 2\ngoal pid 2\nsend servo: on arm\n");
-  report(kArm, State::kOn);
-  report(kTraj, State::kOn);
-  EXPECT_EQ(report(kPid, State::kOff, "gains are zero"), "send spare: off traj\nsend servo: off arm\n");
-  report(kTraj, State::kOff);
-  EXPECT_EQ(report(kArm, State::kOff),
-            "goal arm 0\ngoal traj 0\ngoal pid 0\nanswer 2 no: pid: gains are zero\n");
-}
-
-TEST_F(SubsystemTest, ATaskThatLeavesOnByItselfFailsTheTransaction) {
-  command(Signal::kOff, {kArm, kTraj, kPid});
-  for (TaskId task : {kPid, kTraj, kArm}) report(task, State::kOff);
-  command(Signal::kOn, {kPid, kTraj, kArm});
-  report(kArm, State::kOn);
-  EXPECT_EQ(seen(kArm, State::kError), "");
-  EXPECT_EQ(report(kTraj, State::kOn), "send spare: off traj\n");
-  EXPECT_EQ(report(kTraj, State::kOff),
-            "goal arm 0\ngoal traj 0\ngoal pid 0\nanswer 2 no: arm: went from ON to ERROR\n");
-}
-
-TEST_F(SubsystemTest, OffDoesNotWaitBehindAnOnThatIsUnderWay) {
-  command(Signal::kOff, {kArm, kTraj, kPid});
-  for (TaskId task : {kPid, kTraj, kArm}) report(task, State::kOff);
-  command(Signal::kOn, {kArm, kTraj, kPid});
-  const Reported on = sent[kArm.index];
-  EXPECT_EQ(command(Signal::kOff, {kArm}), "goal arm 0\nsend servo: off arm\n");
-  seen(kArm, State::kOn);
-  EXPECT_EQ(step(Reported{on.command, kArm, Signal::kOn, true, Refusal::kNone, State::kOff, State::kOn, {}}),
-            "goal traj 0\ngoal pid 0\nanswer 2 no: arm: off was asked for in between\n");
-  EXPECT_EQ(report(kArm, State::kOff), "answer 3 yes arm ON>OFF\n");
-}
-
-TEST_F(SubsystemTest, NoReportWithinTheLimitIsNoAnswer) {
-  command(Signal::kOff, {kTraj});
-  EXPECT_EQ(subsystem->next_due(), now + seconds(2));
-  now += seconds(2);
-  EXPECT_EQ(step(Tick{}), "answer 1 no: no answer from rtpu spare traj ON>ON\n");
-  EXPECT_EQ(subsystem->next_due(), kNever);
 }
 
 TEST_F(SubsystemTest, AnInitThatIsUnderWayIsWaitedFor) {

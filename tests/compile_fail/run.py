@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every x.cc and x.c of this folder must fail to compile with its sentence in expected.txt. The same for
-each misspelling listed in chimera/task/method_check.h. A control that compiles shows that the compiler works at all."""
+"""Every source in cases.txt must fail to compile with the sentence behind its name. The same for each misspelling
+listed in chimera/task/method_check.h. A control that compiles shows that the compiler works at all.
+
+In cases.txt a source is indented. Lines of a class only are members of `Bad`, which has a method cycle() then; a C++
+source without an include of its own framework header gets one, and is made a component."""
 import concurrent.futures
 import os
 import pathlib
@@ -8,11 +11,16 @@ import re
 import subprocess
 import sys
 import tempfile
+import textwrap
 
 FOLDER = pathlib.Path(__file__).resolve().parent
 ROOT = FOLDER.parents[1]
 FLAGS = {".cc": ["g++", "-std=c++20"], ".c": ["gcc", "-std=c99", "-Werror=missing-prototypes"]}
 HEADER = "chimera/task/component.h"
+FACE = """#include "chimera/task/component.h"
+using namespace chimera;
+%sCHIMERA_COMPONENT(Bad, "bad", "Does not compile.");
+"""
 CONTROL = """#include "chimera/task/component.h"
 using namespace chimera;
 struct Good {
@@ -51,12 +59,16 @@ def judge(path, sentence):
     return ""
 
 
-def cases():
-    expected = dict(line.split(": ", 1) for line in (FOLDER / "expected.txt").read_text().splitlines())
-    files = {path.name: path for path in [*FOLDER.glob("*.c"), *FOLDER.glob("*.cc")]}
-    if files.keys() != expected.keys():
-        sys.exit(f"expected.txt and the files differ: {sorted(files.keys() ^ expected.keys())}")
-    return [(files[name], expected[name]) for name in sorted(files)]
+def cases(folder):
+    for case in (FOLDER / "cases.txt").read_text().split("\n\n"):
+        head, body = case.split("\n", 1)
+        name, sentence = head.split(": ", 1)
+        source = textwrap.dedent(body) + "\n"
+        if "chimera/task/" not in source:
+            source = FACE % (source if " Bad " in source else f"struct Bad {{\n{source}void cycle() {{}}\n}};\n")
+        path = pathlib.Path(folder) / name
+        path.write_text(source)
+        yield path, sentence
 
 
 def misspellings():
@@ -85,7 +97,7 @@ def main():
         control.write_text(CONTROL % "")
         work.append((control, None))
         work += guide(folder)
-        refused = cases()
+        refused = list(cases(folder))
         work += refused
         # All misspellings in one class: the compiler names each of them.
         words = misspellings()

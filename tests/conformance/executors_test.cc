@@ -40,8 +40,7 @@ class Executors : public ::testing::TestWithParam<Kind> {
   const Profile& profile(const std::string& task) { return app.task(task).profile; }
 };
 
-INSTANTIATE_TEST_SUITE_P(All, Executors, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
-                         [](const auto& one) { return kind_name(one.param); });
+INSTANTIATE_TEST_SUITE_P(All, Executors, kEachExecutor, name_of_kind);
 
 TEST_P(Executors, RunEveryTaskAtItsRateFromItsOffset) {
   app.add("a", milliseconds(10), microseconds(100));

@@ -234,8 +234,7 @@ Counted count_by_threads() {
 }
 
 class NoHeap : public ::testing::TestWithParam<Kind> {};
-INSTANTIATE_TEST_SUITE_P(All, NoHeap, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
-                         [](const auto& one) { return kind_name(one.param); });
+INSTANTIATE_TEST_SUITE_P(All, NoHeap, kEachExecutor, name_of_kind);
 
 TEST_P(NoHeap, TenThousandCyclesWithFaultsDropsAndActsAllocateNothing) {
   allocates = false;

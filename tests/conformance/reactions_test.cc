@@ -38,8 +38,7 @@ class Reactions : public ::testing::TestWithParam<Kind> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(All, Reactions, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
-                         [](const auto& one) { return kind_name(one.param); });
+INSTANTIATE_TEST_SUITE_P(All, Reactions, kEachExecutor, name_of_kind);
 
 TEST_P(Reactions, ContinuePublishesALateResult) {
   add_late_task().on_miss = OnMiss::kContinue;
@@ -188,8 +187,7 @@ class Minimum : public Reactions {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(All, Minimum, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
-                         [](const auto& one) { return kind_name(one.param); });
+INSTANTIATE_TEST_SUITE_P(All, Minimum, kEachExecutor, name_of_kind);
 
 TEST_P(Minimum, AStartWithoutItsMinimumRunsUnderContinue) {
   start(OnMiss::kContinue);

@@ -72,59 +72,39 @@ struct Reader {
 constexpr TaskId kFirst{0u}, kReader{1u}, kSpare{2u}, kThird{3u};
 constexpr std::uint32_t kPlain = 0, kAlone = 1;
 
-class RecoveryTest : public ::testing::TestWithParam<Kind> {
+class RecoveryTest : public OneContext {
  protected:
   RecoveryTest() { scene = {}; }
-  void go(Nanoseconds duration, const std::vector<ScriptAct>& acts = {}) {
-    acts_ = acts;
-    runner_.reset();
-    set_.reset();
-    app_ = std::make_unique<testing::TestApplication>();
-    app_->add("first", testing::component<First>("first")).budget = microseconds(20);
-    app_->add("reader", testing::component<Reader>("reader")).budget = microseconds(20);
-    app_->add("spare", testing::component<Spare>("spare")).budget = microseconds(20);
-    app_->add("third", testing::component<Spare>("spare")).budget = microseconds(20);
-    if (!restarts_.empty()) app_->tasks[kFirst.index].on_fault = OnFault::kRestart;
-    if (!restarts_.empty() && restarts_[0].then == OnFault::kSwitch) app_->tasks[kFirst.index].on_fault_set = kAlone;
-    app_->make({kFirst, kReader}, false);
-    if (limit_ > 0) app_->port(kSpare.index, 0).max_step = std::as_bytes(std::span(&limit_, 1));
-    app_->spec.standbys = standbys_;
-    app_->spec.restarts = restarts_;
-    app_->spec.stale = stale_;
-    app_->spec.sets = sets_;
-    set_ = *HeapTaskSet::create(app_->spec, app_->components);
-    runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
-    EXPECT_TRUE(runner_->start());
-    EXPECT_EQ(runner_->run(duration), end_);
+  void describe(testing::TestApplication& app) override {
+    app.add("first", testing::component<First>("first")).budget = microseconds(20);
+    app.add("reader", testing::component<Reader>("reader")).budget = microseconds(20);
+    app.add("spare", testing::component<Spare>("spare")).budget = microseconds(20);
+    app.add("third", testing::component<Spare>("spare")).budget = microseconds(20);
+    if (!restarts_.empty()) app.tasks[kFirst.index].on_fault = OnFault::kRestart;
+    if (!restarts_.empty() && restarts_[0].then == OnFault::kSwitch) app.tasks[kFirst.index].on_fault_set = kAlone;
+    app.make({kFirst, kReader}, false);
+    if (limit_ > 0) app.port(kSpare.index, 0).max_step = std::as_bytes(std::span(&limit_, 1));
+    app.spec.standbys = standbys_;
+    app.spec.restarts = restarts_;
+    app.spec.stale = stale_;
+    app.spec.sets = sets_;
   }
   void fail_first_in(std::uint64_t cycle) {
     scene.cycle_of_first = [cycle](Cycle c) -> Outcome {
       return c.count() == cycle ? fault("no current") : ok();
     };
   }
-  const Task& task(TaskId id) const { return set_->tasks()[id.index]; }
-  chimera::State state(TaskId id) const { return task(id).state; }
   static bool was_up() { return std::find(scene.illegal.begin(), scene.illegal.end(), true) != scene.illegal.end(); }
-  static ScriptAct signal(Nanoseconds at, Signal signal, TaskId task) {
-    return {at, ScriptAct::Kind::kSignal, signal, task};
-  }
 
   std::vector<StandbySpec> standbys_{{kFirst, kSpare}, {kFirst, kThird}};
   std::vector<RestartSpec> restarts_;
   std::vector<StaleSpec> stale_;
   std::vector<TaskId> plain_{kFirst, kReader}, alone_{kThird, kReader};
   NamedSet sets_[2] = {{"plain", plain_}, {"alone", alone_}};
-  RunEnd end_ = RunEnd::kTime;
   double limit_ = 0;  // the max_step of u where the spare writes it; 0: none
-  std::vector<ScriptAct> acts_;
-  std::unique_ptr<testing::TestApplication> app_;
-  std::unique_ptr<HeapTaskSet> set_;
-  std::unique_ptr<Runner> runner_;
 };
 
-INSTANTIATE_TEST_SUITE_P(All, RecoveryTest,
-                         ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
-                         [](const auto& one) { return kind_name(one.param); });
+INSTANTIATE_TEST_SUITE_P(All, RecoveryTest, kEachExecutor, name_of_kind);
 
 TEST_P(RecoveryTest, AStandbyTakesOverWithinItsPeriodAndTheFlagStaysDown) {
   fail_first_in(5);
@@ -236,17 +216,6 @@ TEST_P(RecoveryTest, WithoutAnyThatCanTheFlagIsUpAtOnce) {
   EXPECT_TRUE(scene.illegal[6]);
 }
 
-TEST_P(RecoveryTest, ThePrimaryComesBackOffAndStandsInForItsStandby) {
-  fail_first_in(3);
-  scene.cycle_of_spare = [](Cycle c) -> Outcome { return c.count() == 5 ? fault("no current") : ok(); };
-  go(milliseconds(12), {signal(milliseconds(6), Signal::kClear, kFirst)});
-  EXPECT_EQ(state(kFirst), chimera::State::kOn);
-  EXPECT_EQ(state(kSpare), chimera::State::kError);
-  EXPECT_EQ(scene.ons_of_first, 2);
-  EXPECT_EQ(task(kFirst).profile.takeovers, 1u);
-  EXPECT_FALSE(was_up());
-}
-
 TEST_P(RecoveryTest, TheFourthFailureInTenSecondsStaysAndTheFlagIsUp) {
   restarts_ = {{kFirst, 100, seconds(10), OnFault::kError}};
   standbys_ = {{kFirst, kSpare}};
@@ -264,12 +233,6 @@ TEST_P(RecoveryTest, ATaskThatWasTurnedOffIsNotReplaced) {
   EXPECT_EQ(state(kFirst), chimera::State::kOff);
   EXPECT_EQ(state(kSpare), chimera::State::kOff);
   EXPECT_TRUE(set_->flag().is_up());
-}
-
-TEST_P(RecoveryTest, AStandbyIsRefusedBesideItsPrimary) {
-  go(milliseconds(10), {signal(milliseconds(3), Signal::kOn, kSpare)});
-  EXPECT_EQ(state(kSpare), chimera::State::kOff);
-  EXPECT_FALSE(was_up());
 }
 
 TEST_P(RecoveryTest, ATakeoverAbortsASwitchThatIsNotCommittedAndLeavesACommittedOne) {

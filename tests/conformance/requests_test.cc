@@ -16,7 +16,7 @@ namespace {
 /// Actions of the components of a run. One run at a time.
 struct Scene {
   std::function<void(Cycle)> first, second;  // in the cycles of the two that ask
-  std::function<Outcome(Cycle)> on_of_high, cycle_of_low;
+  std::function<Outcome(Cycle)> on_of_high;
   std::vector<bool> answers;
 };
 Scene scene;
@@ -37,10 +37,7 @@ struct Second {
 
 struct Low {
   Out<double> level{"level", "1", initial = 0.0};
-  Outcome cycle(Cycle c) {
-    *level = 1;
-    return scene.cycle_of_low ? scene.cycle_of_low(c) : ok();
-  }
+  void cycle(Cycle) { *level = 1; }
 };
 
 struct High {
@@ -52,55 +49,35 @@ struct High {
 constexpr TaskId kFirst{0u}, kSecond{1u}, kLow{2u}, kHigh{3u}, kOther{4u};
 constexpr std::uint32_t kLowSet = 0, kHighSet = 1, kOtherSet = 2;
 
-class Requests : public ::testing::TestWithParam<Kind> {
+class Requests : public OneContext {
  protected:
   Requests() { scene = {}; }
+  void describe(testing::TestApplication& app) override {
+    app.add("first", testing::component<First>("first")).budget = microseconds(20);
+    app.add("second", testing::component<Second>("second")).budget = microseconds(20);
+    app.add("low", testing::component<Low>("low")).budget = microseconds(20);
+    app.add("high", testing::component<High>("high")).budget = microseconds(20);
+    app.add("other", testing::component<Low>("low")).budget = microseconds(20);
+    for (TaskSpec& task : app.tasks) task.rtpu = RtpuId{0u};
+    if (change_) change_(app);
+    app.make({kFirst, kSecond, kLow}, false);
+    app.spec.sets = std::span(sets_).first(n_sets_);
+  }
   std::span<const SwitchReceipt> go(Nanoseconds duration, const std::vector<ScriptAct>& acts = {}) {
-    acts_ = acts;
-    runner_.reset();
-    set_.reset();
-    app_ = std::make_unique<testing::TestApplication>();
-    app_->add("first", testing::component<First>("first")).budget = microseconds(20);
-    app_->add("second", testing::component<Second>("second")).budget = microseconds(20);
-    app_->add("low", testing::component<Low>("low")).budget = microseconds(20);
-    app_->add("high", testing::component<High>("high")).budget = microseconds(20);
-    app_->add("other", testing::component<Low>("low")).budget = microseconds(20);
-    for (TaskSpec& task : app_->tasks) task.rtpu = RtpuId{0u};
-    if (change_) change_(*app_);
-    app_->make({kFirst, kSecond, kLow}, false);
-    app_->spec.sets = std::span(sets_).first(n_sets_);
-    set_ = *HeapTaskSet::create(app_->spec, app_->components);
-    runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
-    EXPECT_TRUE(runner_->start());
-    EXPECT_EQ(runner_->run(duration), end_);
+    const auto receipts = OneContext::go(duration, acts);
     for (const Task& task : set_->tasks())
-      EXPECT_TRUE(is_late_ || task.profile.dropped + task.profile.missed == 0) << task.spec->name;
-    return runner_->receipts();
+      EXPECT_EQ(task.profile.dropped + task.profile.missed, 0u) << task.spec->name;
+    return receipts;
   }
   static void ask(const Cycle& c, const char* name) { scene.answers.push_back(c.request(name)); }
-  bool is_on(TaskId task) const { return set_->tasks()[task.index].state == chimera::State::kOn; }
-  static ScriptAct to(std::uint32_t set, Nanoseconds at) {
-    ScriptAct act;
-    act.at = at;
-    act.kind = ScriptAct::Kind::kSwitch;
-    act.set = set;
-    return act;
-  }
 
   std::vector<TaskId> low_{kFirst, kSecond, kLow}, high_{kFirst, kSecond, kHigh}, other_{kFirst, kSecond, kOther};
   NamedSet sets_[3] = {{"low", low_}, {"high", high_}, {"other", other_}};
   std::size_t n_sets_ = 3;
   std::function<void(testing::TestApplication&)> change_;
-  bool is_late_ = false;
-  RunEnd end_ = RunEnd::kTime;
-  std::vector<ScriptAct> acts_;
-  std::unique_ptr<testing::TestApplication> app_;
-  std::unique_ptr<HeapTaskSet> set_;
-  std::unique_ptr<Runner> runner_;
 };
 
-INSTANTIATE_TEST_SUITE_P(All, Requests, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
-                         [](const auto& one) { return kind_name(one.param); });
+INSTANTIATE_TEST_SUITE_P(All, Requests, kEachExecutor, name_of_kind);
 
 // `high` has its first cycle half a second after the change. The next request does not wait for it.
 TEST_P(Requests, DoNotWaitForFirstCycles) {
@@ -218,22 +195,6 @@ TEST_P(Requests, DuringASwitchTheLastRequestIsCarriedOutNext) {
   EXPECT_TRUE(is_on(kOther));
 }
 
-TEST_P(Requests, ARequestOfAnOperatorIsRefusedDuringASwitch) {
-  scene.on_of_high = [](Cycle c) {
-    c.spend(microseconds(1500));
-    return ok();
-  };
-  scene.first = [](Cycle c) {
-    if (c.count() == 5) ask(c, "high");
-  };
-  const auto receipts = go(milliseconds(15), {to(kOtherSet, milliseconds(6))});
-  ASSERT_EQ(receipts.size(), 2u);
-  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
-  EXPECT_EQ(receipts[1].end, SwitchEnd::kRefused);
-  EXPECT_EQ(receipts[1].why, NoSwitch::kUnderWay);
-  EXPECT_EQ(receipts[1].cause, SwitchCause::kScript);
-}
-
 TEST_P(Requests, ARequestOfAnArmedTaskIsSentAtTheChangeOnly) {
   scene.on_of_high = [](Cycle c) {
     ask(c, "other");
@@ -317,62 +278,6 @@ TEST_P(Requests, WhereThereIsOneConfigurationAreRefused) {
   EXPECT_TRUE(go(milliseconds(2)).empty());
   EXPECT_EQ(scene.answers, (std::vector<bool>{false, false}));
   EXPECT_STREQ(set_->tasks()[kFirst.index].faults.note, "asks for the configuration 'low': it is the only one");
-}
-
-TEST_P(Requests, AReactionOnMissSwitchesAfterTheLateCycle) {
-  change_ = [](testing::TestApplication& app) {
-    app.tasks[kLow.index].on_miss = OnMiss::kSwitch;
-    app.tasks[kLow.index].on_miss_set = kHighSet;
-    app.tasks[kLow.index].deadline = microseconds(500);
-  };
-  is_late_ = true;
-  scene.cycle_of_low = [](Cycle c) {
-    if (c.count() == 3) c.spend(microseconds(600));
-    return ok();
-  };
-  const auto receipts = go(milliseconds(10));
-  ASSERT_EQ(receipts.size(), 1u);
-  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
-  EXPECT_EQ(receipts[0].cause, SwitchCause::kMiss);
-  EXPECT_EQ(receipts[0].by, kLow);
-  EXPECT_LT(receipts[0].at, milliseconds(4));
-  EXPECT_EQ(set_->tasks()[kLow.index].profile.cycles, 4u) << "the late one is published";
-  EXPECT_TRUE(is_on(kHigh));
-}
-
-TEST_P(Requests, AReactionOnOverrunSwitchesAfterTheLongCycle) {
-  change_ = [](testing::TestApplication& app) {
-    app.tasks[kLow.index].on_overrun = OnMiss::kSwitch;
-    app.tasks[kLow.index].on_overrun_set = kOtherSet;
-  };
-  scene.cycle_of_low = [](Cycle c) {
-    if (c.count() == 3) c.spend(microseconds(30));
-    return ok();
-  };
-  const auto receipts = go(milliseconds(10));
-  ASSERT_EQ(receipts.size(), 1u);
-  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
-  EXPECT_EQ(receipts[0].cause, SwitchCause::kOverrun);
-  EXPECT_EQ(receipts[0].after, kOtherSet);
-  EXPECT_TRUE(is_on(kOther));
-}
-
-TEST_P(Requests, AReactionOnFaultLeavesTheTaskInError) {
-  change_ = [](testing::TestApplication& app) {
-    app.tasks[kLow.index].on_fault = OnFault::kSwitch;
-    app.tasks[kLow.index].on_fault_set = kHighSet;
-  };
-  scene.cycle_of_low = [](Cycle c) -> Outcome { return c.count() == 3 ? fault("no current") : ok(); };
-  const auto receipts = go(milliseconds(10));
-  ASSERT_EQ(receipts.size(), 1u);
-  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
-  EXPECT_EQ(receipts[0].cause, SwitchCause::kFault);
-  EXPECT_EQ(receipts[0].by, kLow);
-  EXPECT_EQ(receipts[0].before, kNoSet) << "a member was already in ERROR";
-  EXPECT_LT(receipts[0].at, milliseconds(4));
-  EXPECT_EQ(set_->tasks()[kLow.index].state, chimera::State::kError);
-  EXPECT_TRUE(is_on(kHigh));
-  EXPECT_FALSE(set_->flag().is_up());
 }
 
 TEST_P(Requests, AreNotMadeByAFaultThatLeavesFlag) {

@@ -8,7 +8,9 @@
 #include "chimera/platform/clock.h"
 #include "chimera/runtime/executive/executive.h"
 #include "chimera/runtime/hosted/asked_sets.h"
+#include "chimera/runtime/hosted/heap_task_set.h"
 #include "chimera/runtime/hosted/refusal_text.h"
+#include "chimera/runtime/testing/test_application.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
 #include "tests/conformance/toy.h"
 
@@ -30,6 +32,10 @@ enum class Kind { kExecutiveOnTwin, kVirtual, kPreemptive };
 inline const char* kind_name(Kind kind) {
   return kind == Kind::kExecutiveOnTwin ? "executive" : kind == Kind::kVirtual ? "virtual" : "preemptive";
 }
+
+/// For suites over all executors of one context.
+inline const auto kEachExecutor = ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive);
+inline std::string name_of_kind(const ::testing::TestParamInfo<Kind>& one) { return kind_name(one.param); }
 
 /// For suites over policies.
 inline std::string name_of(const ::testing::TestParamInfo<Policy>& one) {
@@ -90,6 +96,52 @@ class Runner {
   AskedSets asked_;
   std::unique_ptr<Executive> executive_;
   std::unique_ptr<VirtualExecutor> virtual_;
+};
+
+/// A suite over all executors of one context. Its tests run an application of the suite with acts of a script.
+class OneContext : public ::testing::TestWithParam<Kind> {
+ protected:
+  /// Adds the tasks of the application, their order and their sets.
+  virtual void describe(testing::TestApplication& app) = 0;
+
+  void build(const std::vector<ScriptAct>& acts = {}) {
+    acts_ = acts;
+    runner_.reset();
+    set_.reset();
+    app_ = std::make_unique<testing::TestApplication>();
+    describe(*app_);
+    set_ = *HeapTaskSet::create(app_->spec, app_->components);
+    runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
+  }
+  /// Starts what was built, and answers the receipts.
+  std::span<const SwitchReceipt> run(Nanoseconds duration) {
+    EXPECT_TRUE(runner_->start());
+    EXPECT_EQ(runner_->run(duration), end_);
+    return runner_->receipts();
+  }
+  std::span<const SwitchReceipt> go(Nanoseconds duration, const std::vector<ScriptAct>& acts = {}) {
+    build(acts);
+    return run(duration);
+  }
+  static ScriptAct to(std::uint32_t set, Nanoseconds at) {
+    ScriptAct act;
+    act.at = at;
+    act.kind = ScriptAct::Kind::kSwitch;
+    act.set = set;
+    return act;
+  }
+  static ScriptAct signal(Nanoseconds at, Signal signal, TaskId task) {
+    return {at, ScriptAct::Kind::kSignal, signal, task};
+  }
+  const Task& task(TaskId id) const { return set_->tasks()[id.index]; }
+  chimera::State state(TaskId id) const { return task(id).state; }
+  bool is_on(TaskId id) const { return state(id) == chimera::State::kOn; }
+
+  RunEnd end_ = RunEnd::kTime;
+  std::vector<ScriptAct> acts_;
+  std::unique_ptr<testing::TestApplication> app_;
+  std::unique_ptr<HeapTaskSet> set_;
+  std::unique_ptr<Runner> runner_;
 };
 
 }  // namespace chimera::toy

@@ -81,42 +81,26 @@ constexpr TaskId kHand{0u}, kDrill{1u}, kArm{2u};
 constexpr std::uint32_t kWithHand = 0, kWithDrill = 1;
 using Story = std::vector<std::string>;
 
-class SameResource : public ::testing::TestWithParam<Kind> {
+class SameResource : public OneContext {
  protected:
   void SetUp() override { device = {}; }
+  void describe(testing::TestApplication& app) override {
+    app.add("hand", testing::component<Hand>("hand")).budget = microseconds(20);
+    app.add("drill", testing::component<Drill>("drill"), drill_period_).budget = microseconds(20);
+    app.add("arm", testing::component<Arm>("arm")).budget = microseconds(20);
+    for (const TaskId tool : {kHand, kDrill}) {
+      app.port(tool.index, 1).value = text_;
+      app.port(tool.index, 1).shared = is_shared_;
+    }
+    app.make({kHand, kArm}, false);
+    app.spec.sets = sets_;
+    app.spec.standbys = standbys_;
+  }
   /// Makes it anew; the start may be refused.
   Result<void> start(const std::vector<ScriptAct>& acts) {
-    acts_ = acts;
-    runner_.reset();
-    set_.reset();
-    app_ = std::make_unique<testing::TestApplication>();
-    app_->add("hand", testing::component<Hand>("hand")).budget = microseconds(20);
-    app_->add("drill", testing::component<Drill>("drill"), drill_period_).budget = microseconds(20);
-    app_->add("arm", testing::component<Arm>("arm")).budget = microseconds(20);
-    for (const TaskId tool : {kHand, kDrill}) {
-      app_->port(tool.index, 1).value = text_;
-      app_->port(tool.index, 1).shared = is_shared_;
-    }
-    app_->make({kHand, kArm}, false);
-    app_->spec.sets = sets_;
-    app_->spec.standbys = standbys_;
-    set_ = *HeapTaskSet::create(app_->spec, app_->components);
-    runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
+    build(acts);
     return runner_->start();
   }
-  std::span<const SwitchReceipt> go(Nanoseconds duration, const std::vector<ScriptAct>& acts) {
-    EXPECT_TRUE(start(acts));
-    EXPECT_EQ(runner_->run(duration), RunEnd::kTime);
-    return runner_->receipts();
-  }
-  static ScriptAct to(std::uint32_t set, Nanoseconds at) {
-    ScriptAct act;
-    act.at = at;
-    act.kind = ScriptAct::Kind::kSwitch;
-    act.set = set;
-    return act;
-  }
-  chimera::State state(TaskId id) const { return set_->tasks()[id.index].state; }
   Story states() const {
     Story all;
     for (const TaskId id : {kHand, kDrill, kArm}) all.emplace_back(state_name(state(id)));
@@ -129,15 +113,9 @@ class SameResource : public ::testing::TestWithParam<Kind> {
   std::vector<TaskId> with_hand_{kHand, kArm}, with_drill_{kDrill, kArm};
   std::vector<StandbySpec> standbys_;
   NamedSet sets_[2] = {{"hand", with_hand_}, {"drill", with_drill_}};
-  std::vector<ScriptAct> acts_;
-  std::unique_ptr<testing::TestApplication> app_;
-  std::unique_ptr<HeapTaskSet> set_;
-  std::unique_ptr<Runner> runner_;
 };
 
-INSTANTIATE_TEST_SUITE_P(All, SameResource,
-                         ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
-                         [](const auto& one) { return kind_name(one.param); });
+INSTANTIATE_TEST_SUITE_P(All, SameResource, kEachExecutor, name_of_kind);
 
 TEST_P(SameResource, ASwitchClosesTheDeviceBeforeItOpensItForTheOther) {
   const auto receipts = go(milliseconds(40), {to(kWithDrill, milliseconds(5)), to(kWithHand, milliseconds(25))});

@@ -92,16 +92,12 @@ struct Bystander {
 constexpr TaskId kLight{0u}, kHeavy{1u}, kArm{2u}, kLaw{3u}, kScreen{4u}, kBystander{5u};
 constexpr std::uint32_t kWithLight = 0, kWithHeavy = 1, kWithout = 2;
 
-class SlowSwitches : public ::testing::TestWithParam<Kind> {
+class SlowSwitches : public OneContext {
  protected:
   void SetUp() override { tools = {}; }
-  std::span<const SwitchReceipt> go(Nanoseconds duration, const std::vector<ScriptAct>& acts) {
-    acts_ = acts;
-    runner_.reset();
-    set_.reset();
-    app_ = std::make_unique<testing::TestApplication>();
+  void describe(testing::TestApplication& app) override {
     const auto add = [&](const char* name, const chimera_component* what, std::int64_t ms = 1) {
-      app_->add(name, what, milliseconds(ms)).budget = microseconds(20);
+      app.add(name, what, milliseconds(ms)).budget = microseconds(20);
     };
     add("light", testing::component<Light>("light"));
     add("heavy", testing::component<Heavy>("heavy"));
@@ -109,21 +105,9 @@ class SlowSwitches : public ::testing::TestWithParam<Kind> {
     add("law", testing::component<Law>("law"));
     add("screen", testing::component<Screen>("screen"));
     add("bystander", testing::component<Bystander>("bystander"));
-    app_->extend(kScreen.index, 0, 4, "axes");
-    app_->make({kLight, kArm, kLaw, kScreen, kBystander}, false);
-    app_->spec.sets = sets_;
-    set_ = *HeapTaskSet::create(app_->spec, app_->components);
-    runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
-    EXPECT_TRUE(runner_->start());
-    EXPECT_EQ(runner_->run(duration), RunEnd::kTime);
-    return runner_->receipts();
-  }
-  static ScriptAct to(std::uint32_t set, Nanoseconds at) {
-    ScriptAct act;
-    act.at = at;
-    act.kind = ScriptAct::Kind::kSwitch;
-    act.set = set;
-    return act;
+    app.extend(kScreen.index, 0, 4, "axes");
+    app.make({kLight, kArm, kLaw, kScreen, kBystander}, false);
+    app.spec.sets = sets_;
   }
   bool are_on(const std::vector<TaskId>& tasks) const {
     for (const Task& task : set_->tasks())
@@ -133,15 +117,9 @@ class SlowSwitches : public ::testing::TestWithParam<Kind> {
   std::vector<TaskId> with_light_{kLight, kArm, kLaw, kScreen, kBystander};
   std::vector<TaskId> with_heavy_{kHeavy, kArm, kLaw, kScreen, kBystander}, without_{kBystander};
   NamedSet sets_[3] = {{"light", with_light_}, {"heavy", with_heavy_}, {"without", without_}};
-  std::vector<ScriptAct> acts_;
-  std::unique_ptr<testing::TestApplication> app_;
-  std::unique_ptr<HeapTaskSet> set_;
-  std::unique_ptr<Runner> runner_;
 };
 
-INSTANTIATE_TEST_SUITE_P(All, SlowSwitches,
-                         ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
-                         [](const auto& one) { return kind_name(one.param); });
+INSTANTIATE_TEST_SUITE_P(All, SlowSwitches, kEachExecutor, name_of_kind);
 
 TEST_P(SlowSwitches, UsersThatStayAreReinitialisedInOrderUnderTheFlag) {
   const auto receipts = go(milliseconds(40), {to(kWithHeavy, microseconds(9600))});

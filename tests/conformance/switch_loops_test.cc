@@ -96,8 +96,7 @@ class SwitchLoops : public ::testing::TestWithParam<Kind> {
   std::unique_ptr<Runner> runner_;
 };
 
-INSTANTIATE_TEST_SUITE_P(All, SwitchLoops, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
-                         [](const auto& one) { return kind_name(one.param); });
+INSTANTIATE_TEST_SUITE_P(All, SwitchLoops, kEachExecutor, name_of_kind);
 
 TEST_P(SwitchLoops, ExchangedTasksOfALoopArmWithTheValuesThatStand) {
   const TaskId p1a = add_link("p1a", testing::component<Five>("five"), "v2", "v1");

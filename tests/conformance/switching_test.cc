@@ -101,43 +101,25 @@ struct Two {
 constexpr TaskId kPlant{0u}, kBeacon{1u}, kOne{2u}, kObserver{3u}, kTwo{4u};
 constexpr std::uint32_t kDirect = 0, kObserved = 1, kBare = 2;
 
-class Switches : public ::testing::TestWithParam<Kind> {
+class Switches : public OneContext {
  protected:
   void SetUp() override { scene = {}; }
-  void build() {
-    set_.reset();
-    app_ = std::make_unique<testing::TestApplication>();
-    app_->add("plant", testing::component<Plant>("plant")).budget = microseconds(100);
-    app_->add("beacon", testing::component<Beacon>("beacon")).budget = microseconds(50);
-    app_->add("one", testing::component<One>("one")).budget = microseconds(100);
-    app_->add("observer", testing::component<Observer>("observer")).budget = microseconds(50);
-    app_->add("two", testing::component<Two>("two")).budget = microseconds(50);
-    app_->tasks[kOne.index].deadline = deadline_of_one_;
-    if (limit_ > 0) app_->port(kTwo.index, 1).max_step = std::as_bytes(std::span(&limit_, 1));
-    app_->make({kPlant, kBeacon, kOne}, false);
-    app_->spec.sets = sets_;
-    set_ = *HeapTaskSet::create(app_->spec, app_->components);
-  }
-  /// Runs it all with `acts` and answers the receipts.
-  std::span<const SwitchReceipt> go(Nanoseconds duration, const std::vector<ScriptAct>& acts) {
-    acts_ = acts;
-    runner_.reset();
-    build();
-    runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
-    EXPECT_TRUE(runner_->start());
-    EXPECT_EQ(runner_->run(duration), RunEnd::kTime);
-    return runner_->receipts();
-  }
-  static ScriptAct to(std::uint32_t set, Nanoseconds at) {
-    ScriptAct act;
-    act.at = at;
-    act.kind = ScriptAct::Kind::kSwitch;
-    act.set = set;
-    return act;
+  void describe(testing::TestApplication& app) override {
+    app.add("plant", testing::component<Plant>("plant")).budget = microseconds(100);
+    app.add("beacon", testing::component<Beacon>("beacon")).budget = microseconds(50);
+    app.add("one", testing::component<One>("one")).budget = microseconds(100);
+    app.add("observer", testing::component<Observer>("observer")).budget = budget_of_observer_;
+    app.add("two", testing::component<Two>("two")).budget = microseconds(50);
+    app.tasks[kOne.index].deadline = deadline_of_one_;
+    app.tasks[kBeacon.index].offset = offset_of_beacon_;
+    for (TaskSpec& task : app.tasks)
+      if (!judges_deadlines_) task.on_miss = OnMiss::kAbort;
+    if (limit_ > 0) app.port(kTwo.index, 1).max_step = std::as_bytes(std::span(&limit_, 1));
+    app.make({kPlant, kBeacon, kOne}, false);
+    app.spec.sets = sets_;
   }
   /// Methods wait for an idle processor.
   bool needs_gaps() const { return GetParam() != Kind::kPreemptive; }
-  chimera::State state(TaskId task) const { return set_->tasks()[task.index].state; }
   const TaskPart& part(const SwitchReceipt& receipt, TaskId task) const {
     return *std::ranges::find(receipt.tasks, task, &TaskPart::task);
   }
@@ -162,14 +144,11 @@ class Switches : public ::testing::TestWithParam<Kind> {
   NamedSet sets_[3] = {{"direct", direct_}, {"observed", observed_}, {"bare", bare_}};
   double limit_ = 0;
   Nanoseconds deadline_of_one_ = milliseconds(1);
-  std::vector<ScriptAct> acts_;
-  std::unique_ptr<testing::TestApplication> app_;
-  std::unique_ptr<HeapTaskSet> set_;
-  std::unique_ptr<Runner> runner_;
+  Nanoseconds budget_of_observer_ = microseconds(50), offset_of_beacon_;
+  bool judges_deadlines_ = true;
 };
 
-INSTANTIATE_TEST_SUITE_P(All, Switches, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
-                         [](const auto& one) { return kind_name(one.param); });
+INSTANTIATE_TEST_SUITE_P(All, Switches, kEachExecutor, name_of_kind);
 
 TEST_P(Switches, ArmBesideThePredecessorCommitAtOneInstantAndTurnOffBehindIt) {
   const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600))});
@@ -300,21 +279,7 @@ TEST_P(Switches, TheReceiptHasTheLongestDelayOfAStart) {
   EXPECT_LE(before, microseconds(200));
 }
 
-TEST_P(Switches, OneSwitchAtATimeAndNoneToTheSetInForce) {
-  scene.on_takes = microseconds(600);
-  const auto receipts = go(milliseconds(20), {to(kDirect, milliseconds(2)), to(kObserved, microseconds(5600)),
-                                              to(kDirect, microseconds(5610)), to(kDirect, milliseconds(9))});
-  ASSERT_EQ(receipts.size(), 4u);
-  EXPECT_EQ(receipts[0].end, SwitchEnd::kNothingToDo);
-  EXPECT_EQ(receipts[1].end, SwitchEnd::kDone);
-  EXPECT_EQ(receipts[2].end, SwitchEnd::kRefused);
-  EXPECT_EQ(receipts[2].why, NoSwitch::kUnderWay);
-  EXPECT_EQ(receipts[3].end, SwitchEnd::kDone);
-  EXPECT_EQ(receipts[3].number, 3u);
-  EXPECT_EQ(state(kOne), chimera::State::kOn);
-}
-
-// `on` of two takes longer than expected: jobs that were released during it publish the values of a run without it.
+// `on` of two takes longer than was to be expected: jobs released during it end as without a switch.
 TEST_P(Switches, AnOnThatOverrunsItsGapDoesNotChangeReleasedJobs) {
   go(milliseconds(20), {});
   const Log u = scene.u;
@@ -370,16 +335,6 @@ TEST_P(Switches, OffOfAnArmedTaskTakesItsArmingBack) {
   EXPECT_EQ(state(kOne), chimera::State::kOn);
 }
 
-TEST_P(Switches, ATaskInErrorIsNamed) {
-  scene.on_of_two_fails = true;
-  const auto receipts = go(milliseconds(20), {to(kObserved, milliseconds(4)), to(kObserved, milliseconds(9))});
-  EXPECT_EQ(receipts[0].why, NoSwitch::kOnFailed);
-  EXPECT_EQ(state(kTwo), chimera::State::kError);
-  EXPECT_EQ(receipts[1].end, SwitchEnd::kRefused);
-  EXPECT_EQ(receipts[1].why, NoSwitch::kInError);
-  EXPECT_EQ(receipts[1].task, kTwo);
-}
-
 TEST_P(Switches, TheEndOfTheRunTakesAnUnfinishedOneBack) {
   go(microseconds(5650), {to(kObserved, microseconds(5640))});
   runner_->shut_down();
@@ -398,86 +353,28 @@ TEST_P(Switches, ARaisedFlagUndoesAnUncommittedSwitch) {
   EXPECT_EQ(receipts[0].why, NoSwitch::kFlagRaised);
 }
 
-// A switch that would break a guarantee with both sets ON is slow: leaving tasks are OFF before arriving ones are ON.
-TEST_P(Switches, ASwitchThatRisksADeadlineIsSlow) {
-  build();
-  acts_ = {to(kObserved, milliseconds(5))};
-  app_->tasks[kObserver.index].budget = milliseconds(2);
-  runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
-  EXPECT_TRUE(runner_->start());
-  EXPECT_EQ(runner_->run(milliseconds(60)), RunEnd::kTime);
-  const SwitchReceipt& receipt = runner_->receipts()[0];
-  ASSERT_EQ(receipt.end, SwitchEnd::kDone) << static_cast<int>(receipt.why);
-  EXPECT_EQ(receipt.way.slow, kSlowForDeadlines | (needs_gaps() ? kSlowForGap : 0));
-  EXPECT_TRUE(receipt.way.deadline.task.is_valid());
-  EXPECT_EQ(receipt.before, kDirect);
-  EXPECT_GT(receipt.flag, Nanoseconds{});
-  EXPECT_EQ(scene.story, (std::vector<std::string>{"on one", "off one", "on observer", "on two"}));
-}
-
-// Two acts of one instant: the second one finds a plan that is announced and not taken up.
-TEST_P(Switches, RefusesSecondSwitchAtSameInstant) {
-  build();
-  for (const std::uint32_t second : {kDirect, kObserved}) {
-    build();
-    acts_ = {to(kObserved, milliseconds(5)), to(second, milliseconds(5))};
-    runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
-    EXPECT_TRUE(runner_->start());
-    EXPECT_EQ(runner_->run(milliseconds(30)), RunEnd::kTime);
-    ASSERT_EQ(runner_->receipts().size(), 2u);
-    EXPECT_EQ(runner_->receipts()[0].end, SwitchEnd::kDone);
-    EXPECT_EQ(runner_->receipts()[0].tasks.size(), 5u);
-    EXPECT_EQ(runner_->receipts()[1].end, SwitchEnd::kRefused);
-    EXPECT_EQ(runner_->receipts()[1].why, NoSwitch::kUnderWay);
-  }
-}
-
-// `on` is assumed to need the budget. If the budget is above the shortest period, the switch is slow at once.
-TEST_P(Switches, AnOnThatFitsNoGapMakesTheSwitchSlowAtOnce) {
-  build();
-  acts_ = {to(kObserved, milliseconds(5))};
-  app_->tasks[kObserver.index].budget = milliseconds(2);
-  for (TaskSpec& task : app_->tasks) task.on_miss = OnMiss::kAbort;  // no deadline is judged
-  runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
-  EXPECT_TRUE(runner_->start());
-  EXPECT_EQ(runner_->run(milliseconds(30)), RunEnd::kTime);
-  const SwitchReceipt& receipt = runner_->receipts()[0];
-  EXPECT_EQ(receipt.end, SwitchEnd::kDone);
-  EXPECT_EQ(receipt.way.slow, needs_gaps() ? kSlowForGap : 0);
-  EXPECT_EQ(receipt.way.gapless, needs_gaps() ? kObserver : TaskId());
-  EXPECT_EQ(receipt.way.needed, needs_gaps() ? milliseconds(2) : Nanoseconds{});
-  EXPECT_EQ(receipt.tries, 1u);
-  EXPECT_LE(receipt.at - receipt.asked, milliseconds(3));
-}
-
 // Held up for 8 ms, it needs 4.8 ms after the next call, and 0.6 ms after the fourth.
 TEST_P(Switches, AnOnThatWasHeldUpOnceIsNotSlowForEver) {
-  build();
+  std::vector<ScriptAct> acts;
   for (int n = 0; n < 5; ++n)
-    acts_.insert(acts_.end(), {to(kObserved, milliseconds(5 + 20 * n)), to(kDirect, milliseconds(15 + 20 * n))});
-  for (TaskSpec& task : app_->tasks) task.on_miss = OnMiss::kAbort;  // no deadline is judged
-  runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
+    acts.insert(acts.end(), {to(kObserved, milliseconds(5 + 20 * n)), to(kDirect, milliseconds(15 + 20 * n))});
+  judges_deadlines_ = false;
+  build(acts);
   set_->tasks()[kObserver.index].profile.add_call(Method::kOn, milliseconds(8));
-  EXPECT_TRUE(runner_->start());
-  EXPECT_EQ(runner_->run(milliseconds(110)), RunEnd::kTime);
-  ASSERT_EQ(runner_->receipts().size(), 10u);
-  EXPECT_EQ(runner_->receipts()[0].way.slow, needs_gaps() ? kSlowForGap : 0);
-  EXPECT_EQ(runner_->receipts()[0].way.needed, needs_gaps() ? microseconds(9600) : Nanoseconds{});
-  EXPECT_EQ(runner_->receipts()[8].way.slow, 0u);
-  for (const SwitchReceipt& receipt : runner_->receipts()) EXPECT_EQ(receipt.end, SwitchEnd::kDone);
+  const auto receipts = run(milliseconds(110));
+  ASSERT_EQ(receipts.size(), 10u);
+  EXPECT_EQ(receipts[0].way.slow, needs_gaps() ? kSlowForGap : 0);
+  EXPECT_EQ(receipts[0].way.needed, needs_gaps() ? microseconds(9600) : Nanoseconds{});
+  EXPECT_EQ(receipts[8].way.slow, 0u);
+  for (const SwitchReceipt& receipt : receipts) EXPECT_EQ(receipt.end, SwitchEnd::kDone);
 }
 
-// Without a gap that `on` fits in, the switch becomes slow after 10 s.
+// Without a gap that `on` would fit in, it goes the slow way after 10 s.
 TEST_P(Switches, WithoutAGapTheSwitchIsSlowAfterTenSeconds) {
-  build();
-  acts_ = {to(kObserved, milliseconds(5))};
-  app_->tasks[kObserver.index].budget = microseconds(600);
-  app_->tasks[kBeacon.index].offset = microseconds(500);
-  for (TaskSpec& task : app_->tasks) task.on_miss = OnMiss::kAbort;  // no deadline is judged
-  runner_ = std::make_unique<Runner>(*set_, GetParam(), Policy::kEdf, acts_);
-  EXPECT_TRUE(runner_->start());
-  EXPECT_EQ(runner_->run(seconds(11)), RunEnd::kTime);
-  const SwitchReceipt& receipt = runner_->receipts()[0];
+  judges_deadlines_ = false;
+  budget_of_observer_ = microseconds(600);
+  offset_of_beacon_ = microseconds(500);
+  const SwitchReceipt& receipt = go(seconds(11), {to(kObserved, milliseconds(5))})[0];
   EXPECT_EQ(receipt.end, SwitchEnd::kDone);
   if (!needs_gaps()) {
     EXPECT_EQ(receipt.way.slow, 0);

@@ -22,9 +22,6 @@ CAMPAIGNS = {
     "exhaustion": ((("exhaustion_test.py", 0),), "failed calls"),
     "logging": ((("logging_test.py", 1),), None),
     "preemptive": ((("preemptive_test.py", 1),), "bad jobs"),
-    "switch": ((("switch_campaign.py", 10),), "kills"),
-    "standby": ((("standby_campaign.py", 20),), "kills"),
-    "receipts": ((("receipts_campaign.py", 30),), "receipts"),
     "clocks": ((("clocks_test.py", 300),), "jumps"),
     "numbers": ((("numbers_test.py", 50),), "restarts"),
 }

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a subsystem ends: in order, whichever process ends it, with nothing left behind."""
 import signal
+import subprocess
 import unittest
 
-from system import CHAIN, System, await_that
+from system import BUILD, CHAIN, System, await_that
 
 
 class Ending(unittest.TestCase):
@@ -58,6 +59,10 @@ class Ending(unittest.TestCase):
                 for task in "abc":
                     system.await_state(task, "ON")
             await_that(lambda: system.descriptors(system.process.pid) <= before, f"at most {before} descriptors")
+
+    def test_programs_of_a_subsystem_are_not_for_people(self):
+        for program in ("chimera-manager", "chimera-rtpu"):
+            self.assertEqual(subprocess.run([BUILD / "bin" / program], capture_output=True).returncode, 2, program)
 
 
 if __name__ == "__main__":

@@ -91,21 +91,6 @@ class Faults(unittest.TestCase):
             self.assertGreater(system.value("count"), count)
             self.assertTrue(system.call("hello")["manager"]["pid"])
 
-    def test_rows_6_and_11_the_next_manager_knows_the_tasks_of_an_rtpu_that_scribbled(self):
-        with System(APPLICATION.replace("HOW", "scribble")) as system:
-            before, unit, manager = system.task("steady"), system.rtpu("second"), system.pids()["manager"]
-            self.assertTrue(system.kill(manager, signal.SIGSTOP))
-            system.arm()
-            await_that(lambda: unit["pid"] not in system.left_over(), "the end of the rtpu")
-            system.disarm()
-            system.kill(manager)  # unless its keeper did: it kills a manager that is stopped
-            system.disconnect()
-            system.await_restart("second", unit)
-            system.await_state("victim", "ON")
-            system.await_state("beside", "ON")
-            self.steady_goes_on(system, before)
-            self.assertIn("memory cannot be read", str(system.texts("fault")))
-
     def test_row_11_the_manager_may_die(self):
         with System(APPLICATION.replace("HOW", "segv")) as system:
             before = {t["task"]: t["incarnation"] for t in system.call("status")["tasks"]}

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A standby takes over in real processes. What is decided, with and without a manager: tests/stepped/standby_test.cc.
-The campaign `process_standby` kills at random."""
+"""A standby takes over in real processes. Decisions, with and without a manager: tests/stepped/standby_test.cc."""
 import signal
 import sys
 import unittest

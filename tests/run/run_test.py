@@ -48,27 +48,6 @@ class Run(unittest.TestCase):
         self.assertRegex(said, r"\none   ON  +\d+ .*\ntwo   ON  +\d+ .*\n"
                                r"holds: two_count >= 1 \(two_count is \d+\)\n(not )?clean: .*\n$")
 
-    def test_an_rtpu_that_is_given_up_comes_back_by_the_remedy_of_status(self):
-        with System(ONE) as system:
-            self.assertEqual(system.call("status")["flag"], {"up": False, "by": []})
-            for death in range(4):
-                unit = await_that(lambda: (u := system.rtpu("first"))["alive"] and u["restarts"] == death and u)
-                self.assertTrue(system.kill(unit["pid"]))
-            await_that(lambda: system.rtpu("first")["given_up"], "giving up")
-            self.assertEqual(system.call("status")["flag"], {"up": True, "by": ["first"]})
-            self.assertEqual(system.chimera("on", "one", code=1).stderr,
-                             "[subject] one is in state ERROR, where on is not legal; type `chimera clear one`, "
-                             "then `chimera on one`\n")
-            said = system.chimera("status").stdout
-            self.assertIn("first: GIVEN UP; last end: ended by signal 9 (SIGKILL)", said)
-            way = re.search(r"to bring it back type `chimera (.*?)`, then `chimera (.*?)`\n", said)
-            system.chimera("status", "--pid", "first", code=1)
-            for command in way.groups():
-                system.chimera(*command.split())
-            self.assertEqual(system.state("one"), "ON")
-            self.assertEqual(system.chimera("on", "one").stdout, "[subject] one: ON already\n")
-            self.assertEqual(system.call("status")["flag"], {"up": False, "by": []})
-
     def test_schedule_reads_a_saved_profile(self):
         with tempfile.TemporaryDirectory() as folder:
             file, saved, late = (pathlib.Path(folder) / name for name in ("two.yaml", "p.json", "late.json"))

@@ -161,6 +161,10 @@ TEST(SteppedReactions, RaiseTheFlagInEveryRtpuUntilTheTaskIsCleared) {
   ASSERT_TRUE(system.until([&] { return system.flag(); }));
   EXPECT_EQ(system.state("thrower"), State::kError);
   EXPECT_EQ(system.on(), "steady beside ");
+  const control::RpcResponse refused = system.call("switch", {{"configuration", "all"}});
+  EXPECT_EQ(refused.detail("kind"), "in-error");
+  EXPECT_EQ(refused.detail("where"), "thrower");
+  EXPECT_EQ(refused.detail("remedy"), "`chimera clear thrower`");
   EXPECT_EQ(system.signal("clear", "thrower"), "");
   EXPECT_TRUE(system.until([&] { return !system.flag(); }));
 }

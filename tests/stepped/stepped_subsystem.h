@@ -174,6 +174,7 @@ class SteppedSubsystem {
 
   const ApplicationSpec& spec() const { return configuration_->spec(); }
   std::uint32_t n_rtpus() const { return static_cast<std::uint32_t>(spec().rtpus.size()); }
+  bool has_manager() const { return manager_ != nullptr; }
   ManagerLoop& manager() { return *manager_; }
   testing::TestRtpu& rtpu(std::string_view name) { return *rtpus_[index(name)]; }
   KeeperPage& page() { return *reinterpret_cast<KeeperPage*>(keeper_.writable().data()); }

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/subsystem/chance.h"
+#include "tests/switching/chance.h"
 #include "tests/switching/cut_links.h"
 #include "tests/switching/readers.h"
 #include "tests/switching/recorder.h"

@@ -270,30 +270,6 @@ TEST_F(Attend, AFaultInKillAtTheEndIsPrintedAndFailsTheRun) {
       << out_;
 }
 
-TEST_F(Attend, ARestartIsPrintedAndFailsAStrictRunOnly) {
-  backend_.servo["restarts"] = 1;
-  backend_.events = {{{"number", 1},
-                      {"at_ns", backend_.started_ns.as_int64() + 30'000'000},
-                      {"kind", "rtpu-restarted"},
-                      {"rtpu", "servo"},
-                      {"text", "servo is restarted"}}};
-  EXPECT_EQ(attend(), kOk);
-  EXPECT_NE(out_.find("servo: the counts of its tasks begin at its restart at 0.030 s\n"
-                      "not clean: 1 restart of servo\n"),
-            std::string::npos)
-      << out_;
-  request_.run.strict = true;
-  EXPECT_EQ(attend(), kRefused);
-  EXPECT_NE(out_.find("FAILED: not clean, and --strict makes that a failure\n"), std::string::npos) << out_;
-}
-
-TEST_F(Attend, AnRtpuThatWasGivenUpIsNoSuccess) {
-  backend_.servo["restarts"] = 3;
-  backend_.servo["given_up"] = true;
-  EXPECT_EQ(attend(), kRefused);
-  EXPECT_NE(out_.find("FAILED: servo was given up"), std::string::npos) << out_;
-}
-
 TEST_F(Attend, GoesOnWithTheNextManagerWhenOneDies) {
   request_.run.duration = milliseconds(200);
   request_.run.watch = {"q"};

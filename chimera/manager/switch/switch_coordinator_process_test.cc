@@ -42,21 +42,19 @@ struct SwitchCoordinatorTest : ::testing::Test {
   std::vector<std::string> filed() const { return control::ReceiptFile(fake.state() + "/chimera/fake").last(1000); }
   SwitchPart& part(std::uint32_t r) { return fake.rtpu(r).block().switch_part(); }
   /// The rtpu reports that it has finished its part.
-  void over(std::uint32_t r, DecisionPage& page, NoSwitch why = NoSwitch::kNone) {
-    part(r).number = PlanWord::of(page.switching.plan).number;
+  void over(std::uint32_t r, NoSwitch why = NoSwitch::kNone) {
+    part(r).number = agreement().plan().number;
     part(r).why = why;
     fake.rtpu(r).block().head().switching.adopted = part(r).number;
     fake.rtpu(r).block().head().switching.over = part(r).number;
   }
-  void over(std::uint32_t r, NoSwitch why = NoSwitch::kNone) { over(r, fake.decision_page(), why); }
-  void commit_in(DecisionPage& page) {
-    SwitchAgreement there(page.switching, fake.page().origin);
+  void commit() {
+    SwitchAgreement there = agreement();
     const std::uint16_t number = there.plan().number;
     ASSERT_TRUE(there.propose(number, there.round_up(now() + milliseconds(1))));
     EXPECT_FALSE(there.agree(number, 0));
     ASSERT_TRUE(there.agree(number, 1));
   }
-  void commit() { commit_in(fake.decision_page()); }
   /// Replaces the manager as if it had been killed.
   void restart() {
     fake.kill_manager();
@@ -71,91 +69,6 @@ struct SwitchCoordinatorTest : ::testing::Test {
   std::optional<SwitchOutcome> got;
 };
 
-TEST_F(SwitchCoordinatorTest, OrdersARequestAndCombinesTheParts) {
-  ask(kRest);
-  ASSERT_FALSE(got);
-  const PlanWord plan = agreement().plan();
-  EXPECT_EQ(plan.phase, SwitchPhase::kPrepared);
-  const auto order = agreement().order(plan, fake.spec().sets.size(), fake.spec().tasks.size());
-  ASSERT_TRUE(order);
-  EXPECT_EQ(order->number, 1);
-  EXPECT_EQ(order->members, 0b11);
-  EXPECT_EQ(order->after, kRest);
-  EXPECT_GE(order->lead, milliseconds(1));
-  for (const char* name : {"sensor", "filter", "law"}) EXPECT_TRUE(order->on.has(fake.task(name))) << name;
-  EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', " + kByAnn);
-  commit();
-  part(0).tasks[0] = {fake.task("sensor"), TaskMove::kStays, Nanoseconds{-1}, Nanoseconds{-1}, 0};
-  part(0).tasks[1] = {fake.task("filter"), TaskMove::kLeaves, Nanoseconds{-1}, microseconds(7), 2};
-  part(0).n_tasks = 2;
-  part(1).tasks[0] = {fake.task("law"), TaskMove::kLeaves, Nanoseconds{-1}, microseconds(8), 0};
-  part(1).n_tasks = 1;
-  over(0);
-  EXPECT_TRUE(fake.step());
-  EXPECT_FALSE(got) << "the other rtpu is not over";
-  over(1);
-  ASSERT_TRUE(until_answered());
-  EXPECT_EQ(got->receipt.end, SwitchEnd::kDone);
-  EXPECT_EQ(got->receipt.number, 1u);
-  EXPECT_EQ(got->receipt.before, kRun);
-  EXPECT_EQ(got->receipt.at, agreement().at(agreement().plan()));
-  ASSERT_EQ(got->tasks.size(), 3u);
-  EXPECT_EQ(got->tasks[0].task, fake.task("filter"));
-  EXPECT_EQ(got->tasks[0].lost, 2u);
-  EXPECT_FALSE(coordinator().is_under_way());
-  EXPECT_NE(fake.told("switch").find("switch 1 to 'rest', " + kByAnn + ": begun\n"), std::string::npos);
-  EXPECT_NE(fake.told("switch").find("0 tasks arrive, 2 leave, 2 cycles lost\n"), std::string::npos);
-}
-
-TEST_F(SwitchCoordinatorTest, ASwitchToTheSetInForceDoesNothing) {
-  ask(kRun);
-  ASSERT_TRUE(got);
-  EXPECT_EQ(got->receipt.end, SwitchEnd::kNothingToDo);
-  EXPECT_EQ(agreement().plan().number, 0);
-}
-
-TEST_F(SwitchCoordinatorTest, ATaskInErrorIsNamed) {
-  ask(kRest);
-  commit();
-  over(0);
-  over(1);
-  ASSERT_TRUE(until_answered());
-  fake.rtpu(1).fail(fake.task("law"), "as told");
-  ASSERT_TRUE(fake.until([&] { return fake.loop().state().state(fake.task("law")) == State::kError; }));
-  ask(kRun);
-  ASSERT_TRUE(until_answered());
-  EXPECT_EQ(got->receipt.end, SwitchEnd::kRefused);
-  EXPECT_EQ(got->receipt.why, NoSwitch::kInError);
-  EXPECT_EQ(got->receipt.task, fake.task("law"));
-  EXPECT_EQ(got->remedy, "`chimera clear law`");
-  EXPECT_EQ(got->receipt.number, 2u);
-  EXPECT_EQ(filed().size(), 2u);
-}
-
-TEST_F(SwitchCoordinatorTest, OneAtATimeAndItCanBeCancelled) {
-  EXPECT_FALSE(coordinator().cancel(kBen, [](const SwitchOutcome&) {}));
-  ask(kRest);
-  std::optional<std::string> second, third;
-  coordinator().ask({kRest, SwitchCause::kScript, {}}, kBen, seconds(1), now(), [&](const SwitchOutcome& outcome) {
-    EXPECT_EQ(outcome.receipt.why, NoSwitch::kUnderWay);
-    EXPECT_EQ(outcome.receipt.number, 2u);
-    second = outcome.receipt.said.view();
-  });
-  ASSERT_TRUE(fake.until([&] { return second.has_value(); }));
-  const std::string begin = "switch 1 to 'rest', " + kByAnn + ", is under way: arming, until ";
-  EXPECT_EQ(second->substr(0, begin.size()), begin);
-  EXPECT_EQ(second->size(), begin.size() + std::strlen("14:03:07"));
-  EXPECT_TRUE(coordinator().cancel(kBen, [&](const SwitchOutcome& outcome) { third = outcome.json; }));
-  EXPECT_FALSE(coordinator().cancel(kBen, [](const SwitchOutcome&) {}));
-  over(0);
-  over(1);
-  ASSERT_TRUE(until_answered());
-  EXPECT_EQ(got->receipt.end, SwitchEnd::kAborted);
-  EXPECT_EQ(got->receipt.why, NoSwitch::kCancelled);
-  EXPECT_EQ(got->receipt.said.view(), "configure:4000000002");
-  EXPECT_EQ(third, got->json) << "the client that cancelled gets this receipt";
-}
-
 TEST_F(SwitchCoordinatorTest, ACommittedSwitchIsNotCancelled) {
   ask(kRest);
   commit();
@@ -165,82 +78,6 @@ TEST_F(SwitchCoordinatorTest, ACommittedSwitchIsNotCancelled) {
   over(1);
   ASSERT_TRUE(until_answered());
   EXPECT_EQ(got->receipt.end, SwitchEnd::kDone);
-}
-
-TEST_F(SwitchCoordinatorTest, ForeseesASwitchAndChangesNothing) {
-  ForeseenSwitch foreseen = coordinator().foresee(tasks_of(fake.spec(), kRest));
-  EXPECT_EQ(foreseen.receipt.end, SwitchEnd::kDone);
-  EXPECT_EQ(foreseen.receipt.before, kRun);
-  EXPECT_EQ(foreseen.plan.leaving.size(), 2u);
-  EXPECT_EQ(foreseen.plan.staying.size(), 1u);
-  EXPECT_EQ(coordinator().foresee(tasks_of(fake.spec(), kRun)).receipt.end, SwitchEnd::kNothingToDo);
-  EXPECT_EQ(agreement().plan().number, 0);
-  EXPECT_FALSE(coordinator().is_under_way());
-  ask(kRest);
-  foreseen = coordinator().foresee(tasks_of(fake.spec(), kRun));
-  EXPECT_EQ(foreseen.receipt.end, SwitchEnd::kRefused);
-  EXPECT_EQ(foreseen.receipt.why, NoSwitch::kUnderWay);
-  EXPECT_TRUE(foreseen.plan.leaving.empty());
-  commit();
-  over(0);
-  over(1);
-  ASSERT_TRUE(until_answered());
-  EXPECT_EQ(got->receipt.number, 1u) << "a foreseen switch has no number";
-  EXPECT_EQ(filed().size(), 1u);
-}
-
-TEST_F(SwitchCoordinatorTest, TheRtpuThatAbortedSaysWhy) {
-  ask(kRest);
-  ASSERT_TRUE(agreement().abort(1));
-  over(0);
-  part(1).task = fake.task("law");
-  std::strcpy(part(1).said, "no current");
-  over(1, NoSwitch::kOnFailed);
-  ASSERT_TRUE(until_answered());
-  EXPECT_EQ(got->receipt.why, NoSwitch::kOnFailed);
-  EXPECT_EQ(got->receipt.task, fake.task("law"));
-  EXPECT_EQ(got->receipt.said.view(), "no current");
-}
-
-TEST_F(SwitchCoordinatorTest, ALateSwitchIsTriedFourTimes) {
-  ask(kRest);
-  Nanoseconds lead;
-  for (std::uint16_t number = 1; number <= 4; ++number) {
-    ASSERT_TRUE(fake.until([&] { return agreement().plan().number == number && agreement().plan().is_open(); }));
-    const auto order = agreement().order(agreement().plan(), 2, 3);
-    EXPECT_GT(order->lead, lead) << "each try has more time";
-    lead = order->lead;
-    EXPECT_FALSE(got);
-    ASSERT_TRUE(agreement().abort(number));
-    over(0, NoSwitch::kLate);
-    over(1);
-  }
-  ASSERT_TRUE(until_answered());
-  EXPECT_EQ(got->receipt.why, NoSwitch::kLate);
-  EXPECT_EQ(got->receipt.number, 1u) << "four plans, one switch";
-  EXPECT_NE(got->json.find("\"tries\": 4, "), std::string::npos) << got->json;
-  EXPECT_EQ(agreement().plan().number, 4);
-}
-
-TEST_F(SwitchCoordinatorTest, ASwitchWithoutAGapOrAReadyDeviceIsRepeatedSlowly) {
-  const std::pair<NoSwitch, std::uint8_t> ways[] = {{NoSwitch::kNoGap, kSlowForGap},
-                                                    {NoSwitch::kNotReady, kSlowForDevice}};
-  std::uint16_t number = 1;
-  for (const auto& [why, slow] : ways) {
-    ask(kRest);
-    for (const std::uint8_t expected : {std::uint8_t{0}, slow}) {
-      ASSERT_TRUE(fake.until([&] { return agreement().plan().number == number && agreement().plan().is_open(); }));
-      EXPECT_EQ(agreement().order(agreement().plan(), 2, 3)->slow, expected);
-      EXPECT_FALSE(got);
-      ASSERT_TRUE(agreement().abort(number++));
-      over(0, why);
-      over(1);
-    }
-    ASSERT_TRUE(until_answered());
-    EXPECT_EQ(got->receipt.why, why) << "the slow way was not open either";
-    EXPECT_EQ(got->receipt.way.slow, slow);
-    EXPECT_EQ(got->receipt.tries, 2u);
-  }
 }
 
 // The rtpus ring. A manager that polled from the deadline on without end would fill its CPU.
@@ -279,32 +116,6 @@ TEST_F(SwitchCoordinatorTest, ACancelledSwitchIsNotTriedAgain) {
   ASSERT_TRUE(until_answered());
   EXPECT_EQ(got->receipt.why, NoSwitch::kCancelled);
   EXPECT_EQ(agreement().plan().number, 1);
-}
-
-TEST_F(SwitchCoordinatorTest, ASuccessorGoesOnWithTheSwitchAndFilesItsReceipt) {
-  ask(kRest);
-  restart();
-  EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', " + kByAnn);
-  EXPECT_TRUE(agreement().plan().is_open()) << "the rtpus need no manager";
-  commit();
-  over(0);
-  over(1);
-  ASSERT_TRUE(fake.until([&] { return filed().size() == 1; }));
-  EXPECT_NE(filed()[0].find("\"number\": 1, "), std::string::npos);
-  EXPECT_NE(filed()[0].find("\"end\": \"done\""), std::string::npos) << filed()[0];
-  EXPECT_NE(filed()[0].find("\"user\": \"4000000001\""), std::string::npos) << filed()[0];
-  EXPECT_FALSE(coordinator().is_under_way());
-}
-
-TEST_F(SwitchCoordinatorTest, TheNextManagerCollectsASwitchOfTheRtpus) {
-  ask(kRest);
-  fake.kill_manager();
-  commit_in(fake.decision_page());
-  over(0, fake.decision_page());
-  over(1, fake.decision_page());
-  fake.start_manager();
-  ASSERT_TRUE(fake.until([&] { return filed().size() == 1; }));
-  EXPECT_NE(filed()[0].find("\"end\": \"done\""), std::string::npos) << filed()[0];
 }
 
 TEST_F(SwitchCoordinatorTest, ASuccessorClosesAPlanThatIsPastItsDeadline) {
@@ -356,20 +167,6 @@ TEST_F(SwitchCoordinatorTest, ATryThatWasNotAnnouncedIsMadeAgain) {
   over(1);
   ASSERT_TRUE(fake.until([&] { return filed().size() == 1; }));
   EXPECT_NE(filed()[0].find("\"tries\": 2, "), std::string::npos) << filed()[0];
-}
-
-// A switch that a task asked for, in the journal.
-TEST_F(SwitchCoordinatorTest, ASuccessorKnowsTheTaskThatAsked) {
-  const TaskId law = fake.task("law");
-  coordinator().ask({kRest, SwitchCause::kMiss, law}, {}, seconds(10), now(), [](const SwitchOutcome&) {});
-  EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', asked for by on_miss of law");
-  restart();
-  EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', asked for by on_miss of law");
-  commit();
-  over(0);
-  over(1);
-  ASSERT_TRUE(fake.until([&] { return filed().size() == 1; }));
-  EXPECT_NE(filed()[0].find("{\"reaction\": \"on_miss\", \"task\": \"law\"}"), std::string::npos) << filed()[0];
 }
 
 TEST_F(SwitchCoordinatorTest, ACauseOrATaskThatCannotBeIsForgotten) {
@@ -426,20 +223,6 @@ TEST_F(SwitchCoordinatorTest, APartThatDoesNotFitTheApplicationIsLeftOut) {
   EXPECT_TRUE(got->variables.empty());
 }
 
-// It would have turned law OFF: by its last words alone, law would come back.
-TEST_F(SwitchCoordinatorTest, AnRtpuThatDiesBetweenCommitAndChangeComesBackToTheSetAfterIt) {
-  ask(kRest);
-  commit();
-  fake.kill_rtpu(1, SIGKILL);
-  over(0);
-  fake.rtpu(0).block().set_status(fake.task("filter"), {State::kOff, false, 1});
-  ASSERT_TRUE(until_answered());
-  EXPECT_EQ(got->receipt.end, SwitchEnd::kDone);
-  ASSERT_TRUE(fake.until([&] { return fake.loop().state().state(fake.task("law")) == State::kOff; }));
-  EXPECT_TRUE(fake.until([&] { return fake.loop().state().logic.is_settled(); }));
-  EXPECT_EQ(fake.loop().state().state(fake.task("law")), State::kOff);
-}
-
 // One rtpu has agreed and died; the other would agree next. The tasks that come back are decided now, so the plan must
 // be decided too.
 TEST_F(SwitchCoordinatorTest, ADeathClosesThePlanBeforeTheGoalsOfTheRtpuAreDecided) {
@@ -459,16 +242,66 @@ TEST_F(SwitchCoordinatorTest, ADeathClosesThePlanBeforeTheGoalsOfTheRtpuAreDecid
   EXPECT_TRUE(fake.until_on("law"));
 }
 
-TEST_F(SwitchCoordinatorTest, WithoutAnAnswerItIsAbortedBehindItsDeadline) {
-  got.reset();
-  coordinator().ask({kRest, SwitchCause::kScript, {}}, kAnn, milliseconds(1), now(),
-                    [this](const SwitchOutcome& outcome) { take(outcome); });
-  ASSERT_TRUE(fake.until([&] { return agreement().plan().phase == SwitchPhase::kAborted; }));
-  EXPECT_FALSE(got);
-  over(0);
-  over(1);
-  ASSERT_TRUE(until_answered());
-  EXPECT_EQ(got->receipt.end, SwitchEnd::kAborted);
+/// Requests of tasks; the test plays the rtpus.
+struct SwitchWishesTest : SwitchCoordinatorTest {
+  PlanWord plan() { return agreement().plan(); }
+  void wish(std::uint32_t rtpu, std::uint32_t set, const char* task) {
+    SwitchWishWords& words = fake.rtpu(rtpu).block().head().wish;
+    words.write(words.wish().next({set, SwitchCause::kRequest, fake.task(task)}), {}, now());
+  }
+  void rounds(int n = 5) {
+    for (int i = 0; i < n; ++i) ASSERT_TRUE(fake.step());
+  }
+};
+
+TEST_F(SwitchWishesTest, TheLastOfAllStands) {
+  wish(1, kRest, "law");
+  wish(0, kRun, "sensor");
+  rounds();
+  EXPECT_EQ(plan().number, 0);
+}
+
+TEST_F(SwitchWishesTest, ReportsARefusedRequestOnce) {
+  fake.rtpu(1).fail(fake.task("law"), "as told");
+  ASSERT_TRUE(fake.until([&] { return fake.loop().state().state(fake.task("law")) == State::kError; }));
+  wish(0, kRun, "sensor");
+  ASSERT_TRUE(fake.until([this] { return filed().size() == 1 && !fake.told("switch").empty(); }));
+  rounds(20);
+  ASSERT_EQ(filed().size(), 1u);
+  EXPECT_NE(filed()[0].find("\"asked_by\": {\"task\": \"sensor\"}, \"end\": \"refused\""), std::string::npos)
+      << filed()[0];
+  EXPECT_EQ(fake.told("switch"),
+            "switch to 'run', asked for by task sensor, is refused: task 'law' is in ERROR: clear it first\n");
+}
+
+TEST_F(SwitchWishesTest, ARequestOutlivesItsRtpu) {
+  wish(1, kRest, "law");
+  fake.kill_rtpu(1, SIGKILL);
+  EXPECT_TRUE(fake.until([this] { return plan().number == 1; }));
+  EXPECT_TRUE(coordinator().leads_to({kRest, SwitchCause::kRequest, {}}));
+}
+
+// The memory of an rtpu may hold any value.
+TEST_F(SwitchWishesTest, SkipsRequestsThatDoNotFitTheApplication) {
+  SwitchWishWords& words = fake.rtpu(1).block().head().wish;
+  const auto law = static_cast<std::uint16_t>(fake.task("law").index);
+  const auto sensor = static_cast<std::uint16_t>(fake.task("sensor").index);
+  const SwitchWish lists{1, SwitchWish::kLists, law, SwitchCause::kRequest};
+  TaskLists beyond;
+  beyond.minus.add(TaskId(std::size_t{255}));
+  const std::pair<SwitchWish, TaskLists> nonsense[] = {{SwitchWish::of(~std::uint64_t{0}), {}},
+                                                       {{1, 2, law, SwitchCause::kRequest}, {}},
+                                                       {{1, kRest, 99, SwitchCause::kRequest}, {}},
+                                                       {{1, kRest, sensor, SwitchCause::kMiss}, {}},
+                                                       {{1, kRest, law, SwitchCause::kScript}, {}},
+                                                       {{0, kRest, law, SwitchCause::kMiss}, {}},
+                                                       {lists, {}},
+                                                       {lists, beyond}};
+  for (const auto& [wish, named] : nonsense) {
+    words.write(wish, named, now());
+    rounds(2);
+    EXPECT_EQ(plan().number, 0) << std::hex << wish.word();
+  }
 }
 
 }  // namespace

@@ -11,34 +11,6 @@ namespace {
 
 constexpr Asker kAnn{control::Role::kOperate, 4'000'000'001u};
 
-TEST(SwitchForesight, ForeseesASlowSwitchIfATaskMightMissADeadline) {
-  FakeSubsystem fake(R"(subsystem: fake
-rtpus: {servo: {cpu: 3, policy: edf}}
-tasks:
-  sensor: {rtpu: servo, rate: 10 Hz, budget: 80 ms}
-  other:  {component: sensor, rtpu: servo, rate: 10 Hz, offset: 90 ms, budget: 80 ms}
-  like:   {component: sensor, rtpu: servo, rate: 10 Hz, budget: 70 ms}
-configurations: {run: [sensor], late: [other], same: [like]}
-start: run
-)");
-  fake.start_manager();
-  ASSERT_TRUE(fake.until_on("sensor"));
-  ASSERT_TRUE(fake.until([&] { return fake.loop().state().logic.is_settled(); }));
-  SwitchCoordinator& switches = fake.loop().switches();
-  const ForeseenSwitch foreseen = switches.foresee(tasks_of(fake.spec(), 1));
-  EXPECT_EQ(foreseen.receipt.end, SwitchEnd::kDone);
-  EXPECT_EQ(foreseen.receipt.way.slow, kSlowForDeadlines);
-  EXPECT_EQ(control::slow_text(foreseen.receipt, fake.spec()),
-            "the transition from 'run' to 'late' is not schedulable on CPU 3: a cycle of task 'sensor' may take 400 "
-            "ms, its deadline is 100 ms");
-  EXPECT_EQ(foreseen.expected, milliseconds(160)) << "off and on, which were never called: their budgets";
-  EXPECT_EQ(switches.foresee(tasks_of(fake.spec(), 2)).receipt.way.slow, 0) << "like for like";
-  switches.ask({1, SwitchCause::kScript, {}}, kAnn, seconds(10), now(), [](const SwitchOutcome&) {});
-  EXPECT_TRUE(switches.is_under_way());
-  SwitchAgreement agreement(fake.loop().state().page.switching, {});
-  EXPECT_EQ(agreement.order(agreement.plan(), 3, 3)->slow, kSlowForDeadlines);
-}
-
 TEST(SwitchForesight, ForeseesAnOffThatFitsNoGap) {
   FakeSubsystem fake(R"(subsystem: fake
 rtpus: {servo: {cpu: 3, policy: edf}}

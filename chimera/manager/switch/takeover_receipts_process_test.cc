@@ -45,26 +45,6 @@ struct TakeoverReceiptsTest : ::testing::Test {
   FakeSubsystem fake{kText};
 };
 
-TEST_F(TakeoverReceiptsTest, EachIsFiledOnce) {
-  tell(takeover(1));
-  ASSERT_TRUE(until_kept(1));
-  const Json one = receipt(0);
-  EXPECT_EQ(one["number"], 1);
-  EXPECT_EQ(one["way"], "takeover");
-  EXPECT_EQ(one["from"], "run");
-  EXPECT_EQ(one["asked_by"],
-            Json({{"reaction", "standby_for"}, {"lost", "filter"}, {"by", "death"}, {"task", "second"}}));
-  EXPECT_EQ(one["end"], "done");
-  EXPECT_GT(one["wall_ns"].as_int64(), 1'600'000'000'000'000'000);
-  EXPECT_EQ(one["at_ns"].as_int64() - one["asked_ns"].as_int64(), 1'000'000);
-  EXPECT_EQ(one["tasks"].size(), 2u);
-  tell(takeover(2));
-  ASSERT_TRUE(until_kept(2));
-  EXPECT_EQ(receipt(1)["number"], 2);
-  for (int i = 0; i < 5; ++i) fake.step();
-  EXPECT_EQ(kept().size(), 2u);
-}
-
 TEST_F(TakeoverReceiptsTest, AStepBeyondItsLimitIsAnEvent) {
   Takeover one = takeover(1);
   one.n_variables = 1;
@@ -90,19 +70,6 @@ TEST_F(TakeoverReceiptsTest, ATakeoverIsAwaitedUntilItsRtpuDies) {
   ASSERT_TRUE(until_kept(1));
   EXPECT_EQ(receipt(0)["end"], "done");
   EXPECT_EQ(receipt(0)["ended_ns"], receipt(0)["at_ns"]);
-}
-
-TEST_F(TakeoverReceiptsTest, TheNextManagerFilesTakeoversFromTheGap) {
-  tell(takeover(1));
-  ASSERT_TRUE(until_kept(1));
-  fake.kill_manager();
-  tell(takeover(2));
-  tell(takeover(3));
-  fake.start_manager();
-  ASSERT_TRUE(until_kept(3));
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(receipt(i)["number"], i + 1);
-  for (int i = 0; i < 5; ++i) fake.step();
-  EXPECT_EQ(kept().size(), 3u);
 }
 
 TEST_F(TakeoverReceiptsTest, ATakeoverInTheJournalOfAPredecessorIsNotFiledTwice) {

@@ -93,14 +93,6 @@ class FakeRtpu {
     post.happening = EventKind::kNote;
     tell(post);
   }
-  /// Acts as if `from` had sent `on` to `task`.
-  void request(TaskId task, TaskId from) {
-    const std::scoped_lock lock(mutex_);
-    Post post = about(task, PostKind::kRequest);
-    post.from = from;
-    post.signal = Signal::kOn;
-    tell(post);
-  }
   /// Number of rings of the doorbells of its tasks.
   std::atomic<int> rings{0};
   /// Value of every byte that its tasks publish; below 0: they count.

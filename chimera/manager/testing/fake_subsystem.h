@@ -16,7 +16,6 @@
 #include "chimera/manager/manager_loop.h"
 #include "chimera/manager/testing/fake_rtpu.h"
 #include "chimera/manager/testing/test_bundle.h"
-#include "chimera/platform/process.h"
 
 namespace chimera::manager {
 
@@ -160,18 +159,6 @@ class FakeSubsystem {
     ASSERT_TRUE(made) << made.error().message.c_str();
     loop_ = *std::move(made);
     ASSERT_NE(loop_, nullptr);
-  }
-  /// Starts a manager as a process of its own; the test must call keep().
-  Process start_program(const char* program, int listening) {
-    const Channel end = introduce_all();
-    const std::string incarnation = std::to_string(manager_incarnation_), parent = std::to_string(::getpid());
-    const char* const words[] = {program, "--peer", "2", "--incarnation", incarnation.c_str(), "--parent",
-                                 parent.c_str()};
-    const int passed[] = {end.descriptor(),     image_.descriptor(), decision_.descriptor(),
-                          keeper_.descriptor(), listening,           frozen_bundle_.descriptor()};
-    auto started = Process::start(program, words, passed);
-    EXPECT_TRUE(started) << started.error().message.c_str();
-    return started ? *std::move(started) : Process();
   }
   /// Ends the manager as SIGKILL does: it sends no message.
   void kill_manager() {

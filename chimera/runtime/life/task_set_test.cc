@@ -64,14 +64,6 @@ struct User {
   std::int32_t inits_ = 0;
 };
 
-struct Boss {  // sends signals to others
-  void cycle(Cycle c) {
-    sent_ = c.signal(Signal::kOff, "reader") && !c.signal(Signal::kOff, "absent");
-    if (!sent_) throw std::runtime_error("cannot send");
-  }
-  bool sent_ = false;
-};
-
 VariableView view(TaskSet& set, const char* variable) {
   return set.sources().view(VariableId(Variables(set.spec()).find(variable)));
 }
@@ -149,20 +141,6 @@ TEST_F(CounterAndReader, AFaultThatIsNotRecoveredEndsInErrorAndClearLeadsToOff) 
   EXPECT_EQ(set->tasks()[0].state, State::kOff);
   EXPECT_TRUE(set->life().signal(TaskId{std::size_t{0}}, Signal::kOn, {}).is_accepted);
   EXPECT_FALSE(set->flag().is_up());
-}
-
-TEST_F(CounterAndReader, AnIllegalSignalIsRefusedAndChangesNothing) {
-  ASSERT_TRUE(set->life().start({}));
-  const SignalReport again = set->life().signal(TaskId{std::size_t{0}}, Signal::kOn, {});
-  EXPECT_FALSE(again.is_accepted);
-  EXPECT_EQ(refusal_text(*set, again), "on is not legal for counter in state ON");
-  set->life().signal(TaskId{std::size_t{0}}, Signal::kOff, {});
-  EXPECT_TRUE(set->flag().is_up());
-  set->life().signal(TaskId{std::size_t{1}}, Signal::kOff, {});
-  EXPECT_FALSE(set->flag().is_up());
-  const SignalReport alone = set->life().signal(TaskId{std::size_t{1}}, Signal::kOn, {});
-  EXPECT_EQ(refusal_text(*set, alone), "n would have no producer; the smallest legal set is: counter reader");
-  EXPECT_EQ(set->tasks()[1].state, State::kOff);
 }
 
 TEST_F(CounterAndReader, ARespawnedProducerTakesOverTheLastValue) {
@@ -301,30 +279,6 @@ TEST(TaskSet, AListMustBeAsLongAsTheConstantSays) {
   const auto started = start_result(*set, set->life().start({}));
   ASSERT_FALSE(started);
   EXPECT_EQ(started.error().message.view(), "init: q has a list of 4 values, but ndof is 3");
-}
-
-TEST(TaskSet, SignalsOfATaskWaitForTheEdge) {
-  TestApplication app;
-  app.add("counter", component<Counter>("counter"));
-  app.add("reader", component<Reader>("reader"));
-  app.add("boss", component<Boss>("boss"));
-  app.make();
-  auto set = make(app);
-  ASSERT_TRUE(set->life().start({}));
-  EXPECT_EQ(run_cycle(*set, 2, milliseconds(1)), State::kOn);
-  EXPECT_TRUE(set->sent().has_pending());
-  EXPECT_EQ(set->tasks()[1].state, State::kOn);
-  Signal signal{};
-  ASSERT_TRUE(set->sent().take_pending(set->tasks()[1], signal));
-  EXPECT_EQ(signal, Signal::kOff);
-  EXPECT_FALSE(set->sent().has_pending());
-  for (int i = 0; i < 40; ++i) run_cycle(*set, 2, milliseconds(i));
-  set->tasks()[2].outbox.clear();
-  (void)set->tasks()[2].outbox.try_push({Signal::kKill, TaskId{std::size_t{1}}});
-  set->sent().deliver(set->tasks()[2]);
-  Signal last{};
-  while (set->sent().take_pending(set->tasks()[1], signal)) last = signal;
-  EXPECT_EQ(last, Signal::kKill) << "kill is never dropped";
 }
 
 TEST(TaskSet, OperatorVariablesHoldTheirInitialValue) {

@@ -19,7 +19,6 @@ struct Device {
   const VirtualPeers* peers = nullptr;
   int doubles = 0;             // times that one opened it while another had it
   int not_ready = 0;
-  int ons = 0;  // of the drill
   std::uint64_t fails_at = UINT64_MAX;  // the cycle of the hand
 
   bool has_other(int me) const {
@@ -40,7 +39,6 @@ struct Tool {
     return ok();
   }
   Outcome on(Cycle) {
-    device.ons += kMe;
     return kMe == 1 && device.not_ready-- > 0 ? not_yet() : ok();
   }
   Outcome cycle(Cycle c) {
@@ -75,7 +73,7 @@ struct VirtualRivals : ::testing::TestWithParam<bool> {
     app->rtpus = {{"first", 0, Policy::kEdf}, {"second", 1, Policy::kEdf}};
     app->add("hand", testing::component<Tool<0>>("hand")).rtpu = RtpuId(kOfHand);
     app->add("drill", testing::component<Tool<1>>("drill")).rtpu = RtpuId(kOfDrill);
-    app->add("arm", testing::component<Arm>("arm")).rtpu = RtpuId(rtpu_of_arm);
+    app->add("arm", testing::component<Arm>("arm")).rtpu = RtpuId(kOfDrill);
     for (const TaskId tool : {kHand, kDrill}) app->port(tool.index, 1).value = tty;
     if (has_second) {
       app->add("second_hand", testing::component<Tool<2>>("second_hand")).rtpu = RtpuId(kOfHand);
@@ -97,7 +95,6 @@ struct VirtualRivals : ::testing::TestWithParam<bool> {
   State state(TaskId task) const { return rtpus->state(task); }
   void TearDown() override { rtpus.reset(); }
 
-  std::uint32_t rtpu_of_arm = kOfDrill;
   bool has_second = false;
   const std::vector<std::byte> tty = testing::bytes_of("tty0"), second_tty = testing::bytes_of("tty1");
   std::vector<TaskId> hand{kHand, kArm}, drill{kDrill, kArm};
@@ -108,22 +105,6 @@ struct VirtualRivals : ::testing::TestWithParam<bool> {
 
 INSTANTIATE_TEST_SUITE_P(All, VirtualRivals, ::testing::Bool(),
                          [](const auto& one) { return one.param ? "Preemptive" : "Executive"; });
-
-TEST_P(VirtualRivals, TheyTakeTurnsOverTwoRtpus) {
-  std::vector<ScriptAct> acts;
-  for (std::uint32_t i = 0; i < 20; ++i)
-    acts.push_back(act_at(milliseconds(5) + Nanoseconds{25'137'000 * i}, ScriptAct::Kind::kSwitch,
-                          i % 2 == 0 ? kWithDrill : kWithHand));
-  const auto receipts = go(milliseconds(600), acts);
-  ASSERT_EQ(receipts.size(), 20u);
-  for (const SwitchReceipt& receipt : receipts) {
-    EXPECT_EQ(receipt.end, SwitchEnd::kDone) << receipt.number << ": " << static_cast<int>(receipt.why);
-    EXPECT_EQ(receipt.way.slow, kSlowForResource);
-  }
-  EXPECT_EQ(state(kHand), State::kOn);
-  EXPECT_EQ(state(kDrill), State::kNotCreated);
-  EXPECT_EQ(device.doubles, 0);
-}
 
 // The rtpu of the hand dies at 60 instants from before the switch to after it.
 TEST_P(VirtualRivals, ADeathAtAnyInstantLeavesOneUserAtMost) {
@@ -141,39 +122,6 @@ TEST_P(VirtualRivals, ADeathAtAnyInstantLeavesOneUserAtMost) {
   }
   EXPECT_GT(done, 5);
   EXPECT_GT(aborted, 5);
-}
-
-TEST_P(VirtualRivals, ATaskThatIsNotThereInADeadRtpuIsRefusedAtOnce) {
-  rtpu_of_arm = kOfHand;
-  const auto receipts = go(milliseconds(60), {act_at(milliseconds(5), ScriptAct::Kind::kDie, kOfDrill),
-                                              act_at(milliseconds(10), ScriptAct::Kind::kSwitch, kWithDrill)});
-  ASSERT_EQ(receipts.size(), 1u);
-  EXPECT_EQ(receipts[0].end, SwitchEnd::kRefused);
-  EXPECT_EQ(receipts[0].why, NoSwitch::kNotCreated);
-  EXPECT_EQ(receipts[0].task, kDrill);
-  EXPECT_EQ(state(kHand), State::kOn);
-}
-
-TEST_P(VirtualRivals, AStandbyOpensItWhenTheProcessIsDead) {
-  standbys = {{kHand, kDrill}};
-  go(milliseconds(60), {act_at(milliseconds(10), ScriptAct::Kind::kDie, kOfHand)});
-  EXPECT_EQ(state(kDrill), State::kOn);
-  EXPECT_EQ(rtpus->set(kOfDrill).tasks()[kDrill.index].profile.takeovers, 1u);
-  EXPECT_EQ(device.doubles, 0);
-  EXPECT_TRUE(device.is_open[1]);
-  EXPECT_EQ(device.ons, 3) << "it was asked again, each millisecond";
-  EXPECT_FALSE(rtpus->peers().is_flag_up());
-}
-
-// The primary closes it when the other rtpu has seen that it is in ERROR: else that would look like `kill`.
-TEST_P(VirtualRivals, AStandbyOpensItWhenThePrimaryHasClosedIt) {
-  standbys = {{kHand, kDrill}};
-  device.fails_at = 20;
-  go(milliseconds(60), {});
-  EXPECT_EQ(state(kHand), State::kNotCreated);
-  EXPECT_EQ(state(kDrill), State::kOn);
-  EXPECT_EQ(device.doubles, 0);
-  device.fails_at = UINT64_MAX;
 }
 
 // Both wait until the other rtpu has seen them in ERROR, each for itself.

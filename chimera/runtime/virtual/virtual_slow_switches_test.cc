@@ -65,21 +65,6 @@ TEST_P(VirtualSlowSwitches, TheStepFromATaskOfAnotherRtpuIsFromItsLastCycle) {
   EXPECT_EQ(receipt.variables[0].usual.size, 1);
 }
 
-TEST_P(VirtualSlowSwitches, AFailureOnOneRtpuIsUndoneOnBoth) {
-  shop.fails = "on heavy";
-  const auto receipts = go(milliseconds(40), {act_at(milliseconds(5), ScriptAct::Kind::kSwitch, 1)});
-  ASSERT_EQ(receipts[0].end, SwitchEnd::kAborted);
-  EXPECT_EQ(receipts[0].why, NoSwitch::kOnFailed);
-  EXPECT_EQ(receipts[0].task, kHeavy);
-  EXPECT_EQ(receipts[0].said.view(), "no");
-  EXPECT_EQ(shop.story, (std::vector<std::string>{"on light", "off light", "reinit arm", "reinit law", "on heavy",
-                                                  "reinit arm", "reinit law", "on light"}));
-  EXPECT_EQ(shop.weighed.back(), 1);
-  EXPECT_TRUE(rtpus->are_on(kSets[kWithLight]));
-  EXPECT_FALSE(receipts[0].not_back.is_valid());
-  EXPECT_FALSE(rtpus->peers().is_flag_up());
-}
-
 // The second rtpu dies at each tenth of a millisecond of the switch: living rtpus end with the constants of one side.
 TEST_P(VirtualSlowSwitches, LivingRtpusAgreeOnOneSideWhenTheOtherDies) {
   for (std::int64_t us = 0; us < 5000; us += 100) {

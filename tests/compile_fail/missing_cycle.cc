@@ -1,9 +1,0 @@
-// SPDX-License-Identifier: Apache-2.0
-#include "chimera/task/component.h"
-
-using namespace chimera;
-
-struct Bad {
-  void init() {}
-};
-CHIMERA_COMPONENT(Bad, "bad", "Does not compile.");

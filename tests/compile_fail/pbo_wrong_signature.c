@@ -1,8 +1,0 @@
-/* SPDX-License-Identifier: Apache-2.0 */
-#include "chimera/task/pbo.h"
-
-typedef struct { double last; } ballLocal_t;
-PBO_PORTS(ball, (in_var, x, float64, "", "m"))
-PBO_MODULE(ball, .doc = "Does not compile.");
-
-int ballCycle(ballLocal_t *local, double dt) { return local != NULL && dt > 0 ? PBO_OK : PBO_ERROR; }
