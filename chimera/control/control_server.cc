@@ -59,12 +59,12 @@ void ControlServer::serve(Nanoseconds now) {
   settle(now);
 }
 
-Standing ControlServer::standing(Connection& connection, Nanoseconds now) const {
-  if (connection.open_acts > 0) return Standing::kActs;
+Activity ControlServer::activity(Connection& connection, Nanoseconds now) const {
+  if (connection.open_acts > 0) return Activity::kActs;
   const bool listens = subscriptions_.count_of(connection.number()) > 0 && connection.is_read(now);
-  if (listens && !connection.is_gone) return Standing::kListens;
-  if (connection.open_calls > 0 || connection.has_line() || connection.has_output()) return Standing::kAsks;
-  return connection.half_since() != kNever ? Standing::kHalfLine : Standing::kIdle;
+  if (listens && !connection.is_gone) return Activity::kListens;
+  if (connection.open_calls > 0 || connection.has_line() || connection.has_output()) return Activity::kAsks;
+  return connection.half_since() != kNever ? Activity::kHalfLine : Activity::kIdle;
 }
 
 /// A place for one more, or why there is none.
@@ -72,9 +72,9 @@ RpcResponse ControlServer::admit(const PeerIdentity& peer, Nanoseconds now) {
   if (peer.role == Role::kNone) return no_role();
   std::vector<Occupant> all;
   for (const auto& [number, connection] : connections_) {
-    const Standing has = standing(*connection, now);
+    const Activity has = activity(*connection, now);
     all.push_back({number, connection->peer().user, rank_of(connection->peer(), owner_), has,
-                   has == Standing::kHalfLine ? connection->half_since() : connection->active_at});
+                   has == Activity::kHalfLine ? connection->half_since() : connection->active_at});
   }
   const PlaceGrant placement = find_place(all, peer.user, rank_of(peer, owner_));
   if (!placement.is_granted) return RpcResponse::error(kTooMany, "too many connections: " + placement.refusal);
@@ -86,16 +86,16 @@ RpcResponse ControlServer::admit(const PeerIdentity& peer, Nanoseconds now) {
 }
 
 std::string ControlServer::idle_text(Connection& connection, Nanoseconds now) const {
-  switch (standing(connection, now)) {
-    case Standing::kHalfLine:
+  switch (activity(connection, now)) {
+    case Activity::kHalfLine:
       return "a line without an end for " + time_text(now - connection.half_since());
-    case Standing::kIdle:
+    case Activity::kIdle:
       return "idle for " + time_text(now - connection.active_at);
-    case Standing::kAsks:
+    case Activity::kAsks:
       return "the client had sent requests only, no act";
-    case Standing::kListens:
+    case Activity::kListens:
       return "the client had subscriptions only, and a lower role";
-    case Standing::kActs:
+    case Activity::kActs:
       break;  // does not give way
   }
   return "";

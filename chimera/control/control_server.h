@@ -51,7 +51,7 @@ class ControlServer {
         groups_(groups) {}
   void accept(Nanoseconds now);
   RpcResponse admit(const PeerIdentity& peer, Nanoseconds now);
-  Standing standing(Connection& connection, Nanoseconds now) const;
+  Activity activity(Connection& connection, Nanoseconds now) const;
   std::string idle_text(Connection& connection, Nanoseconds now) const;
   void evict(Connection& connection, const std::string& why, Nanoseconds now);
   const char* fault_of(Connection& connection, Nanoseconds now) const;

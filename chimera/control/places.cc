@@ -26,13 +26,13 @@ Rank short_of(std::span<const Occupant> all, Rank rank) {
 }
 
 bool gives_way(const Occupant& one, Rank to) {
-  if (one.rank > to || one.standing == Standing::kActs) return false;
-  return one.rank < to || one.standing < Standing::kListens;
+  if (one.rank > to || one.activity == Activity::kActs) return false;
+  return one.rank < to || one.activity < Activity::kListens;
 }
 
 /// Less: gives way sooner.
 auto order_of(const Occupant& one) {
-  return std::tuple(one.standing > Standing::kIdle, one.rank, one.standing, one.since);
+  return std::tuple(one.activity > Activity::kIdle, one.rank, one.activity, one.since);
 }
 
 }  // namespace

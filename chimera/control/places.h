@@ -12,7 +12,7 @@
 namespace chimera::control {
 
 /// Activity of a connection. Connections with a lower value give way first.
-enum class Standing : unsigned char {
+enum class Activity : unsigned char {
   kHalfLine,  ///< began a line and has not ended it
   kIdle,      ///< nothing at all, or subscriptions that it does not read
   kAsks,      ///< has asked what changes nothing, and is not answered yet
@@ -28,7 +28,7 @@ struct Occupant {
   std::uint64_t number = 0;
   uid_t user = 0;
   Rank rank = Rank::kObserve;
-  Standing standing = Standing::kIdle;
+  Activity activity = Activity::kIdle;
   Nanoseconds since;  ///< of a half line its first byte, else when it last said anything
 };
 

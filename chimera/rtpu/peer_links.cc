@@ -108,7 +108,7 @@ void PeerLinks::publish_all(TaskSet& tasks) noexcept {
   bool is_for_all = publish_flag(tasks.flag());
   for (const Task& task : tasks.tasks()) {
     if (!tasks.is_mine(task.id)) continue;
-    const TaskStatus now{task.state, task.in_service, tasks.memory(task.id).incarnation()};
+    const TaskStatus now{task.state, task.in_service(), tasks.memory(task.id).incarnation()};
     is_for_all |= publish_status(task, block_.view().status(task.id), now);
   }
   if (is_for_all) ring_all();

@@ -43,7 +43,7 @@ void RtpuControl::take(BoundarySignals& signals, Nanoseconds now) noexcept {
   take_slow(signals, now);
   if (end_.is_told()) return go_on_ending(signals, now);  // no new signal begins any more
   read_posts();
-  const auto may_touch = [&](TaskId task) { return !tasks_.tasks()[task.index].in_service && signals.may_touch(task); };
+  const auto may_touch = [&](TaskId id) { return !tasks_.tasks()[id.index].in_service() && signals.may_touch(id); };
   waiting_.act(may_touch, [&](std::span<const Post> step) { act(step, signals, now); });
 }
 
@@ -91,7 +91,7 @@ void RtpuControl::take_slow(BoundarySignals& signals, Nanoseconds now) noexcept 
 bool RtpuControl::refuse_illegal(std::span<const Post> step, Nanoseconds now) noexcept {
   const auto is_illegal = [this](const Post& post) {
     const Task& task = tasks_.tasks()[post.task.index];
-    if (task.is_half_on && post.signal == Signal::kOff) return false;
+    if (task.standing == Standing::kHalfOn && post.signal == Signal::kOff) return false;
     return next(task.state, post.signal, task.spec->aperiodic).kind == Next::Kind::kImpossible;
   };
   const auto culprit = std::find_if(step.begin(), step.end(), is_illegal);

@@ -44,7 +44,7 @@ bool RtpuEnd::kill_next(BoundarySignals& signals, Nanoseconds now) noexcept {
   for (const TaskId id : tasks_.spec().end_order) {
     if (!tasks_.is_mine(id)) continue;
     const Task& task = tasks_.tasks()[id.index];
-    if (task.in_service) return false;
+    if (task.in_service()) return false;
     if (task.state == State::kNotCreated) continue;
     if (!signals.may_touch(id)) {
       is_done = is_done && hanging_.has(id);

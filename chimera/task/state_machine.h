@@ -21,6 +21,15 @@ namespace chimera {
 enum class State : std::uint8_t { kNotCreated, kOff, kOn, kError };
 inline constexpr int kStates = 4;
 
+/// Where a task stands beside its state. At most one value holds: a signal first ends the standing that it finds.
+enum class Standing : std::uint8_t {
+  kPlain,      ///< the state says all
+  kInService,  ///< not ON: the service thread runs `init` or `kill`, and no other thread uses the task
+  kHalfOn,     ///< not ON: `on` answered "not yet", and `off` must run unless `on` continues
+  kOwesOff,    ///< OFF, after `on` and before `off`: armed for a switch, or left by a switch
+  kWarm        ///< ON: a hot standby, which cycles without readers and counts as OFF for all other tasks
+};
+
 enum class Answer : std::uint8_t {
   kOk = CHIMERA_OK, kFault = CHIMERA_FAULT, kNoEvent = CHIMERA_NO_EVENT, kAborted = CHIMERA_ABORTED, kNotYet = 4
 };

@@ -64,13 +64,14 @@ struct alignas(64) Task {
   bool has_safety = false;  ///< at least one out-var is a safety port
   bool asks_sync = false;   ///< an aperiodic task: sync checks for an event before each cycle
 
-  // Written by the job step, or at cycle boundaries.
+  // Written by the job step, or at cycle boundaries. A flag stays beside `standing` if it can be true in several
+  // standings: a warm task has jobs, news and rows for the tap, and a task in ERROR may be in service.
   bool is_tapped = false;  ///< set at cycle boundaries: each publication goes to the tap as a row
   bool is_busy = false;    ///< a job of the task is running; written by the executor
   Method job_method = Method::kCycle;  ///< the present method of the job, such as sync or error; by atomic_ref
   bool has_news = false;   ///< a fault was recorded or a signal sent that is not handled yet
   State state = State::kNotCreated;
-  bool is_unread = false;  ///< a hot standby: it cycles like a task that is ON, and counts as OFF for all others
+  Standing standing = Standing::kPlain;  ///< written at cycle boundaries only
   std::span<Input> inputs;               ///< rebound at a cycle boundary when producers change
   std::span<LocalGroup* const> copies;   ///< of groups from other contexts, refreshed before the inputs are read
   GroupWriter group;
@@ -93,17 +94,21 @@ struct alignas(64) Task {
   int descriptor = -1;   ///< readable while there is an event, from the end of init to kill; below 0: none
 
   // Written by the executor and the task set at cycle boundaries.
-  bool in_service = false;  ///< the service thread runs init or kill: no other thread uses the task
   std::uint8_t requests_refused = 0;  ///< for configurations, since the start of the run; 255: or more
   bool is_error_told = false;  ///< its reaction on_fault has acted since it went to ERROR
-  bool owes_off = false;    ///< OFF, after `on` and before `off`: armed for a switch, or left by a switch
-  bool is_half_on = false;  ///< OFF, `on` answered not yet: `off` must run unless `on` continues
   FixedVector<Signal, kOutboxSize> pending;  ///< signals that wait for the present method to end
   const chimera_component* component = nullptr;  ///< from the construction of the component on
   chimera_inherited* inherited = nullptr;  ///< by output: the inherited value of its port at the last on
 
   /// The state that other tasks and users see.
-  State shown_state() const noexcept { return is_unread && state == State::kOn ? State::kOff : state; }
+  State shown_state() const noexcept { return is_warm() ? State::kOff : state; }
+  /// False also after a fault of a hot standby, although it keeps its standing until the next cycle boundary.
+  bool is_warm() const noexcept { return standing == Standing::kWarm && state == State::kOn; }
+  bool in_service() const noexcept { return standing == Standing::kInService; }
+  /// True if `off` must run before `signal` has its effect. Then `off` is legal, although other tasks see OFF.
+  bool owes_off_before(Signal signal) const noexcept {
+    return standing == Standing::kOwesOff || (signal != Signal::kOn && (standing == Standing::kHalfOn || is_warm()));
+  }
   /// True if the last method sent signals or requested a configuration, and neither is handled yet.
   bool has_sent() const noexcept { return !outbox.empty() || requested_set != kNoRequest; }
   void forget_sent() noexcept {

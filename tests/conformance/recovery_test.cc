@@ -266,7 +266,7 @@ TEST_P(RecoveryTest, AHotStandbyCyclesUnreadAndIsReadFromTheTakeoverOn) {
   fail_first_in(5);
   go(milliseconds(10));
   EXPECT_EQ(state(kSpare), chimera::State::kOn);
-  EXPECT_FALSE(task(kSpare).is_unread);
+  EXPECT_FALSE(task(kSpare).is_warm());
   EXPECT_EQ(scene.ons_of_spare, 1) << "no on at the takeover";
   EXPECT_EQ(task(kSpare).profile.takeovers, 1u);
   EXPECT_FALSE(was_up());
@@ -285,7 +285,7 @@ TEST_P(RecoveryTest, AHotStandbyThatIsNotReadyIsAskedAgainAPeriodLater) {
   go(milliseconds(10), {signal(microseconds(1400), Signal::kReinit, kThird)});  // one more edge
   ASSERT_EQ(asked.size(), 4u);
   for (std::size_t i = 1; i < asked.size(); ++i) EXPECT_GE(asked[i] - asked[i - 1], 1'000'000) << i;
-  EXPECT_TRUE(task(kSpare).is_unread);
+  EXPECT_TRUE(task(kSpare).is_warm());
 }
 
 TEST_P(RecoveryTest, AHotStandbyIsOffForOtherTasksAndSendsNothing) {
@@ -297,7 +297,7 @@ TEST_P(RecoveryTest, AHotStandbyIsOffForOtherTasksAndSendsNothing) {
   };
   go(milliseconds(10));
   EXPECT_EQ(task(kSpare).shown_state(), chimera::State::kOff);
-  EXPECT_TRUE(task(kSpare).is_unread);
+  EXPECT_TRUE(task(kSpare).is_warm());
   EXPECT_GE(scene.spare_cycles.size(), 9u);
   EXPECT_EQ(runner_->receipts().size(), 0u);
   EXPECT_TRUE(set_->flag().is_on_set_legal());
@@ -310,7 +310,7 @@ TEST_P(RecoveryTest, AHotStandbyRestsWhileItsPrimaryIsOff) {
   go(milliseconds(12), {signal(milliseconds(3), Signal::kOff, kFirst), signal(milliseconds(8), Signal::kOn, kFirst)});
   EXPECT_EQ(scene.ons_of_spare, 2);
   EXPECT_EQ(scene.offs_of_spare, 1);
-  EXPECT_TRUE(task(kSpare).is_unread);
+  EXPECT_TRUE(task(kSpare).is_warm());
   for (const std::int64_t at : scene.spare_cycles) EXPECT_TRUE(at < 5'000'000 || at >= 8'000'000) << at;
 }
 
@@ -329,7 +329,7 @@ TEST_P(RecoveryTest, AHotStandbyThatFailsUnreadMakesPlaceForTheNext) {
   scene.cycle_of_spare = [n = 0](Cycle) mutable -> Outcome { return ++n == 3 ? fault("no voltage") : ok(); };
   go(milliseconds(10));
   EXPECT_EQ(state(kSpare), chimera::State::kError);
-  EXPECT_FALSE(task(kSpare).is_unread);
+  EXPECT_FALSE(task(kSpare).is_warm());
   EXPECT_EQ(state(kThird), chimera::State::kOn);
   EXPECT_FALSE(was_up());
 }
@@ -345,7 +345,7 @@ TEST_P(RecoveryTest, ASwitchToAHotStandbyArmsItAnew) {
   ASSERT_EQ(runner_->receipts().size(), 1u);
   EXPECT_EQ(runner_->receipts()[0].end, SwitchEnd::kDone);
   EXPECT_EQ(state(kSpare), chimera::State::kOn);
-  EXPECT_FALSE(task(kSpare).is_unread);
+  EXPECT_FALSE(task(kSpare).is_warm());
   EXPECT_EQ(scene.ons_of_spare, 2);
   EXPECT_FALSE(was_up());
 }

@@ -221,7 +221,7 @@ TEST_P(Switches, AnOnThatFailsUndoesEverything) {
   EXPECT_TRUE(before == groups());
   EXPECT_EQ(state(kOne), chimera::State::kOn);
   EXPECT_EQ(state(kObserver), chimera::State::kOff);
-  EXPECT_FALSE(set_->tasks()[kObserver.index].owes_off);
+  EXPECT_NE(set_->tasks()[kObserver.index].standing, Standing::kOwesOff);
   EXPECT_EQ(losses(), 0u);
 }
 

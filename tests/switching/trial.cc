@@ -334,7 +334,7 @@ class Run {
     for (std::size_t t = 0; t < n_tasks(); ++t) {
       const TaskId id(t);
       if (!lives(rtpu_of(id))) continue;
-      if (task(id).owes_off) fail("task " + std::to_string(t) + " is armed for nothing");
+      if (task(id).standing == Standing::kOwesOff) fail("task " + std::to_string(t) + " is armed for nothing");
       if (readers_.is_strict() && is_on(id) != is_in(application_.sets[in_force_], id))
         fail("task " + std::to_string(t) + (is_on(id) ? " is ON" : " is not ON"));
     }

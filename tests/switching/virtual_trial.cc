@@ -80,7 +80,7 @@ class VirtualRun {
     }
     for (const auto& set : sets_)
       for (const Task& task : set->tasks())
-        if (task.owes_off) fail("a task is armed for nothing");
+        if (task.standing == Standing::kOwesOff) fail("a task is armed for nothing");
   }
   std::uint32_t life_of(TaskId producer, const SwitchReceipt& receipt, const std::string& which) {
     for (auto life = static_cast<std::uint32_t>(stage.lives.size() - 1); life > 0; --life) {

@@ -72,7 +72,7 @@ void BoundarySignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
 void BoundarySignals::carry_out_pending(Nanoseconds now) noexcept {
   for (Task& task : set_.tasks()) {
     Signal signal;
-    while (!task.pending.empty() && !task.in_service && may_touch(task.id) && set_.sent().take_pending(task, signal))
+    while (!task.pending.empty() && !task.in_service() && may_touch(task.id) && set_.sent().take_pending(task, signal))
       carry_out(task, signal, now);
   }
 }
@@ -91,9 +91,9 @@ void BoundarySignals::ring(Task& task, Nanoseconds now) noexcept {
 
 SignalReport BoundarySignals::signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept {
   const bool was_illegal = set_.flag().is_up();
-  const bool was_unread = tasks.size() == 1 && set_.tasks()[tasks[0].index].is_unread;
+  const bool was_warm = tasks.size() == 1 && set_.tasks()[tasks[0].index].is_warm();
   const SignalReport report = set_.life().signal(tasks, signal, now);
-  if (was_unread && signal == Signal::kOn && report)
+  if (was_warm && signal == Signal::kOn && report)
     tap_.record(TapKind::kState, now, tasks[0], static_cast<std::uint64_t>(State::kOn));
   record(report, was_illegal, now);
   return report;

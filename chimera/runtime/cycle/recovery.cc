@@ -79,7 +79,7 @@ void Recovery::keep_warm(HotStandby& standby, Nanoseconds now) noexcept {
   const TaskId id = standby.task;
   Task& task = set.tasks()[id.index];
   const bool wanted = set.standbys().keeps_warm(id);
-  if (wanted == task.is_unread || task.in_service || task.shown_state() != State::kOff) return;
+  if (wanted == task.is_warm() || task.in_service() || task.shown_state() != State::kOff) return;
   if (!parts_.switching.is_free() || !parts_.signals.may_touch(id)) {
     look_again(now, now + task.spec->period);
   } else if (!wanted) {
@@ -94,13 +94,13 @@ void Recovery::keep_warm(HotStandby& standby, Nanoseconds now) noexcept {
   } else {
     parts_.signals.warm_up(id, now);
     standby.again_at = ask_again_at(task, now);
-    if (!task.is_unread && task.state == State::kOff) look_again(standby.again_at, standby.again_at);
+    if (task.state == State::kOff) look_again(standby.again_at, standby.again_at);
   }
 }
 
 // A switch that is not committed gives way to it; the change of one that is comes first.
 bool Recovery::may_touch(Task& task) noexcept {
-  return !task.in_service && parts_.switching.give_way(task.id) && parts_.signals.may_touch(task.id);
+  return !task.in_service() && parts_.switching.give_way(task.id) && parts_.signals.may_touch(task.id);
 }
 
 // The task that failed, of this context, closes the resource that the next one opens. False: later.
@@ -109,7 +109,7 @@ bool Recovery::give_up_resource(std::size_t group, TaskId to, Nanoseconds now) n
   const TaskId failed = set.standbys().loss(group).task;
   if (!set.is_mine(failed) || !set.life().judge().rivals().are(failed, to)) return true;
   Task& task = set.tasks()[failed.index];
-  if (task.in_service || task.state != State::kError) return true;
+  if (task.in_service() || task.state != State::kError) return true;
   if (!set.is_mine(to)) {  // its context must see the ERROR first: a kill alone is no failure
     TaskId& closes = takeovers_[group].closes;
     const bool is_shown = closes == failed;  // at the end of the last cycle boundary
@@ -156,10 +156,10 @@ void Recovery::rule_out(std::size_t group, Task& task, NoSwitch why, Nanoseconds
 bool Recovery::turn_on(std::size_t group, Task& task, Nanoseconds now) noexcept {
   TaskSet& set = parts_.set;
   Nanoseconds& again_at = takeovers_[group].again_at;
-  if (task.is_half_on && now < again_at) return look_again(again_at, again_at), true;
+  if (task.standing == Standing::kHalfOn && now < again_at) return look_again(again_at, again_at), true;
   if (!set.life().judge().would_be_legal({&task.id, 1})) return true;  // once an input has a producer again
   const Standbys::Loss loss = set.standbys().loss(group);
-  const bool was_hot = task.is_unread;
+  const bool was_hot = task.is_warm();
   const Nanoseconds began = set.methods().clock()->now();
   record_.begin(group, task.id);
   const SignalReport report = parts_.signals.signal({&task.id, 1}, Signal::kOn, now);
@@ -168,7 +168,7 @@ bool Recovery::turn_on(std::size_t group, Task& task, Nanoseconds now) noexcept 
     again_at = ask_again_at(task, now);
     return look_again(again_at, again_at), true;
   }
-  if (task.is_half_on) (void)parts_.signals.signal({&task.id, 1}, Signal::kOff, now);
+  if (task.standing == Standing::kHalfOn) (void)parts_.signals.signal({&task.id, 1}, Signal::kOff, now);
   if (task.state == State::kOn) {
     count(task.profile.takeovers);
     note(task, "took over from ", loss.task);
@@ -192,7 +192,7 @@ bool Recovery::take_over(std::size_t group, Nanoseconds now) noexcept {
       return true;
     }
     if (!give_up_resource(group, id, now)) return false;
-    if (!set.is_mine(id) || set.tasks()[id.index].in_service) return true;
+    if (!set.is_mine(id) || set.tasks()[id.index].in_service()) return true;
     Task& task = set.tasks()[id.index];
     if (!may_touch(task)) return false;
     if (!create(group, task, now)) {

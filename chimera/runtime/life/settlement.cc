@@ -15,7 +15,7 @@ void Settlement::settle_job(TaskId id, Nanoseconds now) noexcept {
 void Settlement::settle_at_once(TaskId id, Nanoseconds now) noexcept {
   std::uint8_t left = parts_.records[id.index].left.fetch_and(JobRecord::kSettle, std::memory_order_relaxed);
   const Task& task = parts_.set.tasks()[id.index];
-  if (task.is_unread) left &= JobRecord::kFindCause;  // no task reads its outputs
+  if (task.standing == Standing::kWarm) left &= JobRecord::kFindCause;  // no task reads its outputs
   const TaskSpec& spec = *task.spec;
   if (left & JobRecord::kRaiseFlag) raise_flag(id, State::kOn, now);
   if (left & JobRecord::kStop) stop(id);
@@ -33,7 +33,7 @@ void Settlement::publish() noexcept {
 void Settlement::settle(Task& task, Nanoseconds now) noexcept {
   record_faults(task);
   if (task.is_tapped) parts_.tap.append_row(task);
-  if (task.is_unread) task.forget_sent();
+  if (task.standing == Standing::kWarm) task.forget_sent();
   if (task.has_sent()) parts_.set.sent().deliver(task);
   if (task.state != State::kOn) {
     parts_.set.on_set_changed();

@@ -32,7 +32,7 @@ TaskId SignalJudge::find_rival(TaskId task) const noexcept {
   for (const Task& each : set_.tasks()) {
     if (!rivals_.are(task, each.id)) continue;
     const bool is_mine = set_.is_mine(each.id);
-    const bool is_held = is_mine ? each.state != State::kNotCreated || each.in_service
+    const bool is_held = is_mine ? each.state != State::kNotCreated || each.in_service()
                                  : set_.others()->presence(each.id).is_held;
     if (is_held) return each.id;
   }

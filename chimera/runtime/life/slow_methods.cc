@@ -19,7 +19,7 @@ void SlowMethods::prepare(std::span<Task> tasks, std::span<TaskHost> hosts, Task
 void SlowMethods::ask(Task& task, const Asked& asked) noexcept {
   asked_[task.id.index] = asked;
   if (task.state == State::kOn) task.state = State::kOff;
-  task.in_service = true;
+  task.standing = Standing::kInService;
   service_->ask(task.id);
 }
 
@@ -45,7 +45,7 @@ void SlowMethods::run(TaskId id, JobClock& clock) {
 }
 
 SlowMethods::Outcome SlowMethods::finish(Task& task) noexcept {
-  task.in_service = false;
+  task.standing = Standing::kPlain;
   return asked_[task.id.index].outcome;
 }
 

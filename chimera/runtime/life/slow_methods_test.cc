@@ -80,7 +80,7 @@ struct SlowMethodsTest : ::testing::Test {
 TEST_F(SlowMethodsTest, ConstructionAndInitAreRunByTheServiceThreadOneAfterTheOther) {
   const SignalReport asked = set->life().signal(kSlow, Signal::kSpawn, {});
   EXPECT_TRUE(asked.is_deferred);
-  EXPECT_TRUE(task().in_service);
+  EXPECT_TRUE(task().in_service());
   EXPECT_EQ(story, "");
   const SignalReport constructed = serve();
   EXPECT_TRUE(constructed.is_deferred) << "init is to come";
@@ -88,7 +88,7 @@ TEST_F(SlowMethodsTest, ConstructionAndInitAreRunByTheServiceThreadOneAfterTheOt
   const SignalReport done = serve();
   EXPECT_FALSE(done.is_deferred);
   EXPECT_EQ(done.after, State::kOff);
-  EXPECT_FALSE(task().in_service);
+  EXPECT_FALSE(task().in_service());
   EXPECT_EQ(story, "init served; ");
 }
 
@@ -120,7 +120,7 @@ TEST_F(SlowMethodsTest, ATaskThatIsBeingKilledIsOnNoMore) {
   (void)signal(Signal::kOn);
   (void)set->life().signal(kSlow, Signal::kKill, {});
   EXPECT_EQ(task().state, State::kOff);
-  EXPECT_TRUE(task().in_service);
+  EXPECT_TRUE(task().in_service());
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ void TaskLife::turn_off_started(Nanoseconds now) {
   const auto start = set_.spec().start;
   for (std::size_t i = start.size(); i-- > 0;) {
     const Task& task = set_.tasks()[start[i].index];
-    if (task.state == State::kOn || task.is_half_on) carry_out(start[i], Signal::kOff, now);
+    if (task.state == State::kOn || task.standing == Standing::kHalfOn) carry_out(start[i], Signal::kOff, now);
   }
 }
 
@@ -64,7 +64,7 @@ SignalReport TaskLife::signal(std::span<const TaskId> tasks, Signal signal, Nano
     const Task& task = set_.tasks()[id.index];
     report.task = id;
     report.before = report.after = task.shown_state();
-    const bool is_due = signal == Signal::kOff && (task.owes_off || task.is_half_on || task.is_unread);
+    const bool is_due = signal == Signal::kOff && task.owes_off_before(signal);
     if (is_due || next(report.before, signal, task.spec->aperiodic).kind != Next::Kind::kImpossible) continue;
     report.why = Refusal::kState;
     return report;
@@ -90,15 +90,12 @@ SignalReport TaskLife::signal(std::span<const TaskId> tasks, Signal signal, Nano
 
 SignalReport TaskLife::carry_out(TaskId id, Signal signal, Nanoseconds now) {
   Task& task = set_.tasks()[id.index];
-  if (task.owes_off || (task.is_half_on && signal != Signal::kOn)) {
+  if (signal == Signal::kOn && task.is_warm()) return show(task);
+  if (task.owes_off_before(signal)) {
     const SignalReport settled = settle_off(id, now);
-    if (signal == Signal::kOff || task.state != State::kOff) return settled;
+    if (signal == Signal::kOff || next(task.state, signal, false).kind == Next::Kind::kImpossible) return settled;
   }
   Progress& progress = progress_[id.index];
-  if (task.is_unread && signal == Signal::kOn) return show(task);
-  if (task.is_unread && signal != Signal::kOff) (void)carry_out(id, Signal::kOff, now);
-  if (task.is_unread) task.forget_sent();
-  task.is_unread = false;
   progress = Progress{};
   progress.is_moved = is_moving_;
   progress.report = {true, false, Refusal::kNone, signal, id, task.state, task.state};
@@ -144,11 +141,11 @@ SignalReport TaskLife::arm(TaskId id, Nanoseconds now) {
   is_arming_ = true;
   SignalReport report = carry_out(id, Signal::kOn, now);
   is_arming_ = false;
-  task.owes_off = task.state == State::kOn;
-  if (task.owes_off) {
+  report.is_accepted = task.state == State::kOn;
+  if (report.is_accepted) {
     report.after = task.state = State::kOff;
+    task.standing = Standing::kOwesOff;
   } else {
-    report.is_accepted = false;
     if (report.why != Refusal::kNotYet) report.why = Refusal::kFault;
     task.forget_sent();
   }
@@ -157,28 +154,27 @@ SignalReport TaskLife::arm(TaskId id, Nanoseconds now) {
 
 SignalReport TaskLife::warm_up(TaskId id, Nanoseconds now) {
   Task& task = set_.tasks()[id.index];
-  is_arming_ = true;
-  SignalReport report = carry_out(id, Signal::kOn, now);
-  is_arming_ = false;
-  task.forget_sent();
-  task.is_unread = task.state == State::kOn;
-  report.after = task.shown_state();
-  report.is_accepted = task.is_unread;
-  if (!report.is_accepted) report.why = Refusal::kFault;
+  const SignalReport report = arm(id, now);
+  if (report) {
+    task.forget_sent();
+    task.state = State::kOn;
+    task.standing = Standing::kWarm;
+  }
   set_.on_set_changed();
   return report;
 }
 
 // Readers of the task's variables now read them from its group.
 SignalReport TaskLife::show(Task& task) {
-  task.is_unread = false;
+  task.standing = Standing::kPlain;
   set_.sources().take_outputs_of(task);
   return {true, false, Refusal::kNone, Signal::kOn, task.id, State::kOff, State::kOn};
 }
 
 SignalReport TaskLife::settle_off(TaskId id, Nanoseconds now) {
   Task& task = set_.tasks()[id.index];
-  task.owes_off = task.is_half_on = false;
+  if (task.is_warm()) task.forget_sent();
+  task.standing = Standing::kPlain;
   task.state = State::kOn;  // as `off` finds it
   return carry_out(id, Signal::kOff, now);
 }
@@ -245,7 +241,7 @@ Next TaskLife::conclude(Task& task, const StepRule& step, Answer answer, Nanosec
   if (answer == Answer::kOk) answer = after_ok(task, step, now);
   task.profile.add_call(step.method, progress.used + (read_clock(now) - began));
   if (progress.has_new_constants && !progress.is_moved) reinit_users(task.id, now);
-  if (step.step == Step::kOn) task.is_half_on = answer == Answer::kNotYet;
+  if (step.step == Step::kOn) task.standing = answer == Answer::kNotYet ? Standing::kHalfOn : Standing::kPlain;
   if (answer == Answer::kNotYet) {
     progress.report.is_accepted = false;
     progress.report.why = Refusal::kNotYet;
@@ -300,7 +296,7 @@ void TaskLife::reinit_users(TaskId of, Nanoseconds now) {
       continue;
     }
     Task& user = set_.tasks()[id.index];
-    const bool waits = user.in_service || user.is_busy;
+    const bool waits = user.in_service() || user.is_busy;
     if (waits && spec.uses_constant_of(id, of)) set_.sent().defer(user, Signal::kReinit);
     if (waits || (user.state != State::kOff && user.state != State::kOn)) continue;
     if (set_.constants().uses_changed(id)) (void)carry_out(id, Signal::kReinit, now);

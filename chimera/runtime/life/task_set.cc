@@ -110,8 +110,8 @@ void TaskSet::on_set_changed() noexcept {
   flag_.follow(on_, standbys_.is_any_uncovered());
   for (Task& task : tasks_) {
     if (!is_mine(task.id)) continue;
-    if (task.state != State::kOn) task.is_unread = false;
-    const TaskStatus now{task.shown_state(), task.in_service, memories_[task.id.index].incarnation()};
+    if (task.standing == Standing::kWarm && !task.is_warm()) task.standing = Standing::kPlain;
+    const TaskStatus now{task.shown_state(), task.in_service(), memories_[task.id.index].incarnation()};
     TaskStatus& listed = listed_[task.id.index];
     if (now != listed) changes_.add_status(task.id, listed, now);
     listed = now;

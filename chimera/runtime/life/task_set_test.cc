@@ -324,5 +324,23 @@ TEST(TaskSet, WorksInBytesThatItIsGivenAndTakesNoMoreWhileItRuns) {
   EXPECT_EQ(memory.used(), used);
 }
 
+TEST(TaskLife, KillsArmedTaskAndHotStandbyAlthoughTheirOffFails) {
+  TestApplication app;
+  app.add("jammed", component<Jammed>("jammed"));
+  app.make();
+  for (const bool is_armed : {true, false}) {
+    const auto set = make(app);
+    const Task& task = set->tasks()[0];
+    ASSERT_TRUE(set->life().signal(task.id, Signal::kSpawn, {}));
+    EXPECT_TRUE(is_armed ? set->life().arm(task.id, {}) : set->life().warm_up(task.id, {}));
+    EXPECT_EQ(task.standing, is_armed ? Standing::kOwesOff : Standing::kWarm);
+    EXPECT_EQ(task.shown_state(), State::kOff);
+    EXPECT_TRUE(set->life().signal(task.id, Signal::kKill, {}));
+    EXPECT_EQ(task.faults.off_count, 1u);
+    EXPECT_EQ(task.state, State::kNotCreated);
+    EXPECT_EQ(task.standing, Standing::kPlain);
+  }
+}
+
 }  // namespace
 }  // namespace chimera

@@ -40,7 +40,7 @@ void ContextTap::flush(TaskId id) noexcept {
 
 void ContextTap::append_row(const Task& task) noexcept {
   Rows& rows = rows_[task.id.index];
-  if (task.is_unread) return;  // its publications are no values of variables
+  if (task.standing == Standing::kWarm) return;  // its publications are no values of variables
   if (tap_ == nullptr || task.group.sequence() == rows.last || task.group.sequence() == 0) return;
   rows.last = task.group.sequence();
   tap_->append_row(*task.group.published(), task.group.payload_bytes(), task.id, rtpu_, rows.count++);

@@ -35,7 +35,7 @@ bool cool_down(TaskSet& set, JobThreads& threads, Members& members, const Switch
   bool are_all = true;
   for (const TaskId id : plan.arriving) {
     Task& task = set.tasks()[id.index];
-    if (!set.is_mine(id) || !task.is_unread) continue;
+    if (!set.is_mine(id) || !task.is_warm()) continue;
     if (!threads.claim(id)) {
       are_all = false;
       continue;
@@ -64,8 +64,9 @@ Disturbance find_disturbance(TaskSet& set, const SwitchPlan& plan, std::size_t n
                              const UndisturbedState& before, const SwitchPeers& peers) noexcept {
   for (std::size_t i = 0; i < plan.arriving.size(); ++i) {
     const Task& each = set.tasks()[plan.arriving[i].index];
-    const bool is_off = each.state == State::kOff && !each.in_service;
-    if (set.is_mine(each.id) && !(is_off && each.owes_off == (i < n_armed))) return {NoSwitch::kDisturbed, each.id};
+    const bool is_off = each.state == State::kOff && !each.in_service();
+    const bool is_armed = each.standing == Standing::kOwesOff;
+    if (set.is_mine(each.id) && !(is_off && is_armed == (i < n_armed))) return {NoSwitch::kDisturbed, each.id};
   }
   for (const auto ids : {plan.leaving, plan.staying})
     for (const TaskId id : ids)

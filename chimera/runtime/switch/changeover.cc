@@ -38,9 +38,10 @@ void Changeover::make(const SwitchPlan& plan, const TaskBits& after, Nanoseconds
     has_old_job_[task.id.index] = set_.is_mine(task.id) && threads_.has_job_before(task.id, at);
   for (const TaskId id : plan.arriving) {
     Task& arriving = set_.tasks()[id.index];
-    if (!set_.is_mine(id) || !arriving.owes_off) continue;  // a signal after the commit had it turned OFF
+    // A signal after the commit had it turned OFF.
+    if (!set_.is_mine(id) || arriving.standing != Standing::kOwesOff) continue;
     arriving.state = State::kOn;
-    arriving.owes_off = false;
+    arriving.standing = Standing::kPlain;
   }
   set_.sources().hand_over(has_old_job_);
   for (const TaskId id : plan.leaving)
@@ -60,8 +61,10 @@ void Changeover::make(const SwitchPlan& plan, const TaskBits& after, Nanoseconds
 }
 
 void Changeover::leave(Task& leaving, Nanoseconds at) noexcept {
-  leaving.owes_off = leaving.state == State::kOn;
-  if (leaving.owes_off) leaving.state = State::kOff;
+  if (leaving.state == State::kOn) {
+    leaving.state = State::kOff;
+    leaving.standing = Standing::kOwesOff;
+  }
   members_.follow(leaving, at);
 }
 

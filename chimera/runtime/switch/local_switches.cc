@@ -50,7 +50,7 @@ TaskStanding LocalSwitches::standing(TaskId id) const noexcept {
   const Task& task = member.tasks->tasks()[id.index];
   const State state = task.shown_state();
   const bool is_lost = member.is_dead && state != State::kNotCreated;
-  return {is_lost ? State::kError : state, member.is_dead || task.in_service};
+  return {is_lost ? State::kError : state, member.is_dead || task.in_service()};
 }
 
 Profile LocalSwitches::profile(TaskId task) const noexcept {

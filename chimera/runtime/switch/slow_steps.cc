@@ -28,7 +28,7 @@ void CreationSteps::begin() noexcept {
 
 StepEnd CreationSteps::cut(const Task& task, Signal signal) noexcept {
   if (asked_ != task.id) return StepEnd::kFailed;
-  if (task.in_service) return StepEnd::kWaits;
+  if (task.in_service()) return StepEnd::kWaits;
   asked_ = TaskId();
   mark(task.id, signal, true);
   return StepEnd::kDone;
@@ -46,7 +46,7 @@ StepEnd SlowSteps::carry_out(const SlowStep& step, Nanoseconds now) noexcept {
   Task& each = task(step.task);
   wake_ = kNever;
   if (step.act == SlowAct::kCheck) return check(each);
-  if (is_under_way(step.task) && each.in_service) return StepEnd::kWaits;  // its end asks for a cycle boundary
+  if (is_under_way(step.task) && each.in_service()) return StepEnd::kWaits;  // its end asks for a cycle boundary
   if (!parts_.threads.claim(step.task)) return StepEnd::kWaits;           // so does the end of its job
   switch (step.act) {
     case SlowAct::kOff: return turn_off(each, now);
@@ -103,7 +103,7 @@ bool SlowSteps::waits_for_idle(Nanoseconds now) noexcept {
 
 // One that was not ready is asked again a period later.
 bool SlowSteps::waits_for_device(const Task& task, Nanoseconds now) noexcept {
-  if (!task.is_half_on || now >= again_at_) return false;
+  if (task.standing != Standing::kHalfOn || now >= again_at_) return false;
   wake_ = again_at_;
   return true;
 }
@@ -182,7 +182,7 @@ StepEnd SlowSteps::turn_on(Task& task, Nanoseconds now) noexcept {
 
 StepEnd SlowSteps::leave(const SlowStep& step, Nanoseconds now) noexcept {
   Task& each = task(step.task);
-  if (step.act == SlowAct::kOn && each.is_half_on) {
+  if (step.act == SlowAct::kOn && each.standing == Standing::kHalfOn) {
     if (!parts_.threads.claim(each.id)) return StepEnd::kWaits;
     (void)move(each, Signal::kOff, now);
   }
@@ -194,7 +194,7 @@ StepEnd SlowSteps::undo(const SlowStep& step, Nanoseconds now) noexcept {
   Task& each = task(step.task);
   ContextConstants& constants = parts_.set.constants();
   wake_ = kNever;
-  if (each.in_service || !parts_.threads.claim(step.task)) return StepEnd::kWaits;
+  if (each.in_service() || !parts_.threads.claim(step.task)) return StepEnd::kWaits;
   constants.read_foreign();
   constants.put_in_force(order_->constants);
   parts_.set.sources().follow_others();

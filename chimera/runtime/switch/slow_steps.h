@@ -60,7 +60,7 @@ class CreationSteps {
       asked_ = task.id;
       move(task, signal);
     }
-    if (task.in_service) return StepEnd::kWaits;
+    if (task.in_service()) return StepEnd::kWaits;
     asked_ = TaskId();
     return StepEnd::kDone;
   }

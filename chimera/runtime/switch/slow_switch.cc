@@ -140,7 +140,7 @@ bool SlowSwitch::is_as_left(const Task& task, std::size_t done) const noexcept {
     else if (steps_[i].act == SlowAct::kOn) state = State::kOn;
   }
   if (here_.is_under_way(task.id)) return true;
-  return !task.in_service && (task.state == state || (is_to_come && task.state == State::kNotCreated));
+  return !task.in_service() && (task.state == state || (is_to_come && task.state == State::kNotCreated));
 }
 
 TaskId SlowSwitch::find_disturbed(std::size_t done) const noexcept {

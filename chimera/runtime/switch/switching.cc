@@ -14,7 +14,7 @@ namespace {
 void note_standing(const TaskSet& set, std::span<TaskStanding> standing) noexcept {
   for (const Task& each : set.tasks()) {
     const bool is_elsewhere = set.others() != nullptr && !set.is_mine(each.id);
-    standing[each.id.index] = {is_elsewhere ? set.others()->state(each.id) : each.shown_state(), each.in_service};
+    standing[each.id.index] = {is_elsewhere ? set.others()->state(each.id) : each.shown_state(), each.in_service()};
   }
 }
 
@@ -264,8 +264,7 @@ bool Switching::arm(Task& next, Nanoseconds now) noexcept {
   if (report) {
     ++next_armed_;
   } else if (report.why == Refusal::kNotYet) {  // `off` of this task is called with that of the armed tasks
-    next.is_half_on = false;
-    next.owes_off = true;
+    next.standing = Standing::kOwesOff;
     ++next_armed_;
     abort(NoSwitch::kNotReady, next.id, {});
   } else {
@@ -344,7 +343,7 @@ void Switching::abort(NoSwitch why, TaskId of, VariableId variable) noexcept {
     return;
   }
   for (const TaskId id : plan_.arriving)
-    if (parts_.set.is_mine(id) && task(id).owes_off) task(id).forget_sent();
+    if (parts_.set.is_mine(id) && task(id).standing == Standing::kOwesOff) task(id).forget_sent();
   phase_ = Phase::kUndoing;
 }
 
@@ -376,7 +375,7 @@ bool Switching::turn_off_all(Nanoseconds now, bool at_once) noexcept {
   for (; n_off_ < n; ++n_off_) {
     Task& next = task(undoes ? plan_.arriving[n - 1 - n_off_] : plan_.leaving[n_off_]);
     // A task of another context, or a signal has turned the task OFF before.
-    if (!parts_.set.is_mine(next.id) || !next.owes_off) continue;
+    if (!parts_.set.is_mine(next.id) || next.standing != Standing::kOwesOff) continue;
     const bool is_unknown = next.profile.execution[static_cast<int>(Method::kOff)].count == 0;
     const Nanoseconds patience = is_unknown ? IdleGap::kLongestWait : kSwitchPatience;
     const Nanoseconds most = parts_.threads.preempt() ? gap_.soon() : patience;
