@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "chimera/runtime/job/job_step.h"
+#include "chimera/runtime/switch/present_value.h"
 
 namespace chimera {
 

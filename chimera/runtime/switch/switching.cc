@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "chimera/base/assert.h"
+#include "chimera/runtime/switch/present_value.h"
 #include "chimera/runtime/switch/switch_orders.h"
 
 namespace chimera {
