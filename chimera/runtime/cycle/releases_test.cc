@@ -10,7 +10,7 @@
 namespace chimera {
 namespace {
 
-struct Sender {  // signals the other task, or fails for ever, when told
+struct FailingSender {  // signals the other task, or fails for ever, when told
   Out<double> x{"x", "1", initial = 0.0};
   Outcome cycle(Cycle c) {
     if (std::exchange(turns_off, false)) c.signal(Signal::kOff, "slow");
@@ -20,7 +20,7 @@ struct Sender {  // signals the other task, or fails for ever, when told
   static inline bool turns_off = false, fails = false;
 };
 
-struct Reader {
+struct SlowReader {
   In<double> x{"x", "1"};
   void cycle(Cycle) {}
 };
@@ -31,9 +31,9 @@ constexpr Nanoseconds kEnd = milliseconds(100);
 /// A task of 1 ms and one of 3 ms that reads from it.
 struct ReleasesTest : ::testing::Test {
   ReleasesTest() {
-    Sender::turns_off = Sender::fails = false;
-    app.add("fast", testing::component<Sender>("sender"), milliseconds(1));
-    app.add("slow", testing::component<Reader>("reader"), milliseconds(3));
+    FailingSender::turns_off = FailingSender::fails = false;
+    app.add("fast", testing::component<FailingSender>("sender"), milliseconds(1));
+    app.add("slow", testing::component<SlowReader>("reader"), milliseconds(3));
   }
   /// The grid of releases begins at 10 ms.
   void begin() {
@@ -110,7 +110,7 @@ TEST_F(ReleasesTest, LooksUpForAnActOfTheScript) {
 
 TEST_F(ReleasesTest, LooksUpAtOnceForASignalThatAJobSent) {
   begin();
-  Sender::turns_off = true;
+  FailingSender::turns_off = true;
   run_all(milliseconds(10));
   EXPECT_TRUE(releases->must_look(milliseconds(10)));
   EXPECT_TRUE(releases->edge_is_due(milliseconds(10)));
@@ -174,7 +174,7 @@ TEST_F(ReleasesTest, AReactionThatRefusesLateStartsNeedsTheDeadlineItself) {
 
 TEST_F(ReleasesTest, WhatAJobLeavesIsSettledAtItsEnd) {
   begin();
-  Sender::fails = true;
+  FailingSender::fails = true;
   releases->release_due(milliseconds(10));
   releases->rest(kEnd);
   EXPECT_TRUE(run_next(milliseconds(10)));
