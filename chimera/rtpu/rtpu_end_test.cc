@@ -10,27 +10,27 @@ namespace {
 
 using testing::component;
 
-struct Giver {
+struct EndedGiver {
   Out<double> x{"x", "1", initial = 0.0};
   void cycle(Cycle) { *x = 1; }
 };
-struct Taker {
+struct EndedTaker {
   In<double> x{"x", "1"};
   void cycle(Cycle) {}
 };
 
-constexpr TaskId kGiver{0u}, kTaker{1u};
+constexpr TaskId kEndedGiver{0u}, kEndedTaker{1u};
 
 // The taker, in its own rtpu, must go OFF before the giver.
 struct RtpuEndTest : ::testing::Test {
   RtpuEndTest() {
     app.rtpus = {{"gives", 0, Policy::kEdf}, {"takes", 1, Policy::kEdf}};
-    app.add("giver", component<Giver>("giver")).rtpu = RtpuId(0u);
-    app.add("taker", component<Taker>("taker")).rtpu = RtpuId(1u);
-    app.make({kGiver, kTaker}, false);
+    app.add("giver", component<EndedGiver>("giver")).rtpu = RtpuId(0u);
+    app.add("taker", component<EndedTaker>("taker")).rtpu = RtpuId(1u);
+    app.make({kEndedGiver, kEndedTaker}, false);
     rtpus = std::make_unique<testing::TestRtpus>(app);
     rtpus->run(milliseconds(1));
-    rtpus->bring_up({kGiver, kTaker});
+    rtpus->bring_up({kEndedGiver, kEndedTaker});
   }
   testing::TestRtpu& rtpu(std::size_t u) { return *rtpus->rtpus[u]; }
   RtpuEnd& end_of(std::size_t u) { return rtpu(u).edge->rtpu_end(); }
@@ -46,10 +46,10 @@ TEST_F(RtpuEndTest, KillsItsTasksAndSaysSo) {
   rtpus->change();
   rtpus->run(milliseconds(1100));  // its rtpu waits one second for the giver
   EXPECT_TRUE(end_of(1).is_over());
-  EXPECT_EQ(rtpu(1).state(kTaker), State::kNotCreated);
+  EXPECT_EQ(rtpu(1).state(kEndedTaker), State::kNotCreated);
   EXPECT_EQ(phase(1), PeerPhase::kEnded);
   EXPECT_FALSE(end_of(0).is_over());
-  EXPECT_EQ(rtpu(0).state(kGiver), State::kOn) << "the other rtpu goes on";
+  EXPECT_EQ(rtpu(0).state(kEndedGiver), State::kOn) << "the other rtpu goes on";
 }
 
 TEST_F(RtpuEndTest, WaitsForTheConsumersOfOtherRtpus) {
@@ -58,28 +58,28 @@ TEST_F(RtpuEndTest, WaitsForTheConsumersOfOtherRtpus) {
   rtpus->run(milliseconds(500));
   EXPECT_FALSE(end_of(0).is_over());
   EXPECT_EQ(phase(0), PeerPhase::kEnding);
-  EXPECT_EQ(rtpu(0).state(kGiver), State::kOn);
+  EXPECT_EQ(rtpu(0).state(kEndedGiver), State::kOn);
   end_of(1).tell(false);
   rtpus->change();
   rtpus->run(milliseconds(5));
   EXPECT_TRUE(end_of(0).is_over());
 }
 
-TEST_F(RtpuEndTest, WaitsForNobodyWhenAJobOfItsOwnHangs) {
-  rtpu(0).edge->hanging().note(TaskWord(kGiver, Method::kCycle), seconds(1));
+TEST_F(RtpuEndTest, EndsWithoutWaitingWhenAJobOfItsOwnHangs) {
+  rtpu(0).edge->hanging().note(TaskWord(kEndedGiver, Method::kCycle), seconds(1));
   end_of(0).tell(false);
   rtpus->change();
   rtpus->run(milliseconds(5));
   EXPECT_TRUE(end_of(0).is_over());
 }
 
-TEST_F(RtpuEndTest, LeavesItsSuccessorWhatWasOnWhenItEndsAloneAndWaitsForNobody) {
+TEST_F(RtpuEndTest, KeepsTheStatesForItsSuccessorWhenItEndsAlone) {
   end_of(1).tell(true);
   rtpus->change();
   rtpus->run(milliseconds(5));
   EXPECT_TRUE(end_of(1).is_over());
-  EXPECT_EQ(rtpu(1).state(kTaker), State::kOn) << "as the others are shown";
-  EXPECT_EQ(rtpu(1).tasks->tasks()[kTaker.index].state, State::kNotCreated);
+  EXPECT_EQ(rtpu(1).state(kEndedTaker), State::kOn) << "as the others are shown";
+  EXPECT_EQ(rtpu(1).tasks->tasks()[kEndedTaker.index].state, State::kNotCreated);
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ def is_closed(one):
 
 
 class ControlServer(unittest.TestCase):
-    """One subsystem for all tests: what they do to it must not change it."""
+    """One subsystem for all tests: their attacks must not change it."""
 
     @classmethod
     def setUpClass(cls):
@@ -64,14 +64,14 @@ class ControlServer(unittest.TestCase):
                                 env=self.system.environment, cwd=self.system.place)
 
     def says(self, *words):
-        """(exit code, what it said)"""
+        """(exit code, output)"""
         done = self.system.chimera(*words, code=None)
         return done.returncode, done.stdout + done.stderr
 
     def closings(self):
         return self.system.texts("closed")
 
-    @unittest.skipUnless(os.getuid() == 0, "only root can become somebody else")
+    @unittest.skipUnless(os.getuid() == 0, "only root can become another user")
     def test_four_users_who_may_look_do_not_shut_out_the_owner(self):
         crowds = [subprocess.Popen(["/usr/bin/python3", "-c", HOLD, str(self.system.socket), "16", ""], user=user,
                                    group=65534, extra_groups=[OBSERVERS.gr_gid], stdin=subprocess.PIPE,

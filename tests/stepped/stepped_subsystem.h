@@ -241,7 +241,7 @@ class SteppedSubsystem {
     std::vector<LibraryEntry> named;
     for (const LibraryEntry& entry : all.entries())
       if (description.find("component: " + entry.descriptor.name) != description.npos) named.push_back(entry);
-    return {"0.1.0", "test.yaml", description, {}, {}, {}, Library::of_entries(std::move(named), all.rtpus())};
+    return {"0.1.0", "test.yaml", description, {}, {}, {}, Library::of_entries(std::move(named), all.units())};
   }
   /// Objects stay open for all tests of the process: what a component keeps in static variables is shared.
   const chimera_component* component_of(const TaskSpec& task) {

@@ -335,7 +335,7 @@ std::vector<Reading> RemoteTarget::read(const std::vector<std::string>& names) {
   std::vector<Reading> readings;
   for (const std::string& name : names) {
     const Json& reading = std::as_const(values)[name];
-    readings.push_back({seen_of(reading), text_at(reading, "rtpu", "1"), reading["value"].dump()});
+    readings.push_back({seen_of(reading), text_at(reading, "unit", "1"), reading["value"].dump()});
   }
   return readings;
 }
@@ -369,11 +369,11 @@ std::optional<RunEnd> RemoteTarget::advance(Nanoseconds until) {
 
 std::vector<RtpuFate> RemoteTarget::rtpus_of(const Json& status) const {
   std::vector<RtpuFate> rtpus;
-  for (const Json& rtpu : status["rtpus"]) {
-    RtpuFate rtpu{text_at(rtpu, "name"),
-                  static_cast<std::uint64_t>(whole_at(rtpu, "restarts")),
+  for (const Json& json : status["rtpus"]) {
+    RtpuFate rtpu{text_at(json, "name"),
+                  static_cast<std::uint64_t>(whole_at(json, "restarts")),
                   kNever,
-                  truth_at(rtpu, "given_up"),
+                  truth_at(json, "given_up"),
                   {}};
     if (const auto at = restarted_.find(rtpu.name); at != restarted_.end() && started_ != kNever)
       rtpu.restarted = at->second - started_;

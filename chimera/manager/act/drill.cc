@@ -84,18 +84,18 @@ void Drill::show_flag(bool up) {
 void Drill::judge(DrillPart& part) const {
   if (part.verdict != DrillVerdict::kWaiting) return;
   const TaskStatus status = state_.peers.status(part.task);
-  const RtpuId id = state_.spec().tasks[part.task.index].rtpu;
-  const RtpuRecord& rtpu = state_.rtpus[id.index];
-  if (status.state != State::kOn || !rtpu.is_alive || rtpu.incarnation != part.incarnation) {
+  const RtpuId rtpu = state_.spec().tasks[part.task.index].rtpu;
+  const RtpuRecord& record = state_.rtpus[rtpu.index];
+  if (status.state != State::kOn || !record.is_alive || record.incarnation != part.incarnation) {
     part.verdict = DrillVerdict::kLeft;
     return;
   }
-  const PeerLayout& layout = state_.peers.layout(id);
+  const PeerLayout& layout = state_.peers.layout(rtpu);
   const GroupId group = layout.outputs(part.task, status.incarnation);
   const VariablePlace& place = layout.variables(group)[part.output];
   std::byte value{};
   chimera_slot slot{};
-  if (!state_.peers[id].group(group).try_read_part(slot, place.offset, {&value, 1})) return;
+  if (!state_.peers[rtpu].group(group).try_read_part(slot, place.offset, {&value, 1})) return;
   if (slot.published_ns <= present_->raised.count || value == std::byte{0}) return;
   part.verdict = DrillVerdict::kSafe;
   part.after = {slot.published_ns - present_->raised.count};

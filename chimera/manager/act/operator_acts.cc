@@ -77,9 +77,9 @@ RpcResponse judge_ring(const ManagerState& state, TaskId task) {
   if (!state.spec().tasks[task.index].server)
     return RpcResponse::refused("no-server", name + " is not behind a server: it has no doorbell", name,
                                 "give it 'server:' in the description");
-  const State is = state.state(task);
-  if (is == State::kOn) return {};
-  return RpcResponse::refused("state", name + " is " + state_name(is) + ": no job would answer the event", name,
+  const State now = state.state(task);
+  if (now == State::kOn) return {};
+  return RpcResponse::refused("state", name + " is " + state_name(now) + ": no job would answer the event", name,
                               "turn it ON first");
 }
 

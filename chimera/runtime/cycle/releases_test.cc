@@ -10,7 +10,7 @@
 namespace chimera {
 namespace {
 
-struct FailingSender {  // signals the other task, or fails for ever, when told
+struct FailingSender {  // signals the other task, or fails for ever, by its flags
   Out<double> x{"x", "1", initial = 0.0};
   Outcome cycle(Cycle c) {
     if (std::exchange(turns_off, false)) c.signal(Signal::kOff, "slow");
@@ -20,7 +20,7 @@ struct FailingSender {  // signals the other task, or fails for ever, when told
   static inline bool turns_off = false, fails = false;
 };
 
-struct SlowReader {
+struct SignalledReader {
   In<double> x{"x", "1"};
   void cycle(Cycle) {}
 };
@@ -33,7 +33,7 @@ struct ReleasesTest : ::testing::Test {
   ReleasesTest() {
     FailingSender::turns_off = FailingSender::fails = false;
     app.add("fast", testing::component<FailingSender>("sender"), milliseconds(1));
-    app.add("slow", testing::component<SlowReader>("reader"), milliseconds(3));
+    app.add("slow", testing::component<SignalledReader>("reader"), milliseconds(3));
   }
   /// The grid of releases begins at 10 ms.
   void begin() {
@@ -172,7 +172,7 @@ TEST_F(ReleasesTest, AReactionThatRefusesLateStartsNeedsTheDeadlineItself) {
   EXPECT_FALSE(releases->may_start(job, job.deadline));
 }
 
-TEST_F(ReleasesTest, WhatAJobLeavesIsSettledAtItsEnd) {
+TEST_F(ReleasesTest, ReactionsOfAJobAreSettledAtItsEnd) {
   begin();
   FailingSender::fails = true;
   releases->release_due(milliseconds(10));

@@ -240,18 +240,18 @@ void VirtualRtpus::lower_flag(const ScriptAct& act) noexcept {
     if (!rtpu->is_dead && rtpu->tasks.flag().is_raised()) rtpu->control.hand_over(act);
 }
 
-void VirtualRtpus::die(RtpuId id) noexcept {
-  const auto found = std::find_if(rtpus_.begin(), rtpus_.end(), [id](const auto& one) { return one->id == id; });
+void VirtualRtpus::die(RtpuId rtpu) noexcept {
+  const auto found = std::find_if(rtpus_.begin(), rtpus_.end(), [rtpu](const auto& one) { return one->id == rtpu; });
   if (found == rtpus_.end() || (*found)->is_dead) return;
-  Rtpu& rtpu = **found;
-  rtpu.processor->cut(now_);
-  rtpu.is_dead = true;
-  rtpu.acts_now = false;
-  peers_.die(id, now_);
-  switches_.die(id.index);
-  for (Task& task : rtpu.tasks.tasks()) {
-    if (!rtpu.tasks.is_mine(task.id) || task.state == State::kNotCreated) continue;
-    rtpu.releases.tap().record(TapKind::kState, now_, task.id, static_cast<std::uint64_t>(State::kError));
+  Rtpu& dead = **found;
+  dead.processor->cut(now_);
+  dead.is_dead = true;
+  dead.acts_now = false;
+  peers_.die(rtpu, now_);
+  switches_.die(rtpu.index);
+  for (Task& task : dead.tasks.tasks()) {
+    if (!dead.tasks.is_mine(task.id) || task.state == State::kNotCreated) continue;
+    dead.releases.tap().record(TapKind::kState, now_, task.id, static_cast<std::uint64_t>(State::kError));
     task.profile.on_before = task.profile.on_by(now_);
     task.profile.on_since = kNever;
   }
