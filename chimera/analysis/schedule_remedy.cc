@@ -211,8 +211,7 @@ class Search {
     return std::nullopt;
   }
   bool has_criticalities(std::size_t task) const {
-    const Policy policy = set_.uses[set_.works[task].rtpu].policy;
-    return policy == Policy::kMuf || policy == Policy::kMufLaxity;
+    return chimera::has_criticalities(set_.uses[set_.works[task].rtpu].policy);
   }
   std::optional<Remedy> raised(std::size_t task) {
     for (Work w = set_.works[task]; w.criticality < kMostCritical;) {

@@ -6,6 +6,7 @@
 
 #include "chimera/analysis/schedule_parts.h"
 #include "chimera/base/assert.h"
+#include "chimera/runtime/hosted/together.h"
 #include "chimera/schedule/utilisation.h"
 #include "chimera/text/nearest.h"
 #include "chimera/text/time_text.h"
@@ -33,8 +34,9 @@ class ReportWriter {
     note_unknown();
     for (std::size_t s = 0; s < configuration_.sets().size(); ++s) {
       const ConfiguredSet& configured = configuration_.sets()[s];
-      report_.sets.push_back(set(configured.name, with_hot(configured.order), s == configuration_.start()));
-      for (const StandbySpec& pair : configuration_.spec().standbys) add_takeover(configured, pair);
+      for (const Together& each : all_together(configuration_.spec().standbys, configured.order))
+        report_.sets.push_back(set(configured.name + takeover(each), each.tasks,
+                                   s == configuration_.start() && !each.is_takeover()));
     }
     return std::move(report_);
   }
@@ -133,23 +135,10 @@ class ReportWriter {
     return made;
   }
 
-  /// The tasks, and the hot standbys that cycle while one of them is ON.
-  std::vector<TaskId> with_hot(std::vector<TaskId> tasks) const {
-    const ApplicationSpec& spec = configuration_.spec();
-    for (const StandbySpec& each : spec.standbys)
-      if (each.hot && spec.is_kept_warm(each.standby, tasks)) tasks.push_back(each.standby);
-    return tasks;
-  }
-
-  /// The set with a standby in the place of its primary.
-  void add_takeover(const ConfiguredSet& configured, const StandbySpec& pair) {
-    std::vector<TaskId> tasks = configured.order;
-    if (std::ranges::count(tasks, pair.primary) == 0) return;
-    std::ranges::replace(tasks, pair.primary, pair.standby);
+  std::string takeover(const Together& each) const {
+    if (!each.is_takeover()) return {};
     const auto names = configuration_.tasks();
-    report_.sets.push_back(set(configured.name + " with " + names[pair.standby.index].name + " for " +
-                                   names[pair.primary.index].name,
-                               with_hot(tasks), false));
+    return " with " + names[each.standby.index].name + " for " + names[each.primary.index].name;
   }
 
   SetSchedule set(const std::string& name, const std::vector<TaskId>& tasks, bool is_start) {

@@ -307,7 +307,6 @@ DraftTask read_task(const Word& name, const Node& node, Report& report) {
 }
 
 constexpr std::array<std::string_view, 2> kExecutors = {"executive", "preemptive"};
-constexpr std::array<std::string_view, 5> kPolicies = {"rm", "edf", "llf", "muf", "muf-laxity"};  // as Policy
 constexpr std::size_t kMaxRtpus = 16;
 
 void check_count(std::size_t found, std::size_t most, const char* what, Place at, Report& report) {
@@ -345,7 +344,7 @@ void read_rtpus(const Node& node, Draft& draft, Report& report) {
       if (const Node* cpu = item.find("cpu"))
         rtpu.cpu = read_whole(*cpu, 0, 1023, "'cpu' of " + what, report).value_or(rtpu.cpu);
       if (const Node* policy = item.find("policy"))
-        if (const auto index = read_choice(*policy, kPolicies, "'policy' of " + what, report))
+        if (const auto index = read_choice(*policy, kPolicyNames, "'policy' of " + what, report))
           rtpu.policy = {static_cast<Policy>(index->value), index->at};
       if (const Node* executor = item.find("executor"))
         if (const auto index = read_choice(*executor, kExecutors, "'executor' of " + what, report))

@@ -28,6 +28,15 @@ struct Variable {
   std::span<const PortOf> producers;          ///< out-vars, in the order of the tasks
   std::span<const PortOf> consumers;          ///< in-vars, in the order of the tasks
   std::uint32_t operator_index = UINT32_MAX;  ///< in ApplicationSpec::operators; UINT32_MAX: not an operator's
+
+  bool is_given() const noexcept { return operator_index != UINT32_MAX; }
+  /// The first producer whose task `is_it(TaskId)` accepts; null: there is none. Context: any; wait-free.
+  template <class IsIt>
+  const PortOf* producer(IsIt is_it) const noexcept {
+    for (const PortOf& each : producers)
+      if (is_it(each.task)) return &each;
+    return nullptr;
+  }
 };
 
 /// A constant: its value stands in the description, or tasks produce it at init, one of them in each configuration.
@@ -66,6 +75,13 @@ struct StandbySpec {
   Nanoseconds stale_after{};  ///< above 0: a primary on another rtpu whose outputs are older is killed; kStalePeriods
   bool hot = false;           ///< it cycles while the primary is ON, unread; without resources and out-consts
 };
+
+/// The task that `task` is a standby of; `task` itself if it is no standby. Context: any; wait-free.
+constexpr TaskId primary_of(std::span<const StandbySpec> standbys, TaskId task) noexcept {
+  for (const StandbySpec& each : standbys)
+    if (each.standby == task) return each.primary;
+  return task;
+}
 
 /// A primary that is killed because it is silent may miss at least this many of its periods.
 inline constexpr std::int64_t kStalePeriods = 2;
@@ -116,24 +132,16 @@ struct ApplicationSpec {
     if (port.variable.is_valid()) return variables[port.variable.index].name;
     return port.constant.is_valid() ? constants[port.constant.index].name : std::string_view{};
   }
+  /// Port number `of.index` of that kind; null: the task has none. Context: any; wait-free.
+  const PortSpec* port(std::uint32_t kind, const PortOf& of) const noexcept {
+    std::uint32_t n = 0;
+    for (const PortSpec& port : tasks[of.task.index].ports)
+      if (port.kind == kind && n++ == of.index) return &port;
+    return nullptr;
+  }
   /// The two tasks stand in for each other: a primary and its standby, or two standbys of one. Context: any; wait-free.
   bool stand_in(TaskId a, TaskId b) const noexcept {
-    const auto primary_of = [this](TaskId task) {
-      for (const StandbySpec& each : standbys)
-        if (each.standby == task) return each.primary;
-      return task;
-    };
-    return a != b && primary_of(a) == primary_of(b);
-  }
-  /// `standby`, which is none of `on`, stands in for one of them: if it is hot, it cycles beside that one. Context:
-  /// any; wait-free.
-  bool is_kept_warm(TaskId standby, std::span<const TaskId> on) const noexcept {
-    bool is_there = false, has_mate = false;
-    for (const TaskId task : on) {
-      is_there = is_there || task == standby;
-      has_mate = has_mate || stand_in(task, standby);
-    }
-    return has_mate && !is_there;
+    return a != b && primary_of(standbys, a) == primary_of(standbys, b);
   }
   /// A port of the task is linked to the constant, or has it for an extent. Context: any; wait-free.
   bool uses(TaskId user, ConstantId constant) const noexcept {

@@ -3,6 +3,7 @@
 // checks them for each configuration, the runtime for the tasks that are (or would be) ON.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -15,29 +16,32 @@ enum class SetFault : std::uint8_t {
   kNoProducer     ///< equation 2: a task of the set reads it and no task produces it
 };
 
-/// Judges one variable. `producers` and `consumers` are its ports, `is_given` says whether the operator produces it;
-/// `produces(port)` and `reads(port)` say whether the task of a port is in the set. Context: any; O(ports).
-template <class Ports, class Produces, class Reads>
-SetFault set_fault(const Ports& producers, const Ports& consumers, bool is_given, Produces produces, Reads reads) {
-  std::size_t n = is_given ? 1 : 0;
-  for (const auto& port : producers)
-    if (produces(port) && ++n > 1) return SetFault::kTwoProducers;
+/// Judges a Variable, or a VariableModel of verification. `produces(task)` says whether the task is in the set, and
+/// `reads(task)` whether its inputs count. Context: any; O(ports).
+template <class Variable, class Produces, class Reads>
+SetFault set_fault(const Variable& variable, Produces produces, Reads reads) {
+  std::size_t n = variable.is_given() ? 1 : 0;
+  for (const auto& port : variable.producers)
+    if (produces(port.task) && ++n > 1) return SetFault::kTwoProducers;
   if (n == 1) return SetFault::kNone;
-  for (const auto& port : consumers)
-    if (reads(port)) return SetFault::kNoProducer;
+  for (const auto& port : variable.consumers)
+    if (reads(port.task)) return SetFault::kNoProducer;
   return SetFault::kNone;
+}
+
+/// Judges one variable where `is_on(task)` says whether the task is in the set. Context: any; O(ports).
+template <class Variable, class IsOn>
+SetFault set_fault(const Variable& variable, IsOn is_on) {
+  return set_fault(variable, is_on, is_on);
 }
 
 /// True if the set obeys both equations for each of the `variables` (runtime/application_spec.h). `on[t]`: task t is
 /// in the set. Context: any; O(ports).
 template <class Variables, class Set>
 bool is_legal_set(const Variables& variables, const Set& on) {
-  const auto is_on = [&on](const auto& port) -> bool { return on[port.task.index]; };
-  for (const auto& variable : variables) {
-    const bool is_given = variable.operator_index != UINT32_MAX;
-    if (set_fault(variable.producers, variable.consumers, is_given, is_on, is_on) != SetFault::kNone) return false;
-  }
-  return true;
+  const auto is_on = [&on](auto task) -> bool { return on[task.index]; };
+  return std::all_of(variables.begin(), variables.end(),
+                     [&](const auto& variable) { return set_fault(variable, is_on) == SetFault::kNone; });
 }
 
 }  // namespace chimera

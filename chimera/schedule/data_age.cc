@@ -10,8 +10,7 @@ bool goes_always_before(const Work& a, std::uint32_t a_index, const Work& b, std
                         const ProcessorUse& use) noexcept {
   if (a.rtpu != b.rtpu || a.server || b.server) return false;
   if (use.policy == Policy::kLlf) return false;
-  const bool has_criticalities = use.policy == Policy::kMuf || use.policy == Policy::kMufLaxity;
-  if (has_criticalities && a.criticality != b.criticality) return a.criticality > b.criticality;
+  if (has_criticalities(use.policy) && a.criticality != b.criticality) return a.criticality > b.criticality;
   if (use.policy == Policy::kMufLaxity) return false;
   const Nanoseconds ka = use.policy == Policy::kRm ? a.period : a.deadline;
   const Nanoseconds kb = use.policy == Policy::kRm ? b.period : b.deadline;

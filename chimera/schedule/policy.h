@@ -4,13 +4,28 @@
 // (criticality, then the dynamic part, then the user's priority; a full tie keeps the running job).
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "chimera/base/time.h"
 
 namespace chimera {
 
 enum class Policy : std::uint8_t { kRm, kEdf, kLlf, kMuf, kMufLaxity };
+
+/// The words of descriptions and reports, in the order of Policy.
+inline constexpr std::array<std::string_view, 5> kPolicyNames = {"rm", "edf", "llf", "muf", "muf-laxity"};
+
+/// Context: any; pure.
+constexpr std::string_view policy_name(Policy policy) noexcept {
+  return kPolicyNames[static_cast<std::size_t>(policy)];
+}
+
+/// True if all tasks of one criticality run before all of a lower one. Context: any; pure.
+constexpr bool has_criticalities(Policy policy) noexcept {
+  return policy == Policy::kMuf || policy == Policy::kMufLaxity;
+}
 
 /// The data of a job that a policy compares. `remaining` is its budget minus the execution time used.
 struct Urgency {
@@ -24,8 +39,7 @@ struct Urgency {
 /// True if `a` must run before `b` at this instant; false on a full tie, so that the running job stays. Laxity is
 /// deadline - now - remaining; `now` is common to both and cancels. Context: any; wait-free.
 constexpr bool is_more_urgent(Policy policy, const Urgency& a, const Urgency& b) noexcept {
-  const bool by_criticality = policy == Policy::kMuf || policy == Policy::kMufLaxity;
-  if (by_criticality && a.criticality != b.criticality) return a.criticality > b.criticality;
+  if (has_criticalities(policy) && a.criticality != b.criticality) return a.criticality > b.criticality;
   switch (policy) {
     case Policy::kRm:
       if (a.period != b.period) return a.period < b.period;

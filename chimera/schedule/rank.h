@@ -12,11 +12,6 @@
 
 namespace chimera {
 
-/// True if all tasks of one criticality run before all of a lower one. Context: any; pure.
-constexpr bool has_criticalities(Policy policy) noexcept {
-  return policy == Policy::kMuf || policy == Policy::kMufLaxity;
-}
-
 /// The order of tasks within a level under `policy`. Context: any; pure.
 constexpr LevelOrder order_of(Policy policy) noexcept {
   if (policy == Policy::kRm) return LevelOrder::kAlone;

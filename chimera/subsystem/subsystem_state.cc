@@ -140,15 +140,14 @@ SignalRefusal SubsystemState::named(const SignalResult& result) const {
 }
 
 std::string SubsystemState::missing() const {
-  const auto is_on = [this](const PortOf& port) { return observed.state(port.task) == State::kOn; };
+  const auto is_on = [this](TaskId task) { return observed.state(task) == State::kOn; };
   std::string text;
   for (const Variable& variable : variables.all()) {
-    const bool is_given = variable.operator_index != UINT32_MAX;
-    const SetFault fault = set_fault(variable.producers, variable.consumers, is_given, is_on, is_on);
+    const SetFault fault = set_fault(variable, is_on);
     if (fault == SetFault::kNone) continue;
     std::string who;
     for (const PortOf& port : variable.producers)
-      if (fault == SetFault::kNoProducer || is_on(port))
+      if (fault == SetFault::kNoProducer || is_on(port.task))
         who += (who.empty() ? "" : ", ") + name(port.task) + " is " + state_name(observed.state(port.task));
     text += (text.empty() ? "" : "; ") + std::string(variable.name) + (who.empty() ? "" : " (" + who + ")");
   }

@@ -141,17 +141,6 @@ void take_reactions(const Model& model, const DraftTask& draft, TaskSpec& spec) 
   take(draft.on_fault, spec.on_fault, spec.on_fault_set);
 }
 
-/// In the order of the tasks.
-void take_standbys(const Model& model, std::vector<StandbySpec>& standbys) {
-  for (std::size_t t = 0; t < model.tasks.size(); ++t) {
-    const auto& written = model.tasks[t].draft->standby_for;
-    const auto primary = written ? model.task_named(written->task.text) : std::nullopt;
-    if (!primary) continue;
-    const Nanoseconds stale_after = written->stale_after ? written->stale_after->value : Nanoseconds{};
-    standbys.push_back({TaskId(*primary), TaskId(t), stale_after, written->is_hot()});
-  }
-}
-
 void take_restarts(const Model& model, std::vector<RestartSpec>& restarts) {
   for (std::size_t t = 0; t < model.tasks.size(); ++t) {
     const auto& on_fault = model.tasks[t].draft->on_fault;
@@ -336,7 +325,7 @@ void fill_spec(const Model& model, Parts& parts) {
   for (std::size_t s = 0; s < parts.sets.size(); ++s)
     parts.named_sets.push_back({parts.sets[s].name, parts.sets[s].order, safe_condition(model.sets[s], parts)});
   parts.spec.sets = parts.named_sets;
-  take_standbys(model, parts.standbys);
+  parts.standbys = model.standbys;
   take_restarts(model, parts.restarts);
   parts.spec.standbys = parts.standbys;
   parts.spec.restarts = parts.restarts;

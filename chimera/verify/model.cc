@@ -16,7 +16,7 @@ bool TaskModel::has_resource() const noexcept {
 }
 
 bool SetModel::has(std::size_t task) const noexcept {
-  return std::find(tasks.begin(), tasks.end(), task) != tasks.end();
+  return std::find(tasks.begin(), tasks.end(), TaskId(task)) != tasks.end();
 }
 
 std::optional<std::size_t> Model::task_named(std::string_view name) const {
@@ -26,8 +26,9 @@ std::optional<std::size_t> Model::task_named(std::string_view name) const {
 }
 
 std::optional<std::size_t> Model::primary_of(std::size_t standby) const {
-  const auto& written = tasks[standby].draft->standby_for;
-  return written ? task_named(written->task.text) : std::nullopt;
+  for (const StandbySpec& each : standbys)
+    if (each.standby.index == standby) return each.primary.index;
+  return std::nullopt;
 }
 
 VariableModel* Model::variable(std::string_view name) {

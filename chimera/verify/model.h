@@ -91,12 +91,14 @@ struct VariableModel {
   std::optional<PortRef> type_from, unit_from, shape_from;
   std::vector<SolvedExtent> extents;
   bool has_extents = false;
+
+  bool is_given() const noexcept { return given != nullptr; }
 };
 
 struct SetModel {
   std::string name;
   Place at;
-  std::vector<std::size_t> tasks;  ///< indices, in the order of the description
+  std::vector<TaskId> tasks;  ///< in the order of the description
   bool is_whole = true;            ///< false: it names an unknown task, so its inputs are not judged
   std::vector<TaskId> order;
   SafeCondition safe_when;                 ///< the variable is `safe_variable`
@@ -122,6 +124,7 @@ struct Model {
   std::map<std::string, std::size_t, std::less<>> variable_index;
   std::vector<SetModel> sets;
   std::size_t start = 0;
+  std::vector<StandbySpec> standbys;  ///< in the order of the tasks; the primary may break a rule on standbys
   std::vector<DraftRtpu> rtpus;  ///< the declared ones, or the default one
   std::vector<TaskId> init_order;
   std::vector<double> utilisation;                       ///< per rtpu, start configuration

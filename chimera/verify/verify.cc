@@ -15,6 +15,7 @@ void link(Model& model) {
   require_resources(model);
   place_tasks(model);
   make_sets(model);
+  pair_standbys(model);
   collect_variables(model);
 }
 

@@ -116,7 +116,7 @@ DEFECTS = (
      "return is_last_open ? !is_for_the_same : !changes_nothing;",
      "return is_last_open ? is_for_the_same : !changes_nothing;"),
     ("who produces the same as a task of a list stays ON", "hosted/asked_set.cc",
-     "if (!is_asked(producer)) on_[producer.task.index] = false;", "(void)producer;"),
+     "if (!lists_.plus.has(producer.task)) on_[producer.task.index] = false;", "(void)producer;"),
     ("a slow switch that is undone leaves who was ON OFF", "switch/slow_steps.cc",
      "  if (step.act == SlowAct::kOff && each.state == State::kOff) return turn_on_again(each, now);\n", ""),
     ("the constants before are not in force again on the way back", "switch/slow_steps.cc",

@@ -68,10 +68,9 @@ TaskSet random_set(std::uint32_t seed) {
 }
 
 std::string text(const TaskSet& set) {
-  constexpr const char* kPolicies[] = {"rm", "edf", "llf", "muf", "muf-laxity"};
   std::string said;
   for (const ProcessorUse& use : set.uses)
-    said += std::string(kPolicies[static_cast<int>(use.policy)]) +
+    said += std::string(policy_name(use.policy)) +
             (use.dispatch == Dispatch::kExecutive ? " executive" : "") + " quantum " +
             std::to_string(use.quantum.count) + "; ";
   for (const Work& w : set.works)

@@ -109,11 +109,10 @@ class ScheduleLines {
 
  private:
   std::string policies(const CpuSchedule& cpu) const {
-    constexpr const char* kNames[] = {"rm", "edf", "llf", "muf", "muf-laxity"};
     std::vector<std::string> said;
     for (const ScheduleRow& row : cpu.rows) {
       const RtpuSpec& spec = configuration_.rtpus()[row.work.rtpu];
-      const std::string one = "rtpu " + std::string(spec.name) + ", " + kNames[static_cast<std::size_t>(spec.policy)];
+      const std::string one = "rtpu " + std::string(spec.name) + ", " + std::string(policy_name(spec.policy));
       if (std::find(said.begin(), said.end(), one) == said.end()) said.push_back(one);
     }
     return list(said);

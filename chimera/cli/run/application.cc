@@ -111,14 +111,13 @@ VariableView Application::view(VariableId variable) const noexcept {
   const Variable& of = spec().variables[variable.index];
   if (peers_ == nullptr) return contexts_[0]->sources().view(variable);
   VariableView view;
-  if (of.operator_index != UINT32_MAX) {
+  if (of.is_given()) {
     const GivenSpec& given = spec().operators[of.operator_index];
     view.count = given.extent[0].max * given.extent[1].max;
     return view;
   }
-  const auto is_on = [this](const PortOf& port) { return peers_->state(port.task) == State::kOn; };
-  auto producer = std::find_if(of.producers.begin(), of.producers.end(), is_on);
-  if (producer == of.producers.end()) producer = of.producers.begin();
+  const PortOf* producer = of.producer([this](TaskId task) { return peers_->state(task) == State::kOn; });
+  if (producer == nullptr) producer = of.producers.data();
   const TaskMemory& memory = context_of(producer->task).memory(producer->task);
   const chimera_port* port = memory.output_port(producer->index);
   view.spec = memory.output_spec(producer->index);
@@ -134,8 +133,7 @@ Result<Probe> Application::probe(const std::string& variable) const {
   CHIMERA_ASSERT(index < all.size());  // whatever is configured is laid out
   Probe probe;
   probe.name = variable;
-  const std::uint32_t by_operator = all[index].operator_index;
-  if (by_operator != UINT32_MAX) {
+  if (const std::uint32_t by_operator = all[index].operator_index; all[index].is_given()) {
     const GroupReader reader = peers_ == nullptr ? contexts_[0]->table().operators()[by_operator]
                                                  : peers_->operator_variable(by_operator);
     probe.readers.push_back({reader, 0, 0});

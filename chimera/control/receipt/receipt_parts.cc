@@ -5,17 +5,6 @@
 #include <cstdio>
 
 namespace chimera::control {
-namespace {
-
-/// The port of that kind; null: there is none.
-const PortSpec* find_port(const PortOf& of, int kind, const ApplicationSpec& spec) {
-  std::uint32_t n = 0;
-  for (const PortSpec& port : spec.tasks[of.task.index].ports)
-    if (port.kind == static_cast<std::uint32_t>(kind) && n++ == of.index) return &port;
-  return nullptr;
-}
-
-}  // namespace
 
 std::string quoted(std::string_view name) { return "'" + std::string(name) + "'"; }
 
@@ -45,12 +34,12 @@ const char* word(TaskMove move) {
 }
 
 const PortSpec* port_of(const Variable& variable, const ApplicationSpec& spec) {
-  if (!variable.producers.empty()) return find_port(variable.producers[0], CHIMERA_OUT_VAR, spec);
-  return variable.consumers.empty() ? nullptr : find_port(variable.consumers[0], CHIMERA_IN_VAR, spec);
+  if (!variable.producers.empty()) return spec.port(CHIMERA_OUT_VAR, variable.producers[0]);
+  return variable.consumers.empty() ? nullptr : spec.port(CHIMERA_IN_VAR, variable.consumers[0]);
 }
 
 std::string unit_of(const VariablePart& part, const ApplicationSpec& spec) {
-  const PortSpec* const port = find_port(part.handover.to, CHIMERA_OUT_VAR, spec);
+  const PortSpec* const port = spec.port(CHIMERA_OUT_VAR, part.handover.to);
   return port == nullptr ? "1" : std::string(port->unit);
 }
 

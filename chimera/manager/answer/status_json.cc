@@ -14,11 +14,6 @@
 namespace chimera::manager {
 namespace {
 
-const char* policy_text(Policy policy) {
-  constexpr const char* kNames[] = {"rm", "edf", "llf", "muf", "muf-laxity"};
-  return kNames[static_cast<std::size_t>(policy)];
-}
-
 const char* phase_text(PeerPhase phase) {
   switch (phase) {
     case PeerPhase::kStarting:
@@ -64,7 +59,7 @@ Json rtpu_json(const ManagerState& state, RtpuId rtpu) {
                                            : PeerPhase::kStarting;
   Json json = {{"name", spec.name},
                {"cpu", spec.cpu},
-               {"policy", policy_text(spec.policy)},
+               {"policy", policy_name(spec.policy)},
                {"executor", spec.preemptive ? "preemptive" : "executive"},
                {"pid", record.pid},
                {"incarnation", record.incarnation},

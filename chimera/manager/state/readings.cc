@@ -7,14 +7,6 @@
 namespace chimera::manager {
 namespace {
 
-const PortSpec& port_of(const ApplicationSpec& spec, const PortOf& at, std::uint32_t kind) {
-  std::uint32_t index = 0;
-  for (const PortSpec& port : spec.tasks[at.task.index].ports)
-    if (port.kind == kind && index++ == at.index) return port;
-  CHIMERA_ASSERT(false);
-  return spec.tasks[at.task.index].ports[0];
-}
-
 std::vector<FieldDescriptor> fields_of(const Library& library, std::string_view component, std::uint32_t declared) {
   const LibraryEntry* entry = library.find(component);
   if (entry == nullptr || declared >= entry->descriptor.ports.size()) return {};
@@ -43,10 +35,10 @@ Readings::Form Readings::form_of(std::size_t variable, const Configuration& conf
   made.form.is_scalar = made.configured->shape.empty();
   const bool is_operators = v.producers.empty();
   const PortOf& from = is_operators ? v.consumers[0] : v.producers[0];
-  const PortSpec& port = port_of(spec, from, is_operators ? CHIMERA_IN_VAR : CHIMERA_OUT_VAR);
+  const PortSpec& port = *spec.port(is_operators ? CHIMERA_IN_VAR : CHIMERA_OUT_VAR, from);
   made.form.type = port.type;
   made.form.element_bytes = port.element_bytes;
-  made.extents = v.operator_index != UINT32_MAX ? spec.operators[v.operator_index].extent : port.extent;
+  made.extents = v.is_given() ? spec.operators[v.operator_index].extent : port.extent;
   if (port.type == CHIMERA_STRUCT)
     made.form.fields = fields_of(library, spec.tasks[from.task.index].component, port.declared);
   return made;
@@ -57,18 +49,22 @@ std::optional<VariableId> Readings::find(std::string_view name) const noexcept {
   return found == by_name_.end() ? std::nullopt : std::optional(found->second);
 }
 
-TaskId Readings::producer(VariableId variable) const {
-  const Variable& v = variables_.all()[variable.index];
-  TaskId last;
+const PortOf* Readings::source(const Variable& variable) const {
+  const PortOf* last = variable.producer([this](TaskId task) { return state_of_(task) == State::kOn; });
+  if (last != nullptr) return last;
   std::int64_t latest = INT64_MIN;
-  for (const PortOf& port : v.producers) {
-    if (state_of_(port.task) == State::kOn) return port.task;
+  for (const PortOf& port : variable.producers) {
     chimera_slot slot{};
     if (!read_output(port, slot, nullptr) || slot.sequence == 0 || slot.published_ns <= latest) continue;
     latest = slot.published_ns;
-    last = port.task;
+    last = &port;
   }
   return last;
+}
+
+TaskId Readings::producer(VariableId variable) const {
+  const PortOf* from = source(variables_.all()[variable.index]);
+  return from == nullptr ? TaskId() : from->task;
 }
 
 VariableReading Readings::read(VariableId variable) const { return read(variable, true); }
@@ -83,14 +79,10 @@ VariableReading Readings::read(VariableId variable, bool with_value) const {
     const GroupReader reader = own_.operator_reader(v.operator_index);
     if (with_value) reading.value.resize(reader.payload_bytes());
     reading.is_valid = reader.try_read_part(reading.slot, 0, reading.value) && (reading.slot.valid & 1u) != 0;
-  } else {
-    const TaskId from = producer(variable);
-    const auto at = std::find_if(v.producers.begin(), v.producers.end(),
-                                 [&](const PortOf& port) { return port.task == from; });
-    if (at != v.producers.end() && read_output(*at, reading.slot, with_value ? &reading.value : nullptr)) {
-      reading.producer = from;
-      reading.is_valid = ((reading.slot.valid >> at->index) & 1u) != 0;
-    }
+  } else if (const PortOf* from = source(v);
+             from != nullptr && read_output(*from, reading.slot, with_value ? &reading.value : nullptr)) {
+    reading.producer = from->task;
+    reading.is_valid = ((reading.slot.valid >> from->index) & 1u) != 0;
   }
   if (with_value) reading.value.resize(std::size_t{reading.form.count} * reading.form.element_bytes);
   return reading;

@@ -51,7 +51,7 @@ class Readings {
   /// The variable of that name.
   std::optional<VariableId> find(std::string_view name) const noexcept;
   bool is_operators(VariableId variable) const noexcept {
-    return variables_.all()[variable.index].operator_index != UINT32_MAX;
+    return variables_.all()[variable.index].is_given();
   }
   /// The present or last producer; invalid: the operator, or no producer was ever created.
   TaskId producer(VariableId variable) const;
@@ -71,6 +71,8 @@ class Readings {
   std::uint32_t extent(const ExtentSpec& extent) const;
   bool is_on(const PortOf& port) const { return peers_.status(port.task).state == State::kOn; }
   std::optional<std::int64_t> constant(ConstantId id) const;
+  /// Null: no producer is ON, and none has written.
+  const PortOf* source(const Variable& variable) const;
   VariableReading read(VariableId variable, bool with_value) const;
   bool read_output(const PortOf& port, chimera_slot& slot, std::vector<std::byte>* value) const;
 

@@ -35,10 +35,8 @@ std::uint32_t TakeoverRecord::set_in_force(TaskId failed) const noexcept {
 
 void TakeoverRecord::list_handovers(Takeover& takeover) noexcept {
   const auto variables = set_.spec().variables;
-  const auto find = [](const Variable& variable, TaskId task) -> const PortOf* {
-    for (const PortOf& producer : variable.producers)
-      if (producer.task == task) return &producer;
-    return nullptr;
+  const auto find = [](const Variable& variable, TaskId task) {
+    return variable.producer([task](TaskId producer) { return producer == task; });
   };
   takeover.n_variables = 0;
   for (std::size_t v = 0; v < variables.size(); ++v) {

@@ -40,10 +40,7 @@ unsigned sum(std::string_view text) { return sum(std::as_bytes(std::span(text.da
 void check_ports(const ApplicationSpec& spec, std::span<const PortOf> ports, std::uint32_t kind, VariableId variable,
                  ConstantId constant) {
   for (const PortOf& port : ports) {
-    std::uint32_t index = 0;
-    const PortSpec* found = nullptr;
-    for (const PortSpec& each : spec.tasks[port.task.index].ports)
-      if (each.kind == kind && index++ == port.index) found = &each;
+    const PortSpec* found = spec.port(kind, port);
     require(found != nullptr && found->variable == variable && found->constant == constant, "links hold both ways");
   }
 }
@@ -52,7 +49,7 @@ unsigned check_links(const ApplicationSpec& spec) {
   unsigned all = 0;
   for (std::size_t v = 0; v < spec.variables.size(); ++v) {
     const Variable& variable = spec.variables[v];
-    require(variable.operator_index == UINT32_MAX || variable.operator_index < spec.operators.size(),
+    require(!variable.is_given() || variable.operator_index < spec.operators.size(),
             "operators exist");
     check_ports(spec, variable.producers, CHIMERA_OUT_VAR, VariableId(v), {});
     check_ports(spec, variable.consumers, CHIMERA_IN_VAR, VariableId(v), {});

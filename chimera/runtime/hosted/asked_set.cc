@@ -2,11 +2,12 @@
 // Works out which tasks are ON when some are asked for and others are not wanted, and judges that set.
 #include "chimera/runtime/hosted/asked_set.h"
 
-#include <algorithm>
 #include <cstdio>
+#include <utility>
 #include <vector>
 
 #include "chimera/runtime/hosted/heap_memory.h"
+#include "chimera/runtime/hosted/together.h"
 #include "chimera/runtime/hosted/variables.h"
 #include "chimera/runtime/plan/rivals.h"
 #include "chimera/runtime/plan/switch_plan.h"
@@ -15,24 +16,24 @@
 namespace chimera {
 namespace {
 
-std::vector<TaskId> ids_of(const TaskBits& tasks, const ApplicationSpec& spec) {
-  std::vector<TaskId> ids;
-  for (std::size_t t = 0; t < spec.tasks.size(); ++t)
-    if (tasks.has(TaskId(t))) ids.push_back(TaskId(t));
-  return ids;
-}
-
 std::vector<bool> flags_of(const TaskBits& tasks, const ApplicationSpec& spec) {
   std::vector<bool> flags(spec.tasks.size());
   for (std::size_t t = 0; t < flags.size(); ++t) flags[t] = tasks.has(TaskId(t));
   return flags;
 }
 
+std::vector<TaskId> ids_of(const std::vector<bool>& flags) {
+  std::vector<TaskId> ids;
+  for (std::size_t t = 0; t < flags.size(); ++t)
+    if (flags[t]) ids.push_back(TaskId(t));
+  return ids;
+}
+
 class SetMaker {
  public:
   SetMaker(const ApplicationSpec& spec, const TaskBits& on, const TaskLists& lists)
       : spec_(spec), variables_(spec), on_(flags_of(on, spec)), was_on_(on_), lists_(lists),
-        plus_(ids_of(lists.plus, spec)) {
+        plus_(ids_of(flags_of(lists.plus, spec))) {
     rivals_.prepare(spec, memory_);
   }
 
@@ -41,22 +42,19 @@ class SetMaker {
       if (lists_.minus.has(task)) refuse("task " + name(task) + " cannot be both ON and OFF");
       on_[task.index] = true;
     }
-    for (const TaskId task : ids_of(lists_.minus, spec_)) on_[task.index] = false;
+    for (std::size_t t = 0; t < on_.size(); ++t)
+      if (lists_.minus.has(TaskId(t))) on_[t] = false;
     displace();
     while (asked_ && complete()) {
     }
-    if (asked_) judge_links();
-    if (asked_) judge_loops();
-    if (asked_) judge_constants();
-    if (asked_) judge_resources();
-    if (asked_) judge_load();
-    for (std::size_t t = 0; t < on_.size(); ++t)
-      if (on_[t]) asked_.tasks.add(TaskId(t));
+    asked_.tasks = bits_of(ids_of(on_));
+    if (asked_ && set_of(spec_, asked_.tasks) == kNoSet) judge();
     return std::move(asked_);
   }
 
  private:
   std::string name(TaskId task) const { return "'" + std::string(spec_.tasks[task.index].name) + "'"; }
+  /// The first refusal counts.
   void refuse(std::string why, std::string remedy = {}) {
     if (!asked_) return;
     asked_.why = std::move(why);
@@ -66,22 +64,21 @@ class SetMaker {
   /// Turns OFF the tasks that produce the same variable as an asked task, or have its resource, unless asked for, too.
   void displace() {
     for (const Variable& variable : spec_.variables) {
-      const auto is_asked = [this](const PortOf& p) { return lists_.plus.has(p.task); };
-      if (std::ranges::none_of(variable.producers, is_asked)) continue;
+      if (variable.producer([this](TaskId task) { return lists_.plus.has(task); }) == nullptr) continue;
       for (const PortOf& producer : variable.producers)
-        if (!is_asked(producer)) on_[producer.task.index] = false;
+        if (!lists_.plus.has(producer.task)) on_[producer.task.index] = false;
     }
     for (const TaskId task : plus_)
       for (std::size_t t = 0; t < on_.size(); ++t)
         if (rivals_.are(task, TaskId(t)) && !lists_.plus.has(TaskId(t))) on_[t] = false;
   }
 
-  /// Adds the only producer of a variable that has none; false: nothing is missing, or it cannot be mended.
+  /// Adds the only producer of a variable that has none; false: nothing is missing, or it cannot be mended. Inputs of
+  /// standbys do not count here: a configuration meets them too (verify/rules/rule_links.cc).
   bool complete() {
     for (const Variable& variable : spec_.variables) {
-      const auto is_on = [this](const PortOf& p) -> bool { return on_[p.task.index]; };
-      const bool is_given = variable.operator_index != UINT32_MAX;
-      if (set_fault(variable.producers, variable.consumers, is_given, is_on, is_on) != SetFault::kNoProducer) continue;
+      const auto is_on = [this](TaskId task) -> bool { return on_[task.index]; };
+      if (set_fault(variable, is_on) != SetFault::kNoProducer) continue;
       std::vector<TaskId> may;
       for (const PortOf& producer : variable.producers)
         if (!lists_.minus.has(producer.task)) may.push_back(producer.task);
@@ -99,49 +96,35 @@ class SetMaker {
     return false;
   }
 
-  void judge_links() {
+  /// Verification has judged each configuration. A set that is none meets the same rules, and two more: its constants
+  /// have one source, and no two of its tasks open one resource, which only a configuration can allow.
+  void judge() {
     if (std::string fault = variables_.fault(on_, spec_.tasks); !fault.empty()) refuse(std::move(fault));
-    if (std::ranges::find(on_, true) == on_.end()) refuse("no task would be ON");
+    if (asked_.tasks == TaskBits{}) refuse("no task would be ON");
+    judge_loops();
+    judge_constants();
+    judge_resources();
+    judge_load();
   }
 
-  /// An arc from a producer to a reader counts when the output has no initial value. What is left when tasks without an
-  /// arc to them are taken away again and again stands in a loop, or behind one.
+  /// Takes away tasks that read no output without an initial value of a task that is left. What is left stands in a
+  /// loop, or behind one. Verification names one loop by its variables (verify/rules/rule_loops.cc).
   void judge_loops() {
-    std::vector<bool> left = on_;
-    for (bool goes_on = true; goes_on;) {
-      goes_on = false;
-      for (std::size_t t = 0; t < left.size(); ++t) {
-        if (!left[t] || is_fed(TaskId(t), left)) continue;
-        left[t] = false;
-        goes_on = true;
-      }
+    std::vector<bool> before, left = on_;
+    while (left != before) {
+      before = std::exchange(left, std::vector<bool>(on_.size()));
+      for (const Variable& variable : spec_.variables)
+        for (const PortOf& from : variable.producers) {
+          if (!before[from.task.index] || !spec_.port(CHIMERA_OUT_VAR, from)->value.empty()) continue;
+          for (const PortOf& to : variable.consumers) left[to.task.index] = before[to.task.index];
+        }
     }
-    std::string names;
-    for (std::size_t t = 0; t < left.size(); ++t)
-      if (left[t]) names += (names.empty() ? "" : " ") + std::string(spec_.tasks[t].name);
+    const std::string names = names_of(left, spec_.tasks);
     if (!names.empty()) refuse("a loop of data would have no initial value, among: " + names);
-  }
-  bool is_fed(TaskId reader, const std::vector<bool>& left) const {
-    for (const PortSpec& in : spec_.tasks[reader.index].ports) {
-      if (in.kind != CHIMERA_IN_VAR) continue;
-      for (const PortOf& producer : spec_.variables[in.variable.index].producers)
-        if (left[producer.task.index] && !has_initial(producer)) return true;
-    }
-    return false;
-  }
-  bool has_initial(const PortOf& output) const {
-    std::uint32_t n = 0;
-    for (const PortSpec& port : spec_.tasks[output.task.index].ports)
-      if (port.kind == CHIMERA_OUT_VAR && n++ == output.index) return !port.value.empty();
-    return false;
   }
 
   /// Which of several producers of a constant counts, a configuration says.
   void judge_constants() {
-    TaskBits target;
-    for (std::size_t t = 0; t < on_.size(); ++t)
-      if (on_[t]) target.add(TaskId(t));
-    if (set_of(spec_, target) != kNoSet) return;
     for (const ConstantSpec& constant : spec_.constants) {
       if (constant.producers.size() < 2) continue;
       for (const PortOf& producer : constant.producers)
@@ -162,16 +145,22 @@ class SetMaker {
   }
 
   void judge_load() {
-    for (const RtpuSpec& one : spec_.rtpus) {
-      double sum = 0;
-      for (std::size_t t = 0; t < on_.size(); ++t)
-        if (on_[t] && spec_.rtpus[spec_.tasks[t].rtpu.index].cpu == one.cpu) sum += load_of(spec_.tasks[t]);
-      if (!is_beyond(sum)) continue;
-      char text[120];
-      std::snprintf(text, sizeof text, "the budgets would take %.3f of CPU %u; expected at most %.2f", sum, one.cpu,
-                    kMaxUtilisation);
-      return refuse(text, "turn other tasks of that CPU OFF");
-    }
+    for (const RtpuSpec& one : spec_.rtpus)
+      for (const Together& together : all_together(spec_.standbys, ids_of(on_))) {
+        double sum = 0;
+        for (const TaskId task : together.tasks) {
+          const TaskSpec& each = spec_.tasks[task.index];
+          if (spec_.rtpus[each.rtpu.index].cpu == one.cpu) sum += load_of(each);
+        }
+        if (!is_beyond(sum)) continue;
+        char taken[80];
+        std::snprintf(taken, sizeof taken, " would take %.3f of CPU %u; expected at most %.2f", sum, one.cpu,
+                      kMaxUtilisation);
+        const std::string of = together.is_takeover()
+                                   ? " with " + name(together.standby) + " for " + name(together.primary)
+                                   : "";
+        return refuse("the budgets" + of + taken, "turn other tasks of that CPU OFF");
+      }
   }
 
   const ApplicationSpec& spec_;
@@ -196,7 +185,7 @@ std::string lists_text(const TaskLists& lists, const ApplicationSpec& spec) {
   const auto add = [&](const char* word, const TaskBits& tasks) {
     if (tasks == TaskBits{}) return;
     text += (text.empty() ? "" : " ") + std::string(word);
-    for (const TaskId task : ids_of(tasks, spec)) text += " " + std::string(spec.tasks[task.index].name);
+    text += " " + names_of(flags_of(tasks, spec), spec.tasks);
   };
   add("--on", lists.plus);
   add("--off", lists.minus);

@@ -146,6 +146,32 @@ TEST_F(AskedSetTest, RefusesASetThatTakesMoreOfACpuThanCheckAllows) {
             "the budgets would take 0.940 of CPU 0; expected at most 0.93; turn other tasks of that CPU OFF");
 }
 
+TEST_F(AskedSetTest, CountsTheLoadOfHotStandbysAndOfTakeovers) {
+  app.tasks[kSensor.index].budget = microseconds(500);
+  app.tasks[kSpare.index].budget = microseconds(440);
+  make();
+  StandbySpec pair{kSensor, kSpare, {}, true};
+  app.spec.standbys = {&pair, 1};
+  EXPECT_EQ(ask({kWater}),
+            "the budgets would take 0.940 of CPU 0; expected at most 0.93; turn other tasks of that CPU OFF");
+  pair.hot = false;
+  EXPECT_EQ(ask({kWater}), "sensor pid motor water");
+  app.tasks[kSpare.index].budget = microseconds(960);
+  EXPECT_EQ(ask({kWater}), "the budgets with 'spare' for 'sensor' would take 0.960 of CPU 0; expected at most 0.93; "
+                           "turn other tasks of that CPU OFF");
+}
+
+TEST_F(AskedSetTest, AcceptsAConfigurationThatVerificationAccepted) {
+  app.tasks[kSensor.index].budget = microseconds(990);
+  make();
+  EXPECT_EQ(ask({kWater}),
+            "the budgets would take 0.990 of CPU 0; expected at most 0.93; turn other tasks of that CPU OFF");
+  const std::array order{kSensor, kPid, kMotor, kWater};
+  const NamedSet set{"watered", order};
+  app.spec.sets = {&set, 1};
+  EXPECT_EQ(ask({kWater}), "sensor pid motor water");
+}
+
 TEST_F(AskedSetTest, WhichProducerGivesAConstantOnlyAConfigurationSays) {
   EXPECT_EQ(ask({kGripper}), "which of its producers gives constant mass, only a configuration says, and these tasks "
                              "are none; `chimera switch` with the name of a configuration");

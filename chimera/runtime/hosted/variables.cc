@@ -8,11 +8,17 @@ namespace chimera {
 namespace {
 
 SetFault fault_of(const Variable& variable, const std::vector<bool>& on) noexcept {
-  const auto is_on = [&on](const PortOf& port) -> bool { return on[port.task.index]; };
-  return set_fault(variable.producers, variable.consumers, variable.operator_index != UINT32_MAX, is_on, is_on);
+  return set_fault(variable, [&on](TaskId task) -> bool { return on[task.index]; });
 }
 
 }  // namespace
+
+std::string names_of(const std::vector<bool>& on, std::span<const TaskSpec> tasks) {
+  std::string names;
+  for (std::size_t t = 0; t < on.size(); ++t)
+    if (on[t]) names += (names.empty() ? "" : " ") + std::string(tasks[t].name);
+  return names;
+}
 
 std::size_t Variables::find(std::string_view name) const noexcept {
   for (std::size_t i = 0; i < variables_.size(); ++i)
@@ -61,10 +67,7 @@ std::string Variables::smallest_legal(std::vector<bool> on, std::span<const Task
   std::vector<bool> best;
   int tries = kTries;
   complete(on, best, tries);
-  std::string names;
-  for (std::size_t t = 0; t < best.size(); ++t)
-    if (best[t]) names += (names.empty() ? "" : " ") + std::string(tasks[t].name);
-  return names;
+  return names_of(best, tasks);
 }
 
 // Leaves `on` as it was, and in `best` the smallest legal set that holds it; gives up after `tries`.

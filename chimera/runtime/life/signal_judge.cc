@@ -81,10 +81,9 @@ bool SignalJudge::would_be_legal(std::span<const TaskId> tasks) noexcept {
   const Standbys& standbys = set_.standbys();
   const std::size_t group = tasks.size() == 1 ? standbys.group_of(tasks[0]) : standbys.n_groups();
   if (group == standbys.n_groups() || standbys.next(group) != tasks[0]) return false;
-  const auto is_on = [this](const PortOf& port) -> bool { return wanted_[port.task.index]; };
+  const auto is_on = [this](TaskId task) -> bool { return wanted_[task.index]; };
   const auto is_doubled = [&](const Variable& variable) {
-    const bool is_given = variable.operator_index != UINT32_MAX;
-    return set_fault(variable.producers, variable.consumers, is_given, is_on, is_on) == SetFault::kTwoProducers;
+    return set_fault(variable, is_on) == SetFault::kTwoProducers;
   };
   return std::none_of(set_.spec().variables.begin(), set_.spec().variables.end(), is_doubled);
 }

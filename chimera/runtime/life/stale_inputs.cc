@@ -14,7 +14,7 @@ StaleInputs& StaleInputs::make(Nanoseconds after, TaskMemory& task, std::span<co
   made.is_judged_ = memory.take<bool>(n);
   made.slots_ = memory.take<chimera_slot>(n);
   for (std::size_t i = 0; i < n; ++i)
-    made.is_judged_[i] = variables[task.input_spec(i).variable.index].operator_index == UINT32_MAX;
+    made.is_judged_[i] = !variables[task.input_spec(i).variable.index].is_given();
   return made;
 }
 

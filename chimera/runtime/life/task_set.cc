@@ -10,7 +10,7 @@ namespace {
 
 Result<void> check_producers(const ApplicationSpec& spec) {
   for (const Variable& variable : spec.variables) {
-    if (!variable.producers.empty() || variable.operator_index != UINT32_MAX) continue;
+    if (!variable.producers.empty() || variable.is_given()) continue;
     const std::string_view reader = spec.tasks[variable.consumers[0].task.index].name;
     return (Message("no task produces state variable ") << variable.name).error(ErrorCode::kBadInput, reader);
   }

@@ -11,8 +11,6 @@ namespace {
 
 constexpr Nanoseconds kReportGap = seconds(1);
 
-bool is_by_criticality(Policy policy) noexcept { return policy == Policy::kMuf || policy == Policy::kMufLaxity; }
-
 }  // namespace
 
 ProcessorShare::ProcessorShare(std::span<const Task> tasks, const std::vector<bool>& is_mine, Policy policy,
@@ -32,7 +30,7 @@ ProcessorShare::ProcessorShare(std::span<const Task> tasks, const std::vector<bo
     if (!is_mine[i]) continue;
     const TaskSpec& spec = *tasks[i].spec;
     const bool is_slowest = spec.period == longest && longest > shortest;
-    if (is_by_criticality(policy)) is_less_important_[i] = spec.criticality < highest;
+    if (has_criticalities(policy)) is_less_important_[i] = spec.criticality < highest;
     if (policy == Policy::kRm) is_less_important_[i] = is_slowest;
     if (!is_less_important_[i]) load += load_of(spec);
   }

@@ -46,7 +46,7 @@ void SourceCopies::prepare(const ApplicationSpec& spec, const ContextTable& tabl
   for (const Variable& variable : spec.variables) {
     const auto is_copied = [this](const PortOf& producer) { return preemptive_ || !is_mine(producer.task); };
     auto n = std::count_if(variable.producers.begin(), variable.producers.end(), is_copied);
-    if (variable.operator_index != UINT32_MAX) ++n;
+    if (variable.is_given()) ++n;
     for (const PortOf& consumer : variable.consumers)
       if (is_mine(consumer.task)) most += static_cast<std::size_t>(n);
   }
@@ -83,7 +83,7 @@ Source SourceCopies::source_from(const PortOf& producer) const noexcept {
 void SourceCopies::plan(const Variable& variable, SetupMemory& memory) {
   for (const PortOf& consumer : variable.consumers) {
     if (!is_mine(consumer.task)) continue;
-    if (variable.operator_index != UINT32_MAX) plan(consumer.task, operator_source(variable), memory);
+    if (variable.is_given()) plan(consumer.task, operator_source(variable), memory);
     for (const PortOf& producer : variable.producers)
       if (preemptive_ || !is_mine(producer.task)) plan(consumer.task, source_from(producer), memory);
   }
@@ -181,7 +181,7 @@ void Sources::prepare(const ApplicationSpec& spec, const ContextTable& table, st
   scratch_ = memory.take_bytes(sizeof(chimera_slot) + largest, kCacheLine);
   for (std::size_t v = 0; v < sources_.size(); ++v) {
     const Variable& variable = spec.variables[v];
-    if (variable.operator_index != UINT32_MAX) bind(VariableId(v), operator_source(variable));
+    if (variable.is_given()) bind(VariableId(v), operator_source(variable));
     else if (!variable.producers.empty()) bind(VariableId(v), copies_.source_from(first_producer(spec, variable)));
   }
   everybody_follows();

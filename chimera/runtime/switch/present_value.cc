@@ -22,13 +22,10 @@ Elements elements_of(TaskSet& set, const Source& source) noexcept {
     const GivenSpec& given = set.spec().operators[source.operator_index];
     return {given.type, given.element_bytes, given.extent[0].max * given.extent[1].max};
   }
-  std::uint32_t output = 0;
-  for (const PortSpec& port : set.spec().tasks[source.task.index].ports) {
-    if (port.kind != CHIMERA_OUT_VAR || output++ != source.bit) continue;
-    const chimera_port* here = set.is_mine(source.task) ? set.memory(source.task).output_port(source.bit) : nullptr;
-    return {port.type, port.element_bytes, here == nullptr ? port.max_count() : here->count};
-  }
-  return {};
+  const PortSpec* port = set.spec().port(CHIMERA_OUT_VAR, {source.task, source.bit});
+  if (port == nullptr) return {};
+  const chimera_port* here = set.is_mine(source.task) ? set.memory(source.task).output_port(source.bit) : nullptr;
+  return {port->type, port->element_bytes, here == nullptr ? port->max_count() : here->count};
 }
 
 bool is_produced(TaskSet& set, const Source& source) noexcept {

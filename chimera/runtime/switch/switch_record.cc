@@ -9,10 +9,8 @@ namespace chimera {
 namespace {
 
 std::uint32_t bytes_of(const ApplicationSpec& spec, const PortOf& output) noexcept {
-  std::uint32_t at = 0;
-  for (const PortSpec& port : spec.tasks[output.task.index].ports)
-    if (port.kind == CHIMERA_OUT_VAR && at++ == output.index) return port.max_bytes();
-  return 0;
+  const PortSpec* port = spec.port(CHIMERA_OUT_VAR, output);
+  return port == nullptr ? 0 : port->max_bytes();
 }
 
 template <class T>

@@ -70,10 +70,10 @@ std::string user_of(const Model& model, const TaskModel& task, const VariableMod
 void require_one(Model& model, const VariableModel& variable) {
   for (const SetModel& set : model.sets) {
     if (!set.is_whole || model.draft.is_partial || !producers_of(model, variable, set).empty()) continue;
-    for (const std::size_t task : set.tasks) {
-      const std::string user = user_of(model, model.tasks[task], variable);
+    for (const TaskId task : set.tasks) {
+      const std::string user = user_of(model, model.tasks[task.index], variable);
       if (user.empty()) continue;
-      model.error("constant-unmet", model.tasks[task].draft->name.at,
+      model.error("constant-unmet", model.tasks[task.index].draft->name.at,
                   user + " has no producer in configuration '" + set.name + "'; constant '" + variable.name +
                       "' is produced by tasks of other configurations",
                   variable.name, "a producer of '" + variable.name + "'", {},

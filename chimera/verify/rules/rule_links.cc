@@ -115,15 +115,11 @@ void report_unmet(Model& model, const LinkedPort& port, const VariableModel& var
 
 /// The producers without the standbys of other producers, because rule_standby.cc judges a task and its standby.
 std::vector<PortRef> without_standbys(const Model& model, const std::vector<PortRef>& producers) {
-  const auto stands_in_for = [&](const TaskModel& standby, const TaskModel& primary) {
-    return standby.draft->standby_for && standby.draft->standby_for->task.text == primary.name();
-  };
   std::vector<PortRef> left;
   for (const PortRef ref : producers) {
-    const bool is_excused = std::any_of(producers.begin(), producers.end(), [&](const PortRef other) {
-      return stands_in_for(model.tasks[ref.task], model.tasks[other.task]);
-    });
-    if (!is_excused) left.push_back(ref);
+    const auto primary = model.primary_of(ref.task);
+    const auto is_primary = [&](const PortRef other) { return primary == other.task; };
+    if (std::ranges::none_of(producers, is_primary)) left.push_back(ref);
   }
   return left;
 }
@@ -132,25 +128,21 @@ using Members = std::vector<bool>;  // by task
 
 Members members(const Model& model, const SetModel& set) {
   Members tasks(model.tasks.size());
-  for (const std::size_t task : set.tasks) tasks[task] = true;
+  for (const TaskId task : set.tasks) tasks[task.index] = true;
   return tasks;
-}
-
-std::vector<Members> members_of_sets(const Model& model) {
-  std::vector<Members> all;
-  for (const SetModel& set : model.sets) all.push_back(members(model, set));
-  return all;
 }
 
 /// Tasks that may be ON in the set: its members, and standbys of members. The inputs of standbys must be met too.
 Members readers(const Model& model, const Members& on) {
   Members tasks = on;
-  for (std::size_t t = 0; t < tasks.size(); ++t) {
-    const auto& primary = model.tasks[t].draft->standby_for;
-    const auto index = primary ? model.task_named(primary->task.text) : std::nullopt;
-    if (index && on[*index]) tasks[t] = true;
-  }
+  for (const StandbySpec& each : model.standbys)
+    if (on[each.primary.index]) tasks[each.standby.index] = true;
   return tasks;
+}
+
+SetFault fault_of(const VariableModel& variable, const Members& on, const Members& reading) {
+  return set_fault(variable, [&](std::size_t task) -> bool { return on[task]; },
+                   [&](std::size_t task) -> bool { return reading[task]; });
 }
 
 void report_two(Model& model, const VariableModel& variable, const SetModel& set) {
@@ -186,17 +178,12 @@ void collect_variables(Model& model) {
 }
 
 void refuse_two_producers(Model& model) {
-  const std::vector<Members> all = members_of_sets(model);
-  for (const VariableModel& variable : model.variables) {
-    if (variable.is_constant) continue;
-    for (std::size_t s = 0; s < model.sets.size(); ++s) {
-      const auto produces = [&on = all[s]](const PortRef ref) -> bool { return on[ref.task]; };
-      const auto reads = [](PortRef) { return false; };
-      const bool is_given = variable.given != nullptr;
-      if (set_fault(variable.producers, variable.consumers, is_given, produces, reads) == SetFault::kTwoProducers)
+  std::vector<Members> on;  // by set
+  for (const SetModel& set : model.sets) on.push_back(members(model, set));
+  for (const VariableModel& variable : model.variables)
+    for (std::size_t s = 0; s < on.size(); ++s)
+      if (!variable.is_constant && fault_of(variable, on[s], on[s]) == SetFault::kTwoProducers)
         report_two(model, variable, model.sets[s]);
-    }
-  }
 }
 
 void refuse_unmet_inputs(Model& model) {
@@ -204,16 +191,11 @@ void refuse_unmet_inputs(Model& model) {
   for (const SetModel& set : model.sets) {
     if (!set.is_whole || model.draft.is_partial) continue;
     const Members on = members(model, set), reading = readers(model, on);
-    const auto produces = [&on](const PortRef ref) -> bool { return on[ref.task]; };
-    const auto reads = [&reading](const PortRef ref) -> bool { return reading[ref.task]; };
     for (const VariableModel& variable : model.variables) {
-      const bool is_given = variable.given != nullptr;
-      if (variable.is_constant || set_fault(variable.producers, variable.consumers, is_given, produces, reads) !=
-                                      SetFault::kNoProducer)
-        continue;
+      if (variable.is_constant || fault_of(variable, on, reading) != SetFault::kNoProducer) continue;
       for (const PortRef ref : variable.consumers) {
         const LinkedPort& port = model.port(ref);
-        if (reads(ref) && reported.insert(&port).second) report_unmet(model, port, variable, set);
+        if (reading[ref.task] && reported.insert(&port).second) report_unmet(model, port, variable, set);
       }
     }
   }

@@ -99,7 +99,7 @@ class SetOrder {
         component_(set.tasks.size()),
         between_(set.tasks.size() * set.tasks.size(), 0) {
     for (std::size_t i = 0; i < set.tasks.size(); ++i) {
-      position_[set.tasks[i]] = i;
+      position_[set.tasks[i].index] = i;
       hardware_[i] = task(i).has_resource() && !task(i).has_inputs();
     }
     for (std::size_t v = 0; v < model.variables.size(); ++v) add_arcs(v);
@@ -141,12 +141,12 @@ class SetOrder {
       ready_.reset(next);
       left_.reset(next);
       look_at(next_[next]);
-      set_.order.push_back(TaskId(set_.tasks[next]));
+      set_.order.push_back(set_.tasks[next]);
     }
   }
 
  private:
-  const TaskModel& task(std::size_t at) const { return model_.tasks[set_.tasks[at]]; }
+  const TaskModel& task(std::size_t at) const { return model_.tasks[set_.tasks[at].index]; }
 
   Tasks all() const {
     Tasks tasks;
@@ -222,7 +222,7 @@ class SetOrder {
 
   const LinkedPort& port_of(const Arc& arc) const {
     for (const PortRef ref : model_.variables[arc.variable].producers)
-      if (ref.task == set_.tasks[arc.from]) return model_.port(ref);
+      if (ref.task == set_.tasks[arc.from].index) return model_.port(ref);
     CHIMERA_ASSERT(false);
     return model_.tasks[0].ports[0];
   }
@@ -315,7 +315,7 @@ void order_sets(Model& model) {
   std::vector<std::size_t> by_name(model.variables.size());
   std::size_t place = 0;
   for (const auto& [name, index] : model.variable_index) by_name[index] = place++;
-  std::map<std::vector<std::size_t>, const SetModel*> ordered;  // key: tasks, because the order depends only on them
+  std::map<std::vector<TaskId>, const SetModel*> ordered;  // key: tasks, because the order depends only on them
   for (SetModel& set : model.sets) {
     SetOrder order(model, set, by_name);
     order.report_loops();

@@ -46,7 +46,7 @@ void add_task(Model& model, SetModel& set, const Word& name) {
                 "configuration '" + set.name + "' names the task '" + name.text + "' twice", name.text,
                 "each task once", {}, "take one of the two out");
   } else {
-    set.tasks.push_back(*task);
+    set.tasks.push_back(TaskId(*task));
     if (model.tasks[*task].is_partial()) set.is_whole = false;
   }
 }
@@ -58,7 +58,7 @@ SetModel whole_set(const Model& model) {
   if (!model.tasks.empty()) set.at = model.tasks[0].draft->name.at;
   for (std::size_t i = 0; i < model.tasks.size(); ++i) {
     if (model.tasks[i].draft->standby_for) continue;
-    set.tasks.push_back(i);
+    set.tasks.push_back(TaskId(i));
     if (model.tasks[i].is_partial()) set.is_whole = false;
   }
   return set;

@@ -25,7 +25,7 @@ std::string text(const std::set<std::string>& names) {
 std::optional<std::size_t> primary_of(Model& model, std::size_t standby) {
   const Word& name = model.tasks[standby].draft->standby_for->task;
   const std::string who = "'standby_for' of task '" + model.tasks[standby].name() + "'";
-  const auto primary = model.task_named(name.text);
+  const auto primary = model.primary_of(standby);
   if (primary && *primary != standby && !model.tasks[*primary].draft->standby_for) return primary;
   std::vector<std::string> names;
   for (const TaskModel& task : model.tasks)
@@ -41,12 +41,8 @@ std::optional<std::size_t> primary_of(Model& model, std::size_t standby) {
 
 /// A task that produces the variable and is neither the primary nor one of its standbys; nullptr: none.
 const TaskModel* produced_elsewhere(const Model& model, const VariableModel& variable, std::size_t primary) {
-  for (const PortRef ref : variable.producers) {
-    const auto& stands_in_for = model.tasks[ref.task].draft->standby_for;
-    const bool is_of_group =
-        ref.task == primary || (stands_in_for && stands_in_for->task.text == model.tasks[primary].name());
-    if (!is_of_group) return &model.tasks[ref.task];
-  }
+  for (const PortRef ref : variable.producers)
+    if (ref.task != primary && model.primary_of(ref.task) != primary) return &model.tasks[ref.task];
   return nullptr;
 }
 
@@ -133,6 +129,16 @@ void check(Model& model, std::size_t standby, std::size_t primary) {
 }
 
 }  // namespace
+
+void pair_standbys(Model& model) {
+  for (std::size_t t = 0; t < model.tasks.size(); ++t) {
+    const auto& written = model.tasks[t].draft->standby_for;
+    const auto primary = written ? model.task_named(written->task.text) : std::nullopt;
+    if (!primary) continue;
+    const Nanoseconds stale_after = written->stale_after ? written->stale_after->value : Nanoseconds{};
+    model.standbys.push_back({TaskId(*primary), TaskId(t), stale_after, written->is_hot()});
+  }
+}
 
 void check_standbys(Model& model) {
   for (std::size_t i = 0; i < model.tasks.size(); ++i) {

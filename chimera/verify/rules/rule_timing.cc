@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "chimera/verify/rules/rules.h"
-
+#include "chimera/runtime/hosted/together.h"
 #include "chimera/schedule/utilisation.h"
+#include "chimera/verify/rules/rules.h"
 
 namespace chimera {
 
@@ -134,44 +134,14 @@ double load(const TaskModel& task) {
 /// True if the task drops work that finds no time before its deadline (on_miss: abort).
 bool gives_way(const TaskModel& task) { return task.draft->on_miss && task.draft->on_miss->kind == OnMiss::kAbort; }
 
-/// Tasks that cycle together.
-struct Together {
-  std::string name;  ///< "configuration 'run'"
-  std::vector<std::size_t> tasks;
-};
-
-/// The tasks, and the hot standbys that cycle while one of them is ON.
-std::vector<std::size_t> with_hot(const Model& model, const std::vector<std::size_t>& tasks) {
-  std::vector<std::size_t> all = tasks;
-  for (std::size_t t = 0; t < model.tasks.size(); ++t) {
-    const auto primary = model.primary_of(t);
-    if (!primary || !model.tasks[t].draft->standby_for->is_hot() || std::ranges::count(tasks, t) > 0) continue;
-    const auto stands_in = [&](std::size_t on) { return model.primary_of(on).value_or(on) == *primary; };
-    if (std::ranges::any_of(tasks, stands_in)) all.push_back(t);
-  }
-  return all;
-}
-
-/// The set itself, and the set with each standby in place of its primary.
-std::vector<Together> all_together(const Model& model, const SetModel& set) {
-  const std::string name = "configuration '" + set.name + "'";
-  std::vector<Together> all{{name, with_hot(model, set.tasks)}};
-  for (std::size_t t = 0; t < model.tasks.size(); ++t) {
-    const auto primary = model.primary_of(t);
-    if (!primary || !set.has(*primary) || set.has(t)) continue;
-    std::vector<std::size_t> tasks = set.tasks;
-    std::ranges::replace(tasks, *primary, t);
-    all.push_back({name + " with '" + model.tasks[t].name() + "' for '" + model.tasks[*primary].name() + "'",
-                   with_hot(model, tasks)});
-  }
-  return all;
-}
-
-void warn_of_overload(Model& model, const Together& set, const TaskModel& task, std::uint32_t cpu, const char* sum) {
-  model.warn("utilisation", place_of_time(task),
-             "the budgets of " + set.name + " take " + sum + " of CPU " + std::to_string(cpu) +
-                 ", more than 0.93: every task says 'on_miss: abort', so what finds no time ends at its deadline",
-             "run it in virtual time");
+/// "the budgets of configuration 'run' with 'spare' for 'pid' take 0.950 of CPU 1".
+std::string load_text(const Model& model, const SetModel& set, const Together& together, const char* sum,
+                      std::uint32_t cpu) {
+  std::string text = "the budgets of configuration '" + set.name + "'";
+  if (together.is_takeover())
+    text += " with '" + model.tasks[together.standby.index].name() + "' for '" +
+            model.tasks[together.primary.index].name() + "'";
+  return text + " take " + sum + " of CPU " + std::to_string(cpu);
 }
 
 /// Rounds to the first three digits.
@@ -192,26 +162,30 @@ std::string what_fits(const TaskModel& task, double load) {
 }
 
 /// False: the tasks exceed the limit of the CPU.
-bool limit(Model& model, const Together& set, std::uint32_t cpu) {
+bool limit(Model& model, const SetModel& set, const Together& together, std::uint32_t cpu) {
   double sum = 0;
   bool all_give_way = true;
   std::size_t heaviest = model.tasks.size();
-  for (const std::size_t index : set.tasks) {
-    const TaskModel& task = model.tasks[index];
+  for (const TaskId id : together.tasks) {
+    const TaskModel& task = model.tasks[id.index];
     if (model.rtpus[task.rtpu].cpu.value != cpu) continue;
     sum += load(task);
     all_give_way = all_give_way && gives_way(task);
-    if (heaviest == model.tasks.size() || load(task) > load(model.tasks[heaviest])) heaviest = index;
+    if (heaviest == model.tasks.size() || load(task) > load(model.tasks[heaviest])) heaviest = id.index;
   }
   if (!is_beyond(sum)) return true;
   const TaskModel& task = model.tasks[heaviest];
   char found[64];
   std::snprintf(found, sizeof found, "%.3f", sum);
-  if (all_give_way) warn_of_overload(model, set, task, cpu, found);
-  if (all_give_way) return false;
+  const std::string taken = load_text(model, set, together, found, cpu);
+  if (all_give_way) {
+    model.warn("utilisation", place_of_time(task),
+               taken + ", more than 0.93: every task says 'on_miss: abort', so what finds no time ends at its deadline",
+               "run it in virtual time");
+    return false;
+  }
   const double fits = kMaxUtilisation - (sum - load(task));
-  const std::string message = "the budgets of " + set.name + " take " + found + " of CPU " +
-                              std::to_string(cpu) + "; expected at most 0.93";
+  const std::string message = taken + "; expected at most 0.93";
   const std::string remedy = fits > 0
                                  ? "task '" + task.name() + "' takes most: it would fit with " + what_fits(task, fits)
                                  : "move tasks to another CPU, or lower their rates";
@@ -233,12 +207,13 @@ void limit_utilisation(Model& model) {
       for (std::size_t j = 0; j < i; ++j) is_first = is_first && model.rtpus[j].cpu.value != model.rtpus[i].cpu.value;
       if (!is_first) continue;
       // An excess without a standby is reported only once.
-      for (const Together& together : all_together(model, set))
-        if (!limit(model, together, model.rtpus[i].cpu.value)) break;
+      for (const Together& together : all_together(model.standbys, set.tasks))
+        if (!limit(model, set, together, model.rtpus[i].cpu.value)) break;
     }
   model.utilisation.assign(model.rtpus.size(), 0);
-  for (const std::size_t index : with_hot(model, model.sets[model.start].tasks))
-    model.utilisation[model.tasks[index].rtpu] += load(model.tasks[index]);
+  const std::vector<Together> of_start = all_together(model.standbys, model.sets[model.start].tasks);
+  for (const TaskId id : of_start[0].tasks)
+    model.utilisation[model.tasks[id.index].rtpu] += load(model.tasks[id.index]);
 }
 
 }  // namespace chimera

@@ -21,6 +21,10 @@ void require_resources(Model& model);
 /// Configurations name known tasks, each once; `start` and {switch: ...} name known configurations.
 void make_sets(Model& model);
 
+// rule_standby.cc
+/// Makes Model::standbys of the standbys that name a known task.
+void pair_standbys(Model& model);
+
 // rule_links.cc
 /// Makes Model::variables; no name stands for a state variable and a constant.
 void collect_variables(Model& model);
