@@ -204,7 +204,7 @@ void Reader::judge() {
   call.json = call.options.erase("--json") > 0;
   const std::string name = typed_name(program_, command.name), given = call.operand(0), operands = command.operands;
   const std::size_t sign = given.find('=', 1);
-  if (command.has_commands) wrong(name + " needs a command" + list_of(command.name));
+  if (command.has_commands) wrong(name + " needs a command");
   if (call.operands.size() < command.least && command.operand_kind == WordKind::kSetting && sign < given.size())
     wrong(std::string(command.name) + " takes a name and a value, two words: " + name + " " + given.substr(0, sign) +
           " '" + given.substr(sign + 1) + "'");

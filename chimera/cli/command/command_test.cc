@@ -92,7 +92,7 @@ TEST(ReadCall, OptionsBeforeTheCommandBelongToIt) {
 TEST(ReadCall, RefusesWithPlaceAndRemedy) {
   EXPECT_EQ(fault({}), "no command is given; `chimera --help` lists them");
   EXPECT_EQ(fault({"drew"}), "no command 'drew'; did you mean 'draw'?; `chimera --help` lists them");
-  EXPECT_EQ(fault({"new"}), "chimera new needs a command; `chimera new --help` lists them");
+  EXPECT_EQ(read({"new"}).fault, "chimera new needs a command\n`chimera new --help` says more\n");
   EXPECT_EQ(fault({"new", "ap"}), "no command 'new ap'; did you mean 'new app'?; `chimera new --help` lists them");
   EXPECT_EQ(fault({"draw", "a", "--sise=3"}), "chimera draw has no option '--sise=3'; did you mean '--size'?");
   EXPECT_EQ(fault({"draw", "a", "--size"}), "--size needs a value: N");

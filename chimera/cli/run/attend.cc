@@ -299,7 +299,7 @@ void RemoteTarget::switch_to(const TimedAct& timed) {
   } else if (text_at(*answer, "end") == "nothing-to-do") {
     const std::string to = text_at(*answer, "to");
     const std::string what = to.empty() ? "these tasks are" : "'" + to + "' is";
-    switches_ += "switch at " + instant_text(now()) + ": " + what + " in force, nothing to do\n";
+    switches_ += "switch at " + seconds_text(now()) + " s: " + what + " in force, nothing to do\n";
   }
 }
 

@@ -21,12 +21,6 @@
 #include "chimera/runtime/virtual/virtual_rtpus.h"
 
 namespace chimera::cli {
-
-const RtpuSpec& followed_rtpu(const Configuration& configuration, bool virtual_time) {
-  const bool has_tasks = !configuration.tasks().empty();
-  return configuration.rtpus()[virtual_time && has_tasks ? configuration.tasks()[0].rtpu : 0];
-}
-
 namespace {
 
 std::string signal_line(const RefusedSignal& refused, const Task& task, Nanoseconds origin) {
@@ -75,6 +69,11 @@ std::string who_stopped(std::span<const Task* const> tasks) {
 
 namespace {
 
+/// The rtpu that one context in virtual time follows.
+const RtpuSpec& followed_rtpu(const Configuration& configuration) {
+  return configuration.rtpus()[configuration.tasks().empty() ? 0 : configuration.tasks()[0].rtpu];
+}
+
 /// "virtual time, preemptive, seed 3"; with several contexts each rtpu that has tasks.
 std::string virtual_time_text(Application& application, const RunRequest& request) {
   const auto how = [&request](const RtpuSpec& rtpu) {
@@ -82,7 +81,7 @@ std::string virtual_time_text(Application& application, const RunRequest& reques
   };
   std::string text = "virtual time";
   const VirtualPeers* const peers = application.peers();
-  if (peers == nullptr) text += ", " + how(followed_rtpu(application.configuration(), true));
+  if (peers == nullptr) text += ", " + how(followed_rtpu(application.configuration()));
   for (std::size_t r = 0; peers != nullptr && r < peers->spec().rtpus.size(); ++r)
     if (const RtpuSpec& rtpu = peers->spec().rtpus[r]; peers->tasks(RtpuId(r)) != nullptr)
       text += ", " + std::string(rtpu.name) + ": " + how(rtpu);
@@ -194,17 +193,18 @@ class RealTimeLoop final : public RunLoop {
 
 }  // namespace
 
-std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request,
-                                           const RunOptions& options) {
+std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request, RunOptions options) {
+  const RtpuSpec& followed = followed_rtpu(application.configuration());
+  options.policy = followed.policy;
   if (VirtualPeers* const peers = application.peers())
     return std::make_unique<VirtualLoop<VirtualRtpus>>(*peers, request.preemptive, application, request, options);
-  const bool is_preemptive = request.preemptive || followed_rtpu(application.configuration(), true).preemptive;
+  const bool is_preemptive = request.preemptive || followed.preemptive;
   return std::make_unique<VirtualLoop<VirtualExecutor>>(application.tasks(), is_preemptive, application, request,
                                                         options);
 }
 
-std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request,
-                                             const RunOptions& options) {
+std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request, RunOptions options) {
+  options.policy = application.configuration().rtpus()[0].policy;
   return std::make_unique<RealTimeLoop>(application, request, options);
 }
 

@@ -42,10 +42,10 @@ void add_rtpu(RunVerdict& verdict, const RtpuFate& rtpu, bool is_told) {
   if (rtpu.restarts > 0) {
     verdict.remarks.push_back(counted(rtpu.restarts, "restart", "restarts") + " of " + rtpu.name);
     verdict.since.push_back(rtpu.name + ": the counts of its tasks begin at its restart" +
-                            (rtpu.restarted == kNever ? "" : " at " + instant_text(rtpu.restarted)));
+                            (rtpu.restarted == kNever ? "" : " at " + seconds_text(rtpu.restarted) + " s"));
   }
   if (rtpu.died != kNever)
-    verdict.remarks.push_back(rtpu.name + " died at " + instant_text(rtpu.died) + " and is not restarted");
+    verdict.remarks.push_back(rtpu.name + " died at " + seconds_text(rtpu.died) + " s and is not restarted");
   if (rtpu.is_given_up)
     verdict.failures.push_back(rtpu.name + " was given up: its process ended too often, its tasks did not run");
   if (!rtpu.bad_end.empty() && !is_told)
@@ -70,14 +70,14 @@ void add_end(RunVerdict& verdict, const TaskProfile& task, bool died_on_purpose,
 
 }  // namespace
 
-std::string instant_text(Nanoseconds since_start) {
+std::string seconds_text(Nanoseconds time) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.3f s", to_seconds(since_start));
+  std::snprintf(text, sizeof text, "%.3f", to_seconds(time));
   return text;
 }
 
 std::string refused_line(Nanoseconds since_start, const std::string& what, const std::string& why) {
-  return "refused at " + instant_text(since_start) + ": " + (what.empty() ? "" : what + ": ") + why + "\n";
+  return "refused at " + seconds_text(since_start) + " s: " + (what.empty() ? "" : what + ": ") + why + "\n";
 }
 
 RunVerdict judge_run(const RunFacts& facts) {
