@@ -78,7 +78,7 @@ class Stage {
 };
 
 /// Runs `body` in a thread of its own on `cpu` at normal priority; joins when destroyed.
-/// For the other side of a row: a writer beside the reader. `body` must end by itself or by a flag.
+/// A row uses it for its other side, such as a writer beside the reader. `body` must return by itself or by a flag.
 class Beside {
  public:
   template <class Body>
@@ -162,7 +162,7 @@ class Comparison {
     std::vector<double> ns;  // per repetition, of one piece of work
   };
 
-  /// As much work as the slowest does in 200 us: long beside a clock read, short beside a scheduler's tick.
+  /// Work that the slowest candidate does in 200 us: long against a clock read, short against a scheduler's tick.
   std::uint64_t calibrate() {
     constexpr double kBatchNs = 200e3;
     while (batch_ < most_) {
@@ -209,7 +209,7 @@ class Comparison {
   std::vector<Candidate> candidates_;
 };
 
-/// What a row promises: a bound on the ratio or on the figure itself, or nothing (reported only).
+/// Promise of a row: a bound on the ratio or on the figure itself, or nothing (reported only).
 struct Goal {
   enum Of { kNothing, kRatio, kFigure } of = kNothing;
   bool at_most = true;
@@ -226,9 +226,9 @@ struct Figure {
   std::string what = {};
   std::string unit = "ns";
   double figure = NAN;
-  double baseline = NAN;  // what a user would do or pick instead, in the same unit, in the same run
+  double baseline = NAN;  // figure of the alternative that a user has, in the unit of `figure`, from this run
   std::string baseline_name = {};
-  double limit = NAN;     // below which nothing could go, in the same unit, in the same run
+  double limit = NAN;     // physical lower bound, in the unit of `figure`, from this run
   double ratio = NAN;     // figure / baseline, the median of the ratios where there are repetitions
   Goal goal = {};
   double aa_spread = NAN;

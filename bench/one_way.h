@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One-way time of 80 B between two processes on two CPUs, for row 4: half of a round trip. The second process answers
-// whatever arrives; it is this program again, started with `--answer NAME`. Transports take turns, repetition by
+// One-way time of 80 B between two processes on two CPUs, for row 4: half of a round trip. The second process returns
+// each message; it is this program, started with `--answer NAME`. Transports take turns, repetition by
 // repetition; the first is measured twice (A/A). No loop of either side is without an end in time.
 #pragma once
 
@@ -98,7 +98,7 @@ inline std::unique_ptr<Transport> register_side(const Channel& channel, bool) {
   return std::make_unique<ByRegister>(std::move(own), std::move(other));
 }
 
-/// What both processes see: whose turn it is. 0: nobody's.
+/// Word that both processes read: the process whose turn it is. 0: neither.
 using Turn = std::atomic<int>;
 constexpr int kEnd = -1;
 
@@ -110,7 +110,7 @@ struct Named {
   bool blocks = false;  // a wait sleeps: such a side may have real-time priority on both CPUs
 };
 
-/// A side that only ever waits asleep gets what `Stage` gives. One that spins must leave CPU 0 to others.
+/// A side that sleeps in each wait gets the rights of `Stage`. A side that spins must leave CPU 0 to others.
 inline void settle_answering(bool blocks) {
   if (blocks) {
     Stage settled(0);

@@ -36,7 +36,7 @@ struct Load {
   Nanoseconds step() const { return staggered ? Nanoseconds{period.count / n} : Nanoseconds{}; }
 };
 
-/// What a run cost and how late its jobs began.
+/// Cost of a run, and how late its jobs began.
 struct Cost {
   std::uint64_t jobs = 0;
   double cpu_ns = 0;       // of the process, a job
@@ -110,7 +110,7 @@ inline Cost run_ours(const Load& load, Policy policy, Nanoseconds time, Nanoseco
   return cost;
 }
 
-/// What the two others do, whose jobs are counted in `jobs`: from kLeadIn after `origin` to `end`.
+/// Cost of the threads that count their jobs in `jobs`, from kLeadIn after `origin` to `end`.
 inline Cost measured(const std::atomic<std::uint64_t>& jobs, Nanoseconds origin, Nanoseconds end) {
   LinuxClock clock;
   (void)clock.wait_until(origin + kLeadIn);
@@ -173,7 +173,7 @@ inline Cost run_fixed(const Load& load, Nanoseconds time, bool keep_late = false
 }
 inline Cost run_lowered(const Load& load, Nanoseconds time) { return run_threads(load, time, true, false); }
 
-/// One thread above the others that sleeps to each release and wakes the thread of the task, which reports its end.
+/// A dispatcher thread above the others sleeps to each release and wakes the thread of the task, which reports its end.
 class Dispatched {
  public:
   explicit Dispatched(const Load& load) : load_(load), bells_(load.n) {}

@@ -64,8 +64,8 @@ std::unique_ptr<Transport> iceoryx_side(const Channel&, bool is_answering) {
   return std::make_unique<ByIceoryx>(is_answering);
 }
 
-// Runs this program again beside the daemon that every iceoryx process needs: when the daemon ends, it ends whoever
-// still is one.
+// Runs this program again beside the daemon that every iceoryx process needs. When the daemon ends, it ends the
+// processes that still use it.
 int beside_daemon() {
   const std::array<const char*, 5> words{"iox-roudi", "--monitoring-mode", "off", "--log-level", "fatal"};
   Process daemon = or_give_up(Process::start("/usr/bin/iox-roudi", words, {}), "iox-roudi");

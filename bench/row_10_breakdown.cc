@@ -78,7 +78,7 @@ bool fits_exactly(const Set& set, double utilisation) {
   return true;
 }
 
-// The largest utilisation, in steps of 0.01, at which `fits` still holds below every larger one that was tried.
+// Bisects for the largest utilisation, in steps of 0.01, at which `fits` holds.
 template <class Fits>
 double breakdown(Fits fits) {
   int low = 0, high = 100;
@@ -130,7 +130,7 @@ void in_virtual_time(std::uint64_t sets) {
 std::int64_t spends[kTasks];
 
 std::int32_t spending_cycle(void*, const chimera_call* call) {
-  // Which task this is, is told by its period: no two are alike.
+  // The period identifies the task: no two are equal.
   for (std::uint32_t i = 0; i < kTasks; ++i)
     if (call->deadline_ns - call->now_ns == spends[i] >> 32) call->host->spend(call->context, spends[i] & 0xffffffff);
   return CHIMERA_OK;

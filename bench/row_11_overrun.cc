@@ -10,7 +10,7 @@ constexpr Nanoseconds kBudget = microseconds(300), kPeriod = milliseconds(2);
 
 std::vector<double>* seen_after = nullptr;
 
-// Computes until it is told to give up, and writes down how long after the end of its budget that was.
+// Computes until the host sets the give-up flag, and records the time from the end of its budget to that instant.
 std::int32_t greedy_cycle(void*, const chimera_call* call) {
   const Nanoseconds begun = used_by_this_thread();
   const Nanoseconds most = kPeriod;

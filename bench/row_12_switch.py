@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 # Needs: demo component_gain_files component_t_delays_files component_mujoco_robot_files
-"""Row 12, a switch of configurations. 100 tasks at 1 kHz on two rtpus, 25 of each unit leave and as many
+"""Row 12, a switch of configurations. 100 tasks at 1 kHz on two rtpus, 25 of each rtpu leave and as many
 others arrive, there and back: from the return of the last `on` to the instant of the change, in periods, and how many
 cycles were lost by all of them. A witness on each processor says which of them the host disturbed: cycles are counted
 in the others, and the instant of the change is judged where no job of the run has been stalled for 0.5 ms before, since
 nothing is changed sooner than the longest job so far takes. 20 switches in each run, runs until 200 are judged, at most
 60. Baseline of the whole command: the same change by `off`, then `on`, few enough for the limit of acts a second.
-Then what one task of a unit feels while a large component (mujoco_robot) is loaded there or goes: the longest start
-delay in windows of 0.5 s, beside as long ones in which nothing happens, and those twice (A/A)."""
+Then a large component (mujoco_robot) is loaded into an rtpu or removed: the longest start delay of another task there,
+in windows of 0.5 s, against equal windows in which nothing happens, and those twice (A/A)."""
 import json
 import os
 import pathlib

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Needs: process_campaigns
-"""Row 13, detection: from the SIGKILL of an rtpu to its death as the manager tells it (event rtpu-ended), by
-way of the keeper's pidfd. Baseline, in turn with it: the pidfd of a small child polled in this very process. The task
-of the other unit must lose no cycle by it: counted beside as long a time in which nobody dies."""
+"""Row 13, detection: from the SIGKILL of an rtpu to the event rtpu-ended of the manager, by way of the keeper's pidfd.
+Baseline, in turn with it: the pidfd of a small child polled in this very process. A death must cost the task of the
+other rtpu no cycle. Its lost cycles are compared with those of an equally long time without a death."""
 import json
 import os
 import pathlib
@@ -46,20 +46,20 @@ def pidfd_of_a_child():
 
 
 def end_memory_holder(pid):
-    """What the death of a unit would be without its second process (chimera/platform/process.h)."""
+    """Kills the second process of an rtpu (chimera/platform/process.h), to measure a death without it."""
     children = pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
     assert len(children) == 1, children
-    os.kill(int(children[0]), signal.SIGKILL)  # nobody reaps it: the number stays its own
+    os.kill(int(children[0]), signal.SIGKILL)  # it stays a zombie: its number is not used again
 
 
 def once(system, with_memory_holder):
-    """Microseconds until the death is told; the unit is brought back afterwards."""
+    """Microseconds until the event of the death. The rtpu is started again afterwards."""
     since = system.call("events", since=0)["last"]
     pid = system.rtpu("second")["pid"]
     pidfd = os.pidfd_open(pid)
     if not with_memory_holder:
         end_memory_holder(pid)
-    time.sleep(QUIET_S)  # the manager answers nobody when it happens, and nothing is left of the last death
+    time.sleep(QUIET_S)  # at the death the manager answers no client and has handled the last death
     began = time.monotonic_ns()
     signal.pidfd_send_signal(pidfd, signal.SIGKILL)
     os.close(pidfd)
@@ -73,14 +73,14 @@ def once(system, with_memory_holder):
 
 
 def lost(system):
-    """What the task of the other unit has missed so far: cycles that were late or not run."""
+    """Cycles of the task in the other rtpu that were late or not run so far."""
     task = system.task("steady")
     assert task["incarnation"] == 1 and task["faults"] == 0, task
     return task["dropped"] + task["missed"]
 
 
 def counted(system, with_memory_holder):
-    """(microseconds of once(), cycles that the other unit lost meanwhile)"""
+    """(microseconds of once(), cycles that the other rtpu lost during it)"""
     before = lost(system)
     return once(system, with_memory_holder), lost(system) - before
 
@@ -109,11 +109,11 @@ middle_slow, without = p50_p99([took for took, _ in slow])
 print(json.dumps({"row": 13, "what": f"death seen, p99 ({middle})", "unit": "us", "figure": figure, "baseline": small,
                   "baseline_name": f"small child ({middle_small})", "ratio": round(figure / small, 2),
                   "goal": f"<= {GOAL_US} us", "met": figure <= GOAL_US, "n": ROUNDS}))
-print(json.dumps({"row": 13, "what": "the same against no memory holder", "unit": "us", "figure": figure,
+print(json.dumps({"row": 13, "what": "death seen, against no memory holder", "unit": "us", "figure": figure,
                   "baseline": without, "baseline_name": f"without ({middle_slow})",
                   "ratio": round(figure / without, 2), "goal": "< 1", "met": figure < without, "n": ROUNDS}))
-for what, deaths in (("cycles the other unit lost", quick), ("the same without memory holder", slow)):
+for what, deaths in (("cycles that the other rtpu lost", quick), ("cycles lost without memory holder", slow)):
     missing = sum(n for _, n in deaths)
     print(json.dumps({"row": 13, "what": what, "unit": "", "figure": missing, "baseline": control,
-                      "baseline_name": "nobody dies", "goal": "no more than without death",
+                      "baseline_name": "no death", "goal": "no more than without death",
                       "met": missing <= control, "n": ROUNDS}))

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 # Needs: process_campaigns component_gain_files component_faulty_files
-"""Row 13, takeover: from the loss of a task until readers have an output of its standby in another unit. The loss is
-the SIGKILL of the unit of the primary, or the fault by which the primary goes to ERROR. A cold standby publishes with
-`on`: its first row on the tap of its unit. Of a hot one, which has published beside the primary, the last output is
-read from its takeover on; then one that is newer than the loss. The goal is one period of the standby. Baseline, in
-turn with it: nobody stands in; the manager starts the unit again, or a client that waits for the event `fault` turns
-the other task ON. Another task of the standby's unit must lose no cycle by a death: counted beside as long a time in
-which nobody dies."""
+"""Row 13, takeover: from the loss of a task until readers have an output of its standby in another rtpu. The loss is
+the SIGKILL of the rtpu of the primary, or the fault by which the primary goes to ERROR. A cold standby publishes with
+`on`: its first row on the tap of its rtpu. A hot standby has published beside the primary: readers have its last output
+from the takeover on, and then one that is newer than the loss. The goal is one period of the standby. Baseline, in turn
+with it: there is no standby. The manager starts the rtpu again, or a client that waits for the event `fault` turns the
+other task ON. A death must cost another task of the standby's rtpu no cycle. Its lost cycles are compared with those of
+an equally long time without a death."""
 import json
 import os
 import pathlib
@@ -49,7 +49,7 @@ def kill_rtpu(system, _):
 
 
 def await_fault(system, kept):
-    """The instant of the fault of the primary, as its unit told it. What is read meanwhile is kept."""
+    """The instant of the fault of the primary, from the event of its rtpu. Notes that come first go to `kept`."""
     end = time.monotonic() + 5
     while time.monotonic() < end:
         kept.append(system.client.note())
@@ -82,7 +82,7 @@ def follow(system, kept, who, began, takes_over):
 
 
 def lost(system):
-    """What the steady task has missed so far: cycles that were late or not run."""
+    """Cycles of the steady task that were late or not run so far."""
     task = system.task("steady")
     assert task["incarnation"] == 1 and task["faults"] == 0, task
     return task["dropped"] + task["missed"]
@@ -140,13 +140,13 @@ for _ in range(ROUNDS):
 TAKEOVERS = {name: [each[0] for each in runs] for name, runs in found.items()}
 ROWS = {name: [each[1] for each in runs] for name, runs in found.items()}
 NEWER = {name: [max(each[:2]) for each in runs] for name, runs in found.items() if "hot" in name}
-for loss, instead in (("kill", "the unit restarted"), ("fault", "a client: `on spare`")):
+for loss, instead in (("kill", "the rtpu restarted"), ("fault", "a client: `on spare`")):
     without_it = ROWS[f"{loss}, none"]
     line(f"{loss} to the first output of a cold standby", ROWS[f"{loss}, cold"], without_it, instead)
     line(f"{loss} to the takeover by a hot one", TAKEOVERS[f"{loss}, hot"], without_it, instead)
     line(f"{loss} to an output of a hot one that is newer", NEWER[f"{loss}, hot"], without_it, instead, has_goal=False)
 DEATHS = found["kill, cold"] + found["kill, hot"]
 LOST, CONTROL = (sum(each[place] for each in DEATHS) for place in (2, 3))
-print(json.dumps({"row": 13, "what": "cycles that another task of the standby's unit lost", "unit": "", "figure": LOST,
-                  "baseline": CONTROL, "baseline_name": "nobody dies", "goal": "no more than without death",
+print(json.dumps({"row": 13, "what": "cycles that another task of the standby's rtpu lost", "unit": "", "figure": LOST,
+                  "baseline": CONTROL, "baseline_name": "no death", "goal": "no more than without death",
                   "met": LOST <= CONTROL, "n": len(DEATHS)}))

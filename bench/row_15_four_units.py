@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Needs: process_campaigns
-"""Row 15, with processes: from the command to the moment at which every task of four rtpus on two CPUs is ON,
-as the control protocol tells it. The first cycle comes at the next release after that."""
+"""Row 15, with processes: from the command until `status` reports every task of four rtpus on two CPUs as ON.
+The first cycle comes at the next release after that."""
 import json
 import os
 import pathlib

@@ -5,7 +5,7 @@ long after its release each of their cycles begins, one in front, one in the mid
 turn: alone, alone again (A/A), under `status` every 100 ms (what `chimera top` asks for), and under a tap of 100
 variables read as fast as it comes. Of each window p50 and p99 over the three; the figure is the median over the
 windows of the ratio to the window alone of the same turn. Goal: not above what nine of ten A/A ratios are below.
-The tap must bring every row: rows a second and lost ones are told too."""
+The tap must bring every row: rows a second and lost rows are printed too."""
 import json
 import os
 import pathlib
@@ -37,7 +37,7 @@ OBSERVERS = {"alone": None, "control": None, "status": {"to": "status", "period_
 
 
 def look_on(client):
-    """Whatever comes in SECONDS, as bytes."""
+    """Bytes that arrive in SECONDS."""
     received, end = [], time.monotonic() + SECONDS
     client.socket.settimeout(0.05)
     while time.monotonic() < end:
@@ -120,7 +120,7 @@ for name, what in (("status", "status at 100 ms"), ("tap", f"a tap of {N} variab
         print(json.dumps({"row": 18, "what": f"start delay under {what}, {share}", "unit": "us",
                           "figure": round(statistics.median(seen[which] for seen in FOUND[name]), 1),
                           "baseline": round(statistics.median(seen[which] for seen in FOUND["alone"]), 1),
-                          "baseline_name": "nobody looks on", "ratio": round(ratio, 3), "limit": round(limit, 3),
+                          "baseline_name": "no observer", "ratio": round(ratio, 3), "limit": round(limit, 3),
                           "goal": "within the A/A spread", "met": ratio <= limit,
                           "aa_spread": round(limit - ratios["control"][WINDOWS // 10], 3), "n": WINDOWS}))
 RATE = ROWS / (WINDOWS * SECONDS)

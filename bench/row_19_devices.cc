@@ -42,7 +42,7 @@ void give_six(ArmRig& rig) {
 
 void write_what_waits(ArmRig& rig) { rig.background(); }
 
-/// The same with standard output closed to what is printed: that is where the figures go.
+/// Runs the background with standard output sent to /dev/null: standard output is for the figures.
 void print_what_waits(ArmRig& rig) {
   static const int figures = ::dup(STDOUT_FILENO), nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   std::fflush(stdout);
@@ -124,7 +124,7 @@ std::vector<ComponentCase> of_sight() {
              rig.resource("link", (std::string("file:") + kRecording).c_str()); }, follow, {}, 2000}};
 }
 
-/// What a camera sees for 400 s, and a ball whose six axes are pushed and stay so.
+/// Writes two recordings of 400 s: features of a camera, and events of a ball whose six axes are pushed and held.
 void record() {
   std::ofstream features(kRecording), events(kEvents);
   features << "t,u,v,size\n";

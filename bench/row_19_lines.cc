@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Row 19: one cycle of each component that speaks over a line. What speaks in its cycle stands beside the bare system
-// calls for the same bytes, the other end answering in the same loop; what speaks beside the cycles stands beside the
-// law of its cycle, and its exchange beside that of the library it uses.
+// Row 19: one cycle of each component that uses a line. A component that sends in its cycle is compared with the bare
+// system calls for its bytes, while the other end answers in this loop. A component that sends beside its cycles is
+// compared with the law of its cycle, and its exchange with that of the library it uses.
 // Components: serial_frame udp_frame modbus_io
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -48,7 +48,7 @@ struct Line {
   void say() {
     if (::write(device, frame, size) < 0) throw std::runtime_error("the device cannot speak");
   }
-  /// What a program without components does: reads what there is, writes its frame.
+  /// Cycle of a program without components: reads the bytes that are there and writes its frame.
   void bare() {
     [[maybe_unused]] const ssize_t got = ::read(ours, heard, sizeof heard);
     if (::write(ours, frame, size) < 0) throw std::runtime_error("the line is full");
@@ -201,7 +201,7 @@ void scale_points(std::uint64_t n) {
   }
 }
 
-/// What is done beside the cycles, where libmodbus waits for the device: four requests.
+/// Measures the work beside the cycles: four requests, in which libmodbus waits for the device.
 void modbus_exchange() {
   const ModbusDevice one, other;
   ArmRig rig("modbus_io");

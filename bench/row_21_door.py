@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # Needs: process_campaigns hostile_campaigns
-"""Row 21, the door: how long an act waits for its answer beside the most costly questions that all other connections
-may ask without a pause (tests/hostile/costly.py: checks of 256 joins in loops, schedules of 6 MB, the library, the
-description, status, events, values), and beside the values of an application that has 3.9 MiB of them. Baseline, in
-turn with it: the same door with nobody else asking. The asking side runs on the same processors as the manager."""
+"""Row 21, the control server: the time from an act to its answer, beside the most costly questions that all other
+connections may ask without a pause (tests/hostile/costly.py: checks of 256 joins in loops, schedules of 6 MB, the
+library, the description, status, events, values), and beside the values of an application that has 3.9 MiB of them.
+Baseline, in turn with it: the server without other clients. The clients run on the processors of the manager."""
 import json
 import os
 import pathlib
@@ -43,7 +43,7 @@ def measure(description, asked, answers, name):
         middle = statistics.median(beside[what])
         print(json.dumps({"row": 21, "what": f"{what} beside {name}, p99 (p50 {middle:.1f})", "unit": "ms",
                           "figure": round(figure, 2), "baseline": round(baseline, 2),
-                          "baseline_name": f"nobody asks (p50 {statistics.median(alone[what]):.2f})",
+                          "baseline_name": f"no other client (p50 {statistics.median(alone[what]):.2f})",
                           "ratio": round(figure / baseline, 1), "goal": f"<= {GOAL_MS} ms", "met": figure <= GOAL_MS,
                           "n": len(beside[what])}))
 

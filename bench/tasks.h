@@ -65,7 +65,7 @@ inline const chimera_component& axis_component() {
   return component;
 }
 
-/// What may be otherwise with the tasks.
+/// Properties of the tasks that a benchmark may change.
 struct AxesForm {
   bool preemptive = false;
   Nanoseconds offset_step;
@@ -73,7 +73,7 @@ struct AxesForm {
   const chimera_component* component = nullptr;  ///< null: axis_component()
   OnMiss on_overrun = OnMiss::kContinue;
   std::vector<Nanoseconds> budgets;  ///< of each task, instead of `budget`
-  std::uint32_t critical = 0;        ///< so many of the first tasks are of high criticality
+  std::uint32_t critical = 0;        ///< number of tasks, from the first, of high criticality
 };
 
 /// n tasks in a ring. `period(i)` is that of task i.

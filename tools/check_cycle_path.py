@@ -34,7 +34,7 @@ RESERVED = {r'(chimera::LabelList::set\(|std::vector<chimera::LabelledJob)': 'a 
 
 
 class Path:
-    """What may be reached from `roots`: names that match `allowed`; `leaves` {pattern: why} are not followed."""
+    """Functions that `roots` may reach: names that match `allowed`. `leaves` {pattern: why} are not followed."""
 
     def __init__(self, name, roots, allowed, leaves):
         self.name, self.roots, self.leaves = name, roots, leaves
@@ -67,7 +67,7 @@ def run(*command):
 
 
 class Graph:
-    """Functions of object files and what each refers to. Local functions are told apart by their file."""
+    """Functions of object files and what each refers to. Functions that are local to a file are kept apart."""
 
     def __init__(self):
         self.refers = {}

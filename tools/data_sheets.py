@@ -107,7 +107,7 @@ def uncited(descriptor, said):
 
 
 def check(name, text, descriptor):
-    """What is wrong with a sheet, as sentences."""
+    """Errors of a sheet, as sentences."""
     lines = text.split("\n")
     if lines[0] != f"# {name}":
         yield f"the first line is not '# {name}'"
@@ -142,17 +142,18 @@ SIMULATED_HARDWARE = ("car", "electric_car", "mujoco_robot", "mujoco_robot_torqu
 
 
 def unsafe(name, descriptor):
-    """What moves hardware says when that is safe, so that a drill can ask it: docs/howto/drill.md."""
+    """A component that moves hardware says when it is safe, for a drill: docs/howto/drill.md."""
     ports = descriptor["ports"]
     resources = [port for port in ports if port["kind"] == "resource"]
     tells = [port["name"] for port in ports if port.get("safe_state") and port["kind"] == "out-var"]
     moves = name in SIMULATED_HARDWARE or any(not port.get("safe_state") for port in resources)
     if moves and not tells:
-        yield "its code has hardware and no safe_state: on an output that tells, or on a resource that moves nothing"
+        yield ("its code has hardware and no safe_state: on an output that says it is safe, or on a resource that "
+               "moves nothing")
 
 
 def pictures(folder, text):
-    """What is wrong with the pictures of a sheet: shown and not there, or there and not shown."""
+    """Errors in the pictures of a sheet: a missing file, or a file that the sheet does not show."""
     shown = set(re.findall(r"!\[[^\]]+\]\(([^)]+)\)", text))
     for picture in sorted(shown):
         if not (folder / picture).is_file():
@@ -171,7 +172,7 @@ def with_table(text, descriptor):
 
 
 def measured(program, name, components):
-    """What `chimera test NAME` measures on this machine, as a sentence."""
+    """Result of `chimera test NAME` on this machine, as a sentence."""
     run = subprocess.run([program, "test", name, "--json"], capture_output=True, text=True, check=False,
                          env={**os.environ, "CHIMERA_PATH": str(components)})
     report = json.loads(run.stdout)["reports"][0]

@@ -200,7 +200,7 @@ bool AskedRun::read(const Call& call) {
     wrong = "--preemptive, --seed and --quantum belong to --virtual";
   if (run.virtual_time && run.duration == kNever) wrong = "--virtual needs --for: virtual time has no end of its own";
   if (!call.value("--start-limit").empty() && (run.virtual_time || run.one_process))
-    wrong = "--start-limit belongs to real time with a process for each unit";
+    wrong = "--start-limit belongs to real time with a process for each rtpu";
   if (!call.value("--timeline").empty() && run.duration == kNever) wrong = "--timeline needs --for";
   if (!call.value("--timeline").empty() && run.json) wrong = "--timeline and --json exclude each other";
   if (wrong != nullptr) std::fprintf(stderr, "%s\n", wrong);

@@ -69,7 +69,7 @@ const ModeEdge& edge(const ModeReport& report, const std::string& from, const st
   return *found;
 }
 
-/// "mass: light, heavy; arm": the constant, who makes it before and after, who uses it.
+/// "mass: light, heavy; arm": the constant, its producers before and after the switch, and its user.
 std::string text(const Configuration& made, const ModeConstant& constant) {
   const auto name = [&](std::size_t task) { return made.tasks()[task].name; };
   std::string text = constant.name + ": " + name(constant.before) + ", " + name(constant.after) + ";";
@@ -132,7 +132,7 @@ TEST(ModeReport, SameProducerKeepsItsConstant) {
   EXPECT_EQ(edge(report, "c", "a").way(), ModeWay::kFast);
 }
 
-TEST(ModeReport, WhoLeavesAndWhoArrivesDoNotMakeASwitchSlow) {
+TEST(ModeReport, TasksThatLeaveOrArriveDoNotMakeASwitchSlow) {
   const Configuration made = verified(
       "tasks:\n"
       "  light: {component: tool}\n"
@@ -189,7 +189,7 @@ TEST(ModeReport, WarnsOfAReactionThatMayRaiseTheFlag) {
   EXPECT_TRUE(edge(report, "a", "b").has_reaction());
 }
 
-TEST(ModeReport, TakeoversAreJudgedAndWhatFollowsThem) {
+TEST(ModeReport, JudgesTakeoversAndTheSwitchesAfterThem) {
   const Configuration made = verified(
       "rtpus: {first: {cpu: 0}, second: {cpu: 1}}\n"
       "tasks:\n"

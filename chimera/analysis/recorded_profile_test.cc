@@ -26,7 +26,7 @@ std::string with(const char* name, int worst, int mean) {
 constexpr const char* kGood =
     R"({"task": "pid", "samples": 9, "worst_ns": 40, "mean_ns": 20, "response_ns": 90, "jitter_ns": 5})";
 
-TEST(RecordedProfile, ReadsWhatItWrites) {
+TEST(RecordedProfile, ReadsItsOwnOutput) {
   const RecordedProfile written{
       "arm",
       {{"pid", 1000, Nanoseconds{40'000}, Nanoseconds{20'000}, Nanoseconds{90'000}, Nanoseconds{5'000}},
@@ -60,7 +60,7 @@ TEST(RecordedProfile, SaysWhichFileIsNotThere) {
   EXPECT_EQ(profile.error().message.view(), "cannot be opened: No such file or directory");
 }
 
-TEST(RecordedProfile, TakesWhatWasMeasured) {
+TEST(RecordedProfile, TakesTheMeasuredTimes) {
   TaskProfile pid, idle;
   pid.task = "pid";
   pid.profile.execution[CHIMERA_CYCLE].add(microseconds(3));

@@ -59,7 +59,7 @@ TEST(TaskProfile, ReadsAsDocumented) {
             "\"note\": \"without its fan\"}]");
 }
 
-TEST(TaskProfile, SaysWhatCameBackOnlyWhereSomethingDid) {
+TEST(TaskProfile, PrintsRestartsAndTakeoversOnlyIfThereAreAny) {
   TaskProfile task = sample();
   EXPECT_FALSE(profile_json({&task, 1}, kOrigin)[0].contains("takeovers"));
   task.profile.restarts = 2;
@@ -78,7 +78,7 @@ TEST(TaskProfile, ReadsBackTheSame) {
   EXPECT_EQ(profile_json(*read, kOrigin), json);
 }
 
-TEST(TaskProfile, RefusesWhatIsNone) {
+TEST(TaskProfile, RefusesMalformedText) {
   EXPECT_FALSE(read_profiles(Json::parse("[{}]"), kOrigin));
   EXPECT_FALSE(read_profiles(nullptr, kOrigin));
   EXPECT_FALSE(read_profiles(Json::parse("[1]"), kOrigin));

@@ -23,7 +23,7 @@ TEST(FixedString, CutsLongText) {
 
 TEST(FixedString, IsPlainBytes) { EXPECT_TRUE(std::is_trivially_copyable_v<FixedString<16>>); }
 
-TEST(FixedVector, RefusesWhatDoesNotFit) {
+TEST(FixedVector, RefusesAValueThatDoesNotFit) {
   FixedVector<int, 2> numbers;
   EXPECT_TRUE(numbers.try_push(1));
   EXPECT_TRUE(numbers.try_push(2));

@@ -25,7 +25,7 @@ TEST(Result, MovesAValueOut) {
   EXPECT_EQ(*taken, 3);
 }
 
-TEST(Result, OfVoidSaysOnlyWhetherItWorked) {
+TEST(Result, AResultOfVoidIsTrueOnSuccessOnly) {
   EXPECT_TRUE(Result<void>{});
   EXPECT_FALSE(Result<void>{Error{}});
 }

@@ -27,7 +27,7 @@ TEST(DescriptorValue, ComesBackAsItWas) {
   expect_round_trip(CHIMERA_STRING, 8, std::string("seven b"));
 }
 
-TEST(DescriptorValue, RefusesWhatDoesNotFit) {
+TEST(DescriptorValue, RefusesAValueThatDoesNotFit) {
   std::array<std::byte, 8> memory{};
   EXPECT_FALSE(store_plain(CHIMERA_BOOL, PlainValue(std::int64_t{1}), std::span(memory).first(1)));
   EXPECT_FALSE(store_plain(CHIMERA_INT32, PlainValue(std::int64_t{1} << 31), std::span(memory).first(4)));

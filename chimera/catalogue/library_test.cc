@@ -82,7 +82,7 @@ TEST_F(Folders, AFolderThatIsNamedTwiceIsReadOnce) {
   EXPECT_TRUE(library.hidden().empty());
 }
 
-TEST_F(Folders, KnowsWhatItsBuildTreeHasNotBuilt) {
+TEST_F(Folders, KnowsTheComponentsThatItsBuildTreeLacks) {
   write("one/buildable.txt", "gain\nlimit\nadd\n");
   write("one/gain.component.json", to_json(component("gain")));
   write("two/add.component.json", to_json(component("add")));

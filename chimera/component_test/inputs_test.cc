@@ -93,7 +93,7 @@ TEST(Recorded, TakesTheNamesOfALogFromTheUser) {
   EXPECT_EQ(form.get(form.channels[2], inputs->row(0)), 3);
 }
 
-TEST(Recorded, RefusesWhatIsNoRecording) {
+TEST(Recorded, RefusesTextThatIsNoRecording) {
   EXPECT_EQ(refusal(""), "run.csv:1:1: no row of values");
   EXPECT_EQ(refusal("v,t\n"), "run.csv:1:1: the first column is 'v', expected 't(s)', the time in s");
   EXPECT_EQ(refusal("t,v\n"), "run.csv:2:1: no row of values");

@@ -46,7 +46,7 @@ TEST(MadeUp, GivesEveryInputAndConstant) {
   EXPECT_TRUE(verdict.configuration.has_value()) << verdict.report.text();
 }
 
-TEST(Arrange, SettlesWhatIsOpenInOutputsThatNobodyReads) {
+TEST(Arrange, ChoosesUnitAndExtentOfOutputsWithoutReaders) {
   const Verdict verdict = arrange({}, component({port("y", CHIMERA_OUT_VAR, "U/s", "[n<=64]")}), our_units());
   ASSERT_TRUE(verdict.configuration.has_value()) << verdict.report.text();
   EXPECT_EQ(verdict.configuration->spec().tasks[0].ports[0].max_count(), 1u);
@@ -89,7 +89,7 @@ TEST_F(ArrangeFrom, NamesThePartner) {
   EXPECT_EQ(std::string(reinterpret_cast<const char*>(text.data()), text.size()), "tcp:5020");
 }
 
-TEST_F(ArrangeFrom, RefusesWhatIsNoSetupOfThisComponent) {
+TEST_F(ArrangeFrom, RefusesASetupThatDoesNotFitTheComponent) {
   const LibraryEntry entry = component({});
   EXPECT_EQ(from("subsystem: s\ntasks: {a: {component: other}}\n", entry).report.faults()[0].message,
             "a test setup has one task, of the component thing");

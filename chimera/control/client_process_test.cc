@@ -101,7 +101,7 @@ TEST_F(ClientTest, DoesNotHideThatSubscriptionsAreLost) {
   open_door();
   start();
   EXPECT_EQ(client->call("status").message, "the connection to the subsystem was lost");
-  EXPECT_TRUE(client->call("status").is_good()) << "that they are lost has been told";
+  EXPECT_TRUE(client->call("status").is_good()) << "the loss was reported once";
 }
 
 TEST_F(ClientTest, ConnectsAnewAfterItsSubscriptionsWereLostOrDropped) {
@@ -123,7 +123,7 @@ TEST_F(ClientTest, ConnectsAnewAfterItsSubscriptionsWereLostOrDropped) {
   EXPECT_FALSE(client.is_connected());
   EXPECT_TRUE(client.call("status").is_good());
   EXPECT_FALSE(*client.next(milliseconds(50))) << "of a subscription that was dropped nothing comes";
-  EXPECT_EQ(Client::at(folder + "/nobody.sock").call("status").code, kNoConnection);
+  EXPECT_EQ(Client::at(folder + "/absent.sock").call("status").code, kNoConnection);
 }
 
 /// Reads a line of each connection: of the first it closes without an answer, of the second it answers.
@@ -199,7 +199,7 @@ TEST_F(ClientTest, HearsWhyItIsNotLetInAndGetsInAsSoonAsThereIsAPlace) {
   for (const int fd : fds) ::close(fd);
 }
 
-TEST_F(ClientTest, ThatGaveWayComesAgainAlsoWithAnAct) {
+TEST_F(ClientTest, ReconnectsAndSendsAnActAfterItGaveWay) {
   start();
   auto client = Client::connect_to(path);
   ASSERT_TRUE(client && client->call("hello").is_good());
@@ -221,7 +221,7 @@ struct LimitTest : ClientTest {
       "it; try again, or tell the user who started it";
 };
 
-TEST_F(LimitTest, HoldsForAConnectionThatNobodyTakes) {
+TEST_F(LimitTest, HoldsForAConnectionThatIsNotAccepted) {
   std::vector<int> fds;  // no server accepts them: the queue fills
   for (int i = 0; i < 1000; ++i) {
     fds.push_back(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
@@ -239,12 +239,12 @@ TEST_F(LimitTest, HoldsForAConnectionThatNobodyTakes) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     start();
   });
-  EXPECT_TRUE(Client::connect_to(path)) << "in turn, when there is somebody who takes them";
+  EXPECT_TRUE(Client::connect_to(path)) << "in turn, when a server accepts them";
   later.join();
   for (const int fd : fds) ::close(fd);
 }
 
-TEST_F(LimitTest, HoldsForACallThatNobodyAnswers) {
+TEST_F(LimitTest, HoldsForACallThatIsNotAnswered) {
   auto client = Client::connect_to(path);
   ASSERT_TRUE(client);
   const RpcResponse late = client->call("hello", Json::object(), milliseconds(200));
@@ -264,10 +264,10 @@ TEST_F(LimitTest, ALongOneIsWaitedForAsLongAsTheManagerShowsASignOfLife) {
     EXPECT_EQ(late.message, "no answer within 2 s; `chimera status` says what was done");
   });
   EXPECT_GE(time, milliseconds(1990));
-  EXPECT_TRUE(client->call("hello").is_good()) << "what it asked for meanwhile is passed over";
+  EXPECT_TRUE(client->call("hello").is_good()) << "the client skips the late answer";
 }
 
-TEST_F(ClientTest, WhateverTheOtherEndSaysItGoesOn) {
+TEST_F(ClientTest, AMalformedAnswerDoesNotEndTheClient) {
   auto client = Client::connect_to(path);
   ASSERT_TRUE(client);
   const int other = ::accept(listening, nullptr, nullptr);
@@ -311,7 +311,7 @@ TEST_F(FindTest, WithoutASubsystemItSaysHowToStartOne) {
   EXPECT_EQ(said("arm"), "no subsystem 'arm' runs; start one with `chimera run FILE`");
 }
 
-TEST_F(FindTest, TheOneThatRunsNeedsNoName) {
+TEST_F(FindTest, TheOnlySubsystemNeedsNoName) {
   place("subject");
   EXPECT_EQ(running_subsystems(folder + "/chimera"), std::vector<std::string>{"subject"});
   EXPECT_EQ(said(""), "subject.sock");
@@ -344,7 +344,7 @@ TEST_F(FindTest, AmongSeveralOneMustBeNamed) {
   EXPECT_EQ(said("subject"), "subject.sock");
 }
 
-TEST_F(FindTest, ASocketThatNobodyListensAtIsNone) {
+TEST_F(FindTest, IgnoresASocketWithoutAListener) {
   place("subject");
   server.reset();
   ::close(listening);

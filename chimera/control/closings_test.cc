@@ -8,7 +8,7 @@
 namespace chimera::control {
 namespace {
 
-TEST(Closings, TellsEachOfAFewAndACrowdInOneSentence) {
+TEST(Closings, ReportsAFewOneByOneAndManyInOneSentence) {
   std::vector<std::string> told;
   Closings closings;
   closings.report_to([&](const std::string& text) { told.push_back(text); });
@@ -21,7 +21,7 @@ TEST(Closings, TellsEachOfAFewAndACrowdInOneSentence) {
   EXPECT_EQ(told.size(), 16u);
   EXPECT_EQ(closings.next_due(), now + seconds(10));
   closings.add(8, "another's", now);
-  EXPECT_EQ(told.back(), "another's") << "nobody hides what happens to another";
+  EXPECT_EQ(told.back(), "another's") << "the closings of one user hide none of another user";
   told.pop_back();
   closings.report_due(now += seconds(9));
   EXPECT_EQ(told.size(), 16u);

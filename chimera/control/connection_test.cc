@@ -45,7 +45,7 @@ class ConnectionTest : public ::testing::Test {
   std::optional<Connection> connection_;
 };
 
-TEST_F(ConnectionTest, WhatIsSaidMeanwhileGoesBehindALineThatIsMadeInPieces) {
+TEST_F(ConnectionTest, QueuesOutputBehindALineThatIsMadeInPieces) {
   int made = 0;
   connection_->queue("before\n", now_);
   connection_->queue_in_pieces("<", std::make_shared<Counted>(3, 2, made), ">\n", now_);
@@ -66,7 +66,7 @@ TEST_F(ConnectionTest, NoMoreIsMadeThanThePeerTakes) {
   connection_->queue_in_pieces("", std::make_shared<Counted>(kPieces, kPiece, made), "", now_);
   while (connection_->go_on(now_)) {
   }
-  EXPECT_LT(made, 20) << "what a socket holds, and a little";
+  EXPECT_LT(made, 20) << "little more than a socket holds";
   EXPECT_TRUE(connection_->has_output());
   std::size_t taken = 0;
   for (int turns = 0; turns < 10 * kPieces && taken < kPieces * kPiece; ++turns) {

@@ -51,7 +51,7 @@ TEST_F(DoorLimits, ClosesAfterALineThatIsTooLong) {
   ::close(fd);
 }
 
-TEST_F(DoorLimits, RefusesWhatComesTooFastAndTakesItAgainLater) {
+TEST_F(DoorLimits, RefusesRequestsThatComeTooFastAndAcceptsLaterOnes) {
   const int fd = plain();
   std::string flood;
   for (int i = 0; i < 300; ++i) flood += request("hello");
@@ -125,7 +125,7 @@ TEST_F(DoorLimits, ASlowReaderSkipsToTheLatestAndAStuckOneIsDropped) {
   backend.ballast = 200'000;
   ask(fd, request("subscribe", R"({"to":"values","period_ms":20})"));
   for (int i = 0; i < 2000; ++i) serve();
-  EXPECT_LT(backend.pulls, 10) << "what the peer does not take is not made";
+  EXPECT_LT(backend.pulls, 10) << "no status is made while the client does not read";
   EXPECT_EQ(server->connections(), 2u);
   EXPECT_NE(ask(other, request("hello")).find("\"result\""), std::string::npos) << "others do not notice";
   for (int i = 0; i < 400 && server->connections() == 2; ++i) serve(milliseconds(10));
@@ -136,7 +136,7 @@ TEST_F(DoorLimits, ASlowReaderSkipsToTheLatestAndAStuckOneIsDropped) {
   ::close(other);
 }
 
-TEST_F(DoorLimits, AnIdleDoorIsDueWhenThePatienceWithAPeerEnds) {
+TEST_F(DoorLimits, AnIdleServerIsDueWhenTheTimeOfAClientEnds) {
   const int fd = plain();
   backend.ballast = 900'000;
   ask(fd, "");

@@ -37,7 +37,7 @@ struct DoorPlaces : DoorTest {
   std::vector<std::string> told;
 };
 
-TEST_F(DoorPlaces, OfOnesOwnTheLongestIdleGivesWay) {
+TEST_F(DoorPlaces, TheLongestIdleConnectionOfTheUserGivesWay) {
   for (int i = 0; i < 16; ++i) {
     more();
     serve(seconds(1));
@@ -51,7 +51,7 @@ TEST_F(DoorPlaces, OfOnesOwnTheLongestIdleGivesWay) {
   EXPECT_FALSE(is_closed(fds[0]));
 }
 
-TEST_F(DoorPlaces, AHalfLineGivesWayBeforeWhoIsIdle) {
+TEST_F(DoorPlaces, AHalfLineGivesWayBeforeAnIdleConnection) {
   for (int i = 0; i < 16; ++i) more();
   serve();
   say(fds[7], "{");
@@ -62,7 +62,7 @@ TEST_F(DoorPlaces, AHalfLineGivesWayBeforeWhoIsIdle) {
   EXPECT_EQ(told.size(), 1u);
 }
 
-TEST_F(DoorPlaces, WhoseRequestIsUnderWayStaysAndWhoHasAskedJustNowIsAnswered) {
+TEST_F(DoorPlaces, AConnectionWithAPendingRequestNeverGivesWay) {
   for (int i = 0; i < 16; ++i) more();
   for (int i = 1; i < 16; ++i) say(fds[static_cast<std::size_t>(i)], request("signal", kOff));
   serve();
@@ -73,10 +73,10 @@ TEST_F(DoorPlaces, WhoseRequestIsUnderWayStaysAndWhoHasAskedJustNowIsAnswered) {
   EXPECT_EQ(take(late),
             error("null", -32002,
                   ("too many connections: the 16 of user " + std::to_string(::getuid()) + " are all in use").c_str()));
-  EXPECT_TRUE(told.empty()) << "who finds no place was not inside";
+  EXPECT_TRUE(told.empty()) << "a refused connection is not reported as closed";
 }
 
-TEST_F(DoorPlaces, WhoReadsWhatItSubscribedToStaysAndWhoDoesNotReadItGivesWay) {
+TEST_F(DoorPlaces, ASubscriberThatReadsNothingGivesWay) {
   for (int i = 0; i < 16; ++i) more();
   serve();
   for (const std::size_t i : {std::size_t{0}, std::size_t{1}})
@@ -102,14 +102,14 @@ TEST_F(DoorPlaces, TwelveOfAUserMaySubscribe) {
   EXPECT_EQ(ask(fds[12], subscribe),
             error("1", -32002,
                   ("too many connections: 12 of user " + std::to_string(::getuid()) + " have subscriptions").c_str()));
-  EXPECT_NE(ask(fds[11], subscribe).find("\"subscription\":13"), std::string::npos) << "one more of the same";
+  EXPECT_NE(ask(fds[11], subscribe).find("\"subscription\":13"), std::string::npos) << "one more of a listener";
   ::close(fds[0]);
   fds[0] = -1;
   serve();
   EXPECT_NE(ask(fds[12], subscribe).find("\"subscription\""), std::string::npos);
 }
 
-TEST_F(DoorPlaces, FourUsersWhoMayLookLeavePlacesForWhoMayDoMore) {
+TEST_F(DoorPlaces, FourObserversLeavePlacesForHigherRoles) {
   for (uid_t user = 61001; user <= 61004; ++user)
     for (int i = 0; i < 16; ++i) as(user, Role::kObserve);
   EXPECT_EQ(server->connections(), 32u);
@@ -161,7 +161,7 @@ TEST_F(DoorPlaces, ALineThatDoesNotEndWithinFiveSecondsIsClosedInAnyCase) {
   EXPECT_EQ(server->connections(), 0u);
 }
 
-TEST_F(DoorPlaces, AHalfLineIsNoFaultWhileNobodyReadsIt) {
+TEST_F(DoorPlaces, AHalfLineIsNoFaultWhileTheServerDoesNotReadIt) {
   const int fd = more();
   backend.ballast = 2'000'000;
   serve();
@@ -177,7 +177,7 @@ TEST_F(DoorPlaces, AHalfLineIsNoFaultWhileNobodyReadsIt) {
   EXPECT_NE(ask(fd, request("hello").substr(20)).find("\"jsonrpc\""), std::string::npos);
 }
 
-TEST_F(DoorPlaces, WhoTakesNothingForFiveSecondsIsToldOf) {
+TEST_F(DoorPlaces, ReportsAClientThatReadsNothingForFiveSeconds) {
   const int fd = more();
   backend.ballast = 900'000;
   serve();

@@ -67,7 +67,7 @@ TEST_F(DoorTest, TwoPeersGetTheirOwnAnswers) {
   ::close(b);
 }
 
-TEST_F(DoorTest, RefusesWhatIsNoRequestAndGoesOn) {
+TEST_F(DoorTest, RefusesALineThatIsNoRequestAndGoesOn) {
   const int fd = plain();
   EXPECT_EQ(ask(fd, "no json\n"), error("null", -32700, "this is no JSON"));
   EXPECT_EQ(ask(fd, "\n"), error("null", -32700, "this is no JSON"));
@@ -145,7 +145,7 @@ TEST_F(DoorTest, APeerThatSaysNothingMoreIsStillAnswered) {
   ::close(fd);
 }
 
-TEST_F(DoorTest, WhatAPeerAskedForBeforeItWentIsCarriedOut) {
+TEST_F(DoorTest, CarriesOutRequestsOfAClientThatHasGone) {
   const int fd = plain();
   std::string acts;
   for (int i = 0; i < 40; ++i) acts += request("flag", R"({"up":true})");
@@ -166,7 +166,7 @@ TEST_F(DoorTest, ActsComeBeforeTheQuestionsOfOthersAndATurnEnds) {
   ASSERT_FALSE(backend.called.empty());
   EXPECT_EQ(backend.called[0], "flag");
   EXPECT_LE(backend.called.size(), 4u) << "of 30 questions that take 2 ms each two or three are a turn";
-  EXPECT_NE(take(quiet).find("\"result\""), std::string::npos) << "answered in the same turn";
+  EXPECT_NE(take(quiet).find("\"result\""), std::string::npos) << "answered in this turn";
   EXPECT_LE(server->next_due(), now) << "there is more to do";
   serve();
   EXPECT_EQ(backend.called.size(), 31u);
@@ -182,12 +182,12 @@ TEST_F(DoorTest, QuestionsOfConnectionsAreAnsweredInTurnAndEachInItsOrder) {
   say(b, request("get") + request("profile"));
   serve();
   EXPECT_EQ(backend.called, (std::vector<std::string>{"status", "get", "hello", "flag", "profile", "hello"}))
-      << "an act waits for what its own connection asked before, not for others";
+      << "an act waits for earlier requests of its own connection only";
   ::close(a);
   ::close(b);
 }
 
-TEST_F(DoorTest, TheSubjectIsToldThatAConnectionIsOver) {
+TEST_F(DoorTest, TheBackendForgetsAConnectionThatIsClosed) {
   const int fd = plain();
   serve();
   EXPECT_TRUE(backend.forgotten.empty());
@@ -223,7 +223,7 @@ TEST_F(DoorTest, TheFirstNotificationComesWithTheAnswerNotAfterAPeriod) {
   ::close(fd);
 }
 
-TEST_F(DoorTest, WhatALateTurnMissedIsNotMadeUpFor) {
+TEST_F(DoorTest, ALateTurnSendsOneStatusOnly) {
   const int fd = plain();
   ask(fd, request("subscribe", R"({"to":"status","period_ms":50})"));
   const int before = backend.pulls;
@@ -286,7 +286,7 @@ struct StrangerTest : DoorTest {
   }
 };
 
-TEST_F(StrangerTest, IsToldThatItHasNoRightAndNothingElse) {
+TEST_F(StrangerTest, GetsOnlyTheAnswerThatItHasNoRole) {
   const auto got = as_stranger(path, 65534, request("hello") + request("flag", R"({"up":true})"), [&] { serve(); });
   EXPECT_EQ(got, R"({"error":{"code":-32004,"data":{"has":"nothing","needs":"observe"},"message":"you have no role )"
                  R"(in this subsystem: you are neither its user nor in a group that has a role"},"id":null,)"
@@ -296,7 +296,7 @@ TEST_F(StrangerTest, IsToldThatItHasNoRightAndNothingElse) {
   EXPECT_EQ(server->connections(), 0u);
 }
 
-TEST_F(StrangerTest, OfAGroupWithARoleHasThatRoleAndNoMore) {
+TEST_F(StrangerTest, AMemberOfAGroupHasOnlyItsRole) {
   groups.observe = 4242;
   open_door();
   EXPECT_NE(as_stranger(path, 4242, request("hello"), [&] { serve(); }).find(R"("role":"observe")"), std::string::npos);

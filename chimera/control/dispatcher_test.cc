@@ -81,7 +81,7 @@ TEST_F(DispatcherTest, AskersTakeTurnsFromOneTurnToTheNext) {
   say(a, "get");
   say(b, "get");
   run_turns();
-  EXPECT_EQ(backend_.called[3], "2 get") << "a was the last one whose question was carried out";
+  EXPECT_EQ(backend_.called[3], "2 get") << "the turn before ended with connection a";
 }
 
 TEST_F(DispatcherTest, AnActBehindAQuestionOfItsConnectionDoesNotOvertakeIt) {
@@ -92,7 +92,7 @@ TEST_F(DispatcherTest, AnActBehindAQuestionOfItsConnectionDoesNotOvertakeIt) {
   EXPECT_EQ(backend_.called, (Calls{"1 status", "1 end"}));
 }
 
-TEST_F(DispatcherTest, WhatTheRoleMayNotDoNeverReachesTheBackend) {
+TEST_F(DispatcherTest, ARequestBeyondTheRoleNeverReachesTheBackend) {
   const std::uint64_t one = connect(Role::kObserve);
   say(one, "end");
   run_turns();
@@ -103,7 +103,7 @@ TEST_F(DispatcherTest, WhatTheRoleMayNotDoNeverReachesTheBackend) {
             "\n");
 }
 
-TEST_F(DispatcherTest, AnUnknownMethodIsToldTheNearest) {
+TEST_F(DispatcherTest, AnUnknownMethodIsAnsweredWithTheNearestName) {
   const std::uint64_t one = connect(Role::kObserve);
   say(one, "stauts");
   run_turns();
@@ -138,7 +138,7 @@ TEST_F(DispatcherTest, AReplyThatIsDroppedIsAnAnswer) {
             "\"jsonrpc\":\"2.0\"}\n");
 }
 
-TEST_F(DispatcherTest, AReplyAfterTheEndOfTheConnectionOrOfTheDispatcherIsNobodys) {
+TEST_F(DispatcherTest, DropsAReplyAfterTheEndOfTheConnectionOrTheDispatcher) {
   const std::uint64_t gone = connect(Role::kObserve), stays = connect(Role::kObserve);
   say(gone, "status");
   say(stays, "status");
@@ -151,7 +151,7 @@ TEST_F(DispatcherTest, AReplyAfterTheEndOfTheConnectionOrOfTheDispatcherIsNobody
   EXPECT_EQ(heard(stays), "");
 }
 
-TEST_F(DispatcherTest, OfOneUserSomePlacesAreKeptForThoseWhoDoNotSubscribe) {
+TEST_F(DispatcherTest, LimitsTheSubscribersOfAUser) {
   for (std::size_t i = 0; i <= kMaxListenersOfUser; ++i)
     say(connect(Role::kObserve), "subscribe", R"({"to":"status"})");
   run_turns();

@@ -12,7 +12,7 @@ namespace {
 
 const std::string kHere = std::filesystem::current_path().string();
 
-TEST(Home, IsReadFromHelloAndWhatIsMissingStaysEmpty) {
+TEST(Home, IsReadFromHelloAndMissingFieldsStayEmpty) {
   const Home home = home_of({{"subsystem", "arm"}, {"keeper_pid", 7}, {"session", 5}, {"folder", "/a"}, {"file", "b"}});
   EXPECT_EQ(home.subsystem, "arm");
   EXPECT_EQ(home.keeper_pid, 7);
@@ -33,7 +33,7 @@ TEST(Home, IsHereInTheSameTerminalOrFolderOnly) {
   EXPECT_FALSE(is_here({"arm", 1, mine + 1, "/nowhere", "arm.yaml"}));
 }
 
-TEST(Home, WhoDoesNotSayWhereItWasStartedIsNotHere) {
+TEST(Home, ASubsystemWithoutAStartingPlaceIsNotHere) {
   EXPECT_FALSE(is_here({"arm", 1, -1, "", ""}));
   EXPECT_FALSE(is_here({"arm", 1, -1, "", "arm.yaml"}));
   EXPECT_FALSE(is_here(Home()));

@@ -42,11 +42,11 @@ TEST_F(ListenersTest, AreTheKeeperAndTheManager) {
   EXPECT_FALSE(found.is_stopped);
   ::kill(manager.pid, SIGSTOP);  // still ours
   EXPECT_TRUE(await(path, [](const Listeners& l) { return l.is_stopped; }).is_stopped);
-  EXPECT_EQ(listeners_at(folder + "/./subject.sock").manager, manager.pid) << "whatever the path is called";
+  EXPECT_EQ(listeners_at(folder + "/./subject.sock").manager, manager.pid) << "for another spelling of the path";
   EXPECT_EQ(listeners_at(folder + "/other.sock").manager, 0);
 }
 
-TEST(SilenceText, SaysWhoAndWhatToDo) {
+TEST(SilenceText, NamesTheProcessAndTheRemedy) {
   EXPECT_EQ(
       silence_text("/run/arm.sock", {120, 123, false}, seconds(5)),
       "the manager (process 123) of 'arm' does not answer for 5 s: it hangs, or has too much to do; its rtpus "

@@ -15,7 +15,7 @@ std::string judged(const char* method, const Json& parameters) {
   return answer.detail("where") + ": " + answer.message + (near.empty() ? "" : " (" + near + ")");
 }
 
-TEST(Methods, TakeWhatTheTableSays) {
+TEST(Methods, AcceptTheParametersOfTheTable) {
   EXPECT_EQ(judged("hello", Json::object()), "");
   EXPECT_EQ(judged("get", {{"variables", {"q", "qd"}}}), "");
   EXPECT_EQ(judged("events", {{"since", 0}, {"limit", 1000}}), "");
@@ -26,7 +26,7 @@ TEST(Methods, TakeWhatTheTableSays) {
   EXPECT_EQ(judged("end", {{"code", 255}}), "");
 }
 
-TEST(Methods, NameWhatIsWrongWithAParameter) {
+TEST(Methods, NameTheErrorInAParameter) {
   EXPECT_EQ(judged("hello", Json::array()), "params: the parameters of 'hello' must be an object");
   EXPECT_EQ(judged("hello", {{"x", 1}}), "x: 'hello' has no parameter 'x'");
   EXPECT_EQ(judged("get", {{"variable", {"q"}}}), "variable: 'get' has no parameter 'variable' (variables)");
@@ -59,7 +59,7 @@ TEST(Methods, QuoteNoMoreThanAMessageNeeds) {
   EXPECT_LT(judged("hello", {{std::string(100'000, 'x'), 1}}).size(), 200u);
 }
 
-TEST(Methods, ThatActAreForOperatorsAndNeverSentTwice) {
+TEST(Methods, ActsNeedTheRoleOperateOrMore) {
   std::string acts;
   for (const MethodRule& rule : methods()) {
     EXPECT_EQ(find_method(rule.name), &rule);

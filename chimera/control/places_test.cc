@@ -15,7 +15,7 @@ struct PlacesTest : ::testing::Test {
   void sit(std::size_t n, uid_t user, Rank rank, Standing standing = Standing::kIdle, Nanoseconds since = seconds(1)) {
     for (std::size_t i = 0; i < n; ++i) all.push_back({all.size() + 1, user, rank, standing, since});
   }
-  /// One each of users of their own.
+  /// Adds connections, each of another user.
   void crowd(std::size_t n, Rank rank, Standing standing = Standing::kIdle) {
     for (std::size_t i = 0; i < n; ++i) sit(1, 5000 + static_cast<uid_t>(all.size()), rank, standing);
   }
@@ -47,7 +47,7 @@ TEST_F(PlacesTest, AreKeptForEveryHigherRank) {
   EXPECT_EQ(all.size(), kPlacesUpTo[4]);
 }
 
-TEST_F(PlacesTest, AnOwnerTakesThatOfAnybodyWhoDoesNotAct) {
+TEST_F(PlacesTest, AnOwnerTakesThePlaceOfAnyConnectionThatDoesNotAct) {
   crowd(40, Rank::kOperate, Standing::kActs);
   crowd(8, Rank::kConfigure, Standing::kListens);
   sit(16, 1000, Rank::kOwner, Standing::kListens);
@@ -55,7 +55,7 @@ TEST_F(PlacesTest, AnOwnerTakesThatOfAnybodyWhoDoesNotAct) {
   EXPECT_EQ(refusal(7, Rank::kOperate), "the 40 of the roles up to operate are all in use");
 }
 
-TEST_F(PlacesTest, WhoDoesNothingGivesWayTheLowestRankFirstThenHalfLinesThenTheLongest) {
+TEST_F(PlacesTest, GivesWayByRankThenHalfLineThenIdleTime) {
   sit(1, 1, Rank::kObserve, Standing::kAsks, seconds(1));
   sit(1, 2, Rank::kOperate, Standing::kHalfLine, seconds(1));
   sit(1, 3, Rank::kOperate, Standing::kIdle, seconds(1));
@@ -73,14 +73,14 @@ TEST_F(PlacesTest, WhoDoesNothingGivesWayTheLowestRankFirstThenHalfLinesThenTheL
   EXPECT_EQ(refusal(0, Rank::kOwner), "the 64 of all users are all in use");
 }
 
-TEST_F(PlacesTest, NobodyGivesWayToALowerRank) {
+TEST_F(PlacesTest, AConnectionNeverGivesWayToALowerRank) {
   crowd(10, Rank::kObserve, Standing::kListens);
   crowd(30, Rank::kOperate, Standing::kIdle);
   EXPECT_EQ(refusal(1, Rank::kObserve), "the 40 of the roles up to operate are all in use");
-  EXPECT_EQ(in_place_of(2, Rank::kOperate), 11u) << "idle of one's own rank before one that listens";
+  EXPECT_EQ(in_place_of(2, Rank::kOperate), 11u) << "an idle connection of equal rank before a listener";
 }
 
-TEST_F(PlacesTest, OfAUserOnlyItsOwnGiveWay) {
+TEST_F(PlacesTest, ForANewConnectionOnlyOneOfTheSameUserGivesWay) {
   crowd(8, Rank::kObserve);
   sit(15, 1000, Rank::kOwner, Standing::kListens);
   sit(1, 1000, Rank::kOwner, Standing::kActs);

@@ -23,7 +23,7 @@ TEST(Request, IsReadWithItsParameters) {
   EXPECT_FALSE(read_request(R"({"jsonrpc":"2.0","method":"hello"})").wants_answer);
 }
 
-TEST(Request, SaysWhyItIsNone) {
+TEST(Request, NamesTheErrorOfAnInvalidRequest) {
   EXPECT_EQ(read(""), "-32700 this is no JSON null");
   EXPECT_EQ(read("{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"\xff\"}"), "-32700 this is no JSON null");
   EXPECT_EQ(read("1e999"), "-32700 this is no JSON null");

@@ -34,7 +34,7 @@ TEST(ConditionText, IsCutIntoItsParts) {
   EXPECT_EQ(read("mode != 3"), "mode|-|!=|3");
 }
 
-TEST(ConditionText, SaysWhatIsWrong) {
+TEST(ConditionText, NamesTheError) {
   EXPECT_EQ(read("speed"), "'safe_when' is 'speed', which compares nothing");
   EXPECT_EQ(read("speed = 3"), "'safe_when' is 'speed = 3', which compares nothing");
   EXPECT_EQ(read("speed ! 3"), "'safe_when' is 'speed ! 3', which compares nothing");

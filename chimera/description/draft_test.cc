@@ -56,7 +56,7 @@ TEST(Draft, TakesOnAndYesForNames) {
   EXPECT_EQ(d.start->text, "off");
 }
 
-TEST(Draft, LeavesOutWhatWasNotWritten) {
+TEST(Draft, LeavesOutKeysThatWereNotWritten) {
   const Draft d = draft("subsystem: demo\ntasks: {pid: {alias: , constants: {}}}\n");
   const DraftTask& task = d.tasks[0];
   EXPECT_FALSE(task.rate || task.deadline || task.budget || task.server || task.standby_for || task.on_miss);

@@ -45,7 +45,7 @@ TEST(Report, IsLegalWithWarnings) {
   EXPECT_FALSE(report.is_legal());
 }
 
-TEST(Report, CountsWhatItDoesNotKeep) {
+TEST(Report, CountsFaultsThatItDoesNotKeep) {
   Report report("a"), whole("a");
   for (std::uint32_t i = 0; i < 250; ++i) report.add(fault({i + 1, 1}, "wrong"));
   whole.add_all(report);

@@ -8,7 +8,7 @@ namespace {
 
 std::string said(std::string_view text) { return read_description(text, "a.yaml").report.text(); }
 
-TEST(YamlFault, NamesTheBracketThatNobodyCloses) {
+TEST(YamlFault, NamesTheBracketThatIsNotClosed) {
   EXPECT_EQ(said("subsystem: demo\ntasks:\n  pid: {rate: 1 kHz, constants: {kp: 1}\n  arm: {rate: 1 kHz}\n"),
             "a.yaml:3:8: error: not YAML: nothing closes this '{' [yaml-syntax]\n  add the missing '}'\n");
   EXPECT_EQ(said("subsystem: demo\nconfigurations: {all: [pid, arm}\n"),

@@ -34,7 +34,7 @@ TEST(Gantt, ALongNameStaysBesideThePictureAndCanBePointedAt) {
   EXPECT_NE(drawn.find(">controller_of_the_lef...</text>"), std::string::npos) << drawn;
 }
 
-TEST(Gantt, ReleasesTooCloseToBeToldApartAreNotDrawn) {
+TEST(Gantt, LeavesOutReleasesThatAreTooClose) {
   Gantt picture{"t", "", milliseconds(1000), {}};
   picture.rows.push_back({"a", "", milliseconds(1), milliseconds(1), false, {}});
   picture.rows.push_back({"b", "", milliseconds(500), milliseconds(500), false, {}});

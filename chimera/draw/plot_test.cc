@@ -84,7 +84,7 @@ TEST(Plot, AHeldValueIsDrawnAsSteps) {
   plot.curves[0].is_held = true;
   EXPECT_EQ(first_path(svg(plot)), "M78,276.75 L293,276.75 L508,276.75 L508,89.25 L938,89.25 L938,276.75");
   plot.curves[0].points = {{0, 0}, {1, 1}, {2, kNothing}, {3, 0}, {4, 1}};
-  EXPECT_EQ(count(first_path(svg(plot)), "M"), 2u) << "nothing is held over what is missing";
+  EXPECT_EQ(count(first_path(svg(plot)), "M"), 2u) << "no value is held over a gap";
 }
 
 TEST(Plot, GapsAreHatchedAndSayHowMuchIsMissing) {
@@ -104,7 +104,7 @@ TEST(Plot, APeakOfOnePointAmongAMillionIsSeen) {
   EXPECT_NE(first_path(picture).find(",89.2"), std::string::npos) << first_path(picture);
 }
 
-TEST(Plot, TellsWhenThereIsNothing) {
+TEST(Plot, SaysThatThereIsNoData) {
   EXPECT_EQ(count(svg(plot_of({})), "no values"), 1u);
   EXPECT_EQ(count(svg(plot_of({{"a", "1", {{0, kNothing}}}})), "no values"), 1u);
 }

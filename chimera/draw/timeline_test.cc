@@ -28,7 +28,7 @@ TEST(Timeline, TheLongestOfAnRtpuWins) {
   EXPECT_EQ(timeline(records, kTasks, {}, milliseconds(10), milliseconds(20)).letters, "BA");
 }
 
-TEST(Timeline, ClipsWhatLiesOutside) {
+TEST(Timeline, ClipsRunsOutsideTheWindow) {
   const std::vector<TapRecord> records{run(0, 0, 12), run(1, 15, 100)};
   EXPECT_EQ(timeline(records, kTasks, milliseconds(10), milliseconds(1), milliseconds(8)).letters, "AA...BBB");
 }

@@ -166,7 +166,7 @@ TEST_F(GuardTest, WritesTheFramesOfAnRtpuThatIsDeadAndNotBefore) {
   EXPECT_GT(last.died, Nanoseconds{});
 }
 
-TEST_F(GuardTest, WhatAnRtpuSaidBeforeItDiedCountsThoughNobodyHadListened) {
+TEST_F(GuardTest, WritesFramesPostedBeforeTheDeathAndReadAfterIt) {
   start();
   const Device device;
   const auto life = begin();
@@ -177,7 +177,7 @@ TEST_F(GuardTest, WhatAnRtpuSaidBeforeItDiedCountsThoughNobodyHadListened) {
   EXPECT_EQ(device.heard(), "stop");
 }
 
-TEST_F(GuardTest, WhatWasTakenBackIsNotWritten) {
+TEST_F(GuardTest, AFrameThatWasTakenBackIsNotWritten) {
   start();
   const Device device, given_up;
   const auto life = begin();
@@ -192,7 +192,7 @@ TEST_F(GuardTest, WhatWasTakenBackIsNotWritten) {
   EXPECT_EQ(device.heard() + given_up.heard(), "");
 }
 
-TEST_F(GuardTest, GoesOnWithoutAKeeperUntilNobodyNeedsIt) {
+TEST_F(GuardTest, GoesOnWithoutAKeeperUntilTheLastRtpuIsDead) {
   start();
   const Device device;
   const auto life = begin();
@@ -272,7 +272,7 @@ TEST_F(GuardTest, EndsTheRtpuOfATaskThatIsSilentForTooLong) {
   EXPECT_EQ(device.heard(), "stop");
 }
 
-TEST_F(GuardTest, EndsTheRtpuOfAPrimaryWhoseOutputsAreTooOldWhileAStandbyCanTakeOver) {
+TEST_F(GuardTest, EndsTheRtpuOfASilentPrimaryIfAStandbyCanTakeOver) {
   make_image({{TaskId(std::size_t{1}), TaskId(std::size_t{2}), milliseconds(40), false}});
   start();
   const auto primary = begin(0), standby = begin(1);
@@ -283,7 +283,7 @@ TEST_F(GuardTest, EndsTheRtpuOfAPrimaryWhoseOutputsAreTooOldWhileAStandbyCanTake
     ProcessEnd how;
     return !primary->process.has_ended(how);
   };
-  EXPECT_TRUE(stays(milliseconds(80))) << "nobody could take over";
+  EXPECT_TRUE(stays(milliseconds(80))) << "no standby could take over";
   standby->block.set_status(TaskId(std::size_t{2}), {State::kError, false, 0});
   EXPECT_TRUE(stays(milliseconds(80)));
   LinuxClock clock;

@@ -18,14 +18,14 @@ class KeeperPagesTest : public ::testing::Test {
   SharedPages decision_ = *SharedPages::open(pages_.decision_descriptor(), sizeof(DecisionPage));
 };
 
-TEST_F(KeeperPagesTest, BeginWithNobodyAlive) {
+TEST_F(KeeperPagesTest, BeginWithoutALivingPeer) {
   EXPECT_EQ(seen().origin, seconds(7));
   EXPECT_EQ(seen().n_rtpus, 2u);
   EXPECT_EQ(seen().ending, 0u);
   for (const auto& incarnation : seen().alive) EXPECT_EQ(incarnation, 0u);
 }
 
-TEST_F(KeeperPagesTest, AChangeOfWhoLivesIsCountedAndWakesNobodyYet) {
+TEST_F(KeeperPagesTest, AChangeOfALifeIsCountedAndRingsNoBell) {
   pages_.show_life(1, 4);
   EXPECT_EQ(seen().alive[1], 4u);
   EXPECT_EQ(decision().changes, 1u);
@@ -35,7 +35,7 @@ TEST_F(KeeperPagesTest, AChangeOfWhoLivesIsCountedAndWakesNobodyYet) {
   EXPECT_EQ(rings(1), 0u);
 }
 
-TEST_F(KeeperPagesTest, RingsEveryRtpuAndTheManagerAndNobodyElse) {
+TEST_F(KeeperPagesTest, RingsOnlyEveryRtpuAndTheManager) {
   pages_.ring_all();
   for (std::uint32_t peer = 0; peer < kMaxPeers; ++peer) EXPECT_EQ(rings(peer), peer < 3 ? 1u : 0u) << peer;
 }

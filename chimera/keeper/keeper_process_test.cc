@@ -96,7 +96,7 @@ class KeeperProcess : public ::testing::Test, public testing::ChildFolder {
   pid_t keeper_ = 0;
 };
 
-TEST_F(KeeperProcess, StartsEverybodyAndPassesTheirMemoryOn) {
+TEST_F(KeeperProcess, StartsAllPeersAndPassesTheirMemoryOn) {
   start(2);
   EXPECT_TRUE(wait_for("0.1 peer 1 1 by-1.1"));
   EXPECT_TRUE(wait_for("0.1 peer 2 1 by-2.1"));
@@ -118,7 +118,7 @@ TEST_F(KeeperProcess, StartsEverybodyAndPassesTheirMemoryOn) {
   EXPECT_TRUE(nobody_is_left());
 }
 
-TEST_F(KeeperProcess, ADeadManagerIsReplacedAndToldAllThereIs) {
+TEST_F(KeeperProcess, ANewManagerReceivesTheLivesAndMemoryOfAllPeers) {
   start(2);
   ASSERT_TRUE(wait_for("1.1 peer 2 1"));
   ASSERT_TRUE(wait_for("1.1 peer 0 1"));  // the keeper has the memory of all three
@@ -190,7 +190,7 @@ TEST_F(KeeperProcess, SignalsEndEverythingWithTheCodeOfTheFace) {
   }
 }
 
-TEST_F(KeeperProcess, AFaceThatHasLookedSeesHowTheOthersEnd) {
+TEST_F(KeeperProcess, AFaceThatWaitsSeesTheEndsOfAllPeers) {
   start(1);
   ASSERT_TRUE(wait_for("face begin"));
   ASSERT_TRUE(wait_for("1.1 peer 0 1"));
@@ -203,7 +203,7 @@ TEST_F(KeeperProcess, AFaceThatHasLookedSeesHowTheOthersEnd) {
   EXPECT_TRUE(nobody_is_left());
 }
 
-TEST_F(KeeperProcess, SomebodyElsesSignalIsNotTheFaces) {
+TEST_F(KeeperProcess, ASignalToTheKeeperIsNoCommandOfTheFace) {
   start(1);
   ASSERT_TRUE(wait_for("face begin"));
   ASSERT_TRUE(wait_for("1.1 peer 0 1"));
@@ -222,7 +222,7 @@ TEST_F(KeeperProcess, EndsWithoutAFaceToo) {
   EXPECT_TRUE(nobody_is_left());
 }
 
-TEST_F(KeeperProcess, WhoeverDoesNotFinishIsKilledAfterItsLimit) {
+TEST_F(KeeperProcess, KillsAPeerThatDoesNotFinishWithinItsLimit) {
   ::setenv("CHIMERA_TEST_DEAF", "1", 1);
   start(2, true, milliseconds(200));
   ASSERT_TRUE(wait_for("face begin"));
@@ -232,7 +232,7 @@ TEST_F(KeeperProcess, WhoeverDoesNotFinishIsKilledAfterItsLimit) {
   ASSERT_TRUE(wait_for("0.1 is stubborn"));
   ASSERT_TRUE(wait_for("2.1 is stubborn"));
   ::kill(keeper_, SIGINT);  // not reaped yet: still its process id
-  EXPECT_EQ(code_of_keeper(), 1) << "nobody has judged the run";
+  EXPECT_EQ(code_of_keeper(), 1) << "no face has judged the run";
   EXPECT_TRUE(nobody_is_left());
 }
 
@@ -261,7 +261,7 @@ TEST_F(KeeperProcess, AFaceThatDiesAgainAndAgainEndsEverything) {
   EXPECT_TRUE(nobody_is_left());
 }
 
-TEST_F(KeeperProcess, NobodyIsLeftWhenTheKeeperItselfIsKilled) {
+TEST_F(KeeperProcess, NoProcessIsLeftWhenTheKeeperIsKilled) {
   start(2);
   ASSERT_TRUE(wait_for("face begin"));
   ASSERT_TRUE(wait_for("2.1 peer 1 1"));
@@ -280,7 +280,7 @@ TEST_F(KeeperProcess, AManagerThatDiesAgainAndAgainIsStartedMoreAndMoreSlowly) {
   EXPECT_EQ(code_of_keeper(), 5);
 }
 
-TEST(Keeper, RefusesProgramsThatCannotBeStartedAndLeavesNobody) {
+TEST(Keeper, RefusesProgramsThatCannotBeStartedAndLeavesNoProcess) {
   const PeerPlan peers{.rtpu_program = "/nowhere/chimera-rtpu",
                        .manager_program = "/bin/true",
                        .n_rtpus = 1,

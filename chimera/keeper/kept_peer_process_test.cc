@@ -33,7 +33,7 @@ class KeptPeerTest : public ::testing::Test, public testing::ChildFolder {
   KeptPeer peer_{1};
 };
 
-TEST_F(KeptPeerTest, OneThatCannotBeStartedHasEndedWith127AndItsNumberIsTaken) {
+TEST_F(KeptPeerTest, AFailedStartEndsWith127AndUsesAnIncarnation) {
   EXPECT_FALSE(start("/nowhere/rtpu", seconds(3)));
   EXPECT_FALSE(start("/nowhere/rtpu", seconds(4)));
   EXPECT_FALSE(peer_.lives());
@@ -56,7 +56,7 @@ TEST_F(KeptPeerTest, PassesOnTheMemoryThatItMade) {
   EXPECT_TRUE(await_that([&] { return log().find("1.1 peer 1 1 by-1.1\n") != std::string::npos; })) << log();
 }
 
-TEST_F(KeptPeerTest, ItsEndIsToldOnceAndWhatItSentIsStillThere) {
+TEST_F(KeptPeerTest, ReportsItsEndOnceAndKeepsItsMessages) {
   ASSERT_TRUE(start(KEEPER_TEST_CHILD, seconds(3)));
   EXPECT_TRUE(await_that([&] { return log().find("begin") != std::string::npos; }));
   order("1", "kill 5\nexit 3");

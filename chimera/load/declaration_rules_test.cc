@@ -86,7 +86,7 @@ TEST(DeclarationRules, WordsBelongToAConstantOfText) {
   EXPECT_EQ(sample.refusal(), "component tderiv: port x: one of some words: expected an in-const of text");
 }
 
-TEST(DeclarationRules, RefusesAnEventSourceWhoseEventsNobodyTakes) {
+TEST(DeclarationRules, RefusesAnEventSourceWithoutSync) {
   Sample sample;
   sample.component.event_source = [](void*) -> std::int32_t { return 3; };
   EXPECT_EQ(sample.refusal(), "component tderiv: has an event source but no sync to take its events");

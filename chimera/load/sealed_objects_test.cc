@@ -28,7 +28,7 @@ struct SealedObjectsTest : ::testing::Test {
   std::string folder = "/tmp/sealed_objects_XXXXXX";
 };
 
-TEST_F(SealedObjectsTest, LinkWhatWasThereWhenTheyWerePacked) {
+TEST_F(SealedObjectsTest, LinkTheContentFromTheTimeOfPacking) {
   const std::string counter = copy_of("counter.so"), other = copy_of("nothing_offered.so");
   const auto bytes = packed({counter, other, counter});
   std::ofstream(counter, std::ios::binary) << "built anew, and not finished";
@@ -44,7 +44,7 @@ TEST_F(SealedObjectsTest, LinkWhatWasThereWhenTheyWerePacked) {
   EXPECT_EQ(refused.error().message.view(), "nothing_offered.so offers no component. Rebuild the component.");
 }
 
-TEST_F(SealedObjectsTest, OfOnePathAreThereOnce) {
+TEST_F(SealedObjectsTest, AnObjectThatIsNamedTwiceIsPackedOnce) {
   const std::string counter = copy_of("counter.so");
   EXPECT_EQ(packed({counter, counter}).size(), packed({counter}).size());
 }

@@ -84,7 +84,7 @@ TEST(SharedObject, RefusesAFileThatIsNotThere) {
   EXPECT_EQ(SharedObject::open("/nowhere/at/all.so").error().code, ErrorCode::kNotFound);
 }
 
-TEST(SharedObject, RefusesWhatIsNoObject) {
+TEST(SharedObject, RefusesAFileThatIsNoSharedObject) {
   const TemporaryFile text("subsystem: puma\n"), empty("");
   EXPECT_EQ(refusal(text.path()), rebuild(text.path(), "is not a shared object: it does not begin with the ELF mark"));
   EXPECT_EQ(refusal(empty.path()), rebuild(empty.path(), "is empty (0 bytes)"));
@@ -123,7 +123,7 @@ TEST(SharedObject, RefusesAnObjectWithoutComponents) {
   EXPECT_EQ(refusal(object("nothing_offered.so")), "nothing_offered.so offers no component. Rebuild the component.");
 }
 
-TEST(SharedObject, RefusesWhatMakesRealTimeThreadsWait) {
+TEST(SharedObject, RefusesAnObjectThatMakesRealTimeThreadsWait) {
   const std::string tls = rebuild("thread_local.so",
                                   "has a thread_local variable, whose first use in a real-time thread asks the heap: "
                                   "make it a member of the component, or give it "
@@ -187,7 +187,7 @@ TEST(SharedObject, InspectionStandsAnyDamage) {
   }
 }
 
-TEST(SharedObject, NamesWhatItOffersInsteadOfAnUnknownComponent) {
+TEST(SharedObject, NamesItsComponentsInPlaceOfAnUnknownOne) {
   const auto opened = SharedObject::open(object("counter.so"));
   ASSERT_TRUE(opened);
   EXPECT_EQ(opened->component("kounter").error().message.view(), "has no component kounter; it offers counter");

@@ -13,7 +13,7 @@ TEST(Utf8, AcceptsText) {
   }
 }
 
-TEST(Utf8, RefusesWhatIsNoText) {
+TEST(Utf8, RefusesBytesThatAreNoUtf8) {
   for (const char* bytes : {"\x80", "\xc2", "\xc0\x80", "\xc1\xbf", "\xe0\x80\x80", "\xed\xa0\x80", "\xf0\x80\x80\x80",
                             "\xf4\x90\x80\x80", "\xf5\x80\x80\x80", "\xff", "\xc2\x41", "\xe2\x82"}) {
     EXPECT_FALSE(is_utf8(bytes));

@@ -68,7 +68,7 @@ class ManagerBackendTest : public ::testing::Test {
   std::unique_ptr<ManagerBackend> backend_;
 };
 
-TEST_F(ManagerBackendTest, CarriesOutEveryMethodButThoseOfTheDoorItself) {
+TEST_F(ManagerBackendTest, CarriesOutEveryMethodButThoseOfTheServer) {
   using Kind = control::ParameterKind;
   for (const control::MethodRule& rule : control::methods()) {
     const bool is_of_the_door =
@@ -85,7 +85,7 @@ TEST_F(ManagerBackendTest, CarriesOutEveryMethodButThoseOfTheDoorItself) {
   }
 }
 
-TEST_F(ManagerBackendTest, ADrillWithoutHardwareTellsThatNothingIsSafe) {
+TEST_F(ManagerBackendTest, ADrillWithoutHardwareIsNotSafe) {
   EXPECT_EQ(good("drill")["tasks"], Json::array());
   EXPECT_EQ(good("drill")["safe"], false);
 }
@@ -106,7 +106,7 @@ TEST_F(ManagerBackendTest, NoDrillWhileASwitchIsUnderWay) {
             "{\"kind\":\"under-way\",\"remedy\":\"ask again when it is over\",\"where\":\"\"}");
 }
 
-TEST_F(ManagerBackendTest, HelloSaysWhoSpeaks) {
+TEST_F(ManagerBackendTest, HelloNamesProtocolProgramAndSubsystem) {
   const Json hello = good("hello");
   EXPECT_EQ(hello["protocol"], 1);
   EXPECT_EQ(hello["program"], "0.1.0");
@@ -149,7 +149,7 @@ TEST_F(ManagerBackendTest, StatusIsReadOutOfTheBlocks) {
   EXPECT_EQ(law["inputs"][1], (Json{{"port", "kp"}, {"variable", "kp"}, {"age_ns", 0}})) << "never old";
 }
 
-TEST_F(ManagerBackendTest, DescribeTellsWhatVerificationKnows) {
+TEST_F(ManagerBackendTest, DescribePrintsTheVerifiedApplication) {
   const Json described = good("describe");
   EXPECT_EQ(described["start"], "run");
   EXPECT_EQ(described["configurations"][1], (Json{{"name", "rest"}, {"tasks", {"sensor"}}}));
@@ -210,7 +210,7 @@ TEST_F(ManagerBackendTest, GetReadsTheRegisters) {
             "-32005 no state variable 'tua'; did you mean 'tau'? {\"nearest\":\"tau\",\"where\":\"tua\"}");
 }
 
-TEST_F(ManagerBackendTest, SignalsAreOneTransactionAndSayWhatBecameOfEachTask) {
+TEST_F(ManagerBackendTest, ASignalIsOneTransactionAndReturnsTheStateOfEachTask) {
   EXPECT_EQ(good("signal", {{"signal", "off"}, {"tasks", {"law"}}})["tasks"],
             Json::array({Json{{"task", "law"}, {"before", "ON"}, {"after", "OFF"}}}));
   EXPECT_EQ(good("status")["configuration"], "");
@@ -229,7 +229,7 @@ TEST_F(ManagerBackendTest, SignalsAreOneTransactionAndSayWhatBecameOfEachTask) {
   EXPECT_EQ(good("signal", {{"signal", "on"}, {"tasks", {"law"}}})["tasks"][0]["after"], "ON");
 }
 
-TEST_F(ManagerBackendTest, NoAnswerNamesTheRtpuAndWhatItWasDoing) {
+TEST_F(ManagerBackendTest, NoAnswerNamesTheRtpuAndItsMethod) {
   fake_.rtpu(1).block().head().running = TaskWord(fake_.task("law"), Method::kCycle).word();
   fake_.rtpu(1).is_deaf = true;
   EXPECT_EQ(refusal("signal", {{"signal", "off"}, {"tasks", {"law"}}}),
@@ -315,7 +315,7 @@ TEST_F(ManagerBackendTest, SubscribersOfEventsMissNone) {
   backend_->close(7);
 }
 
-TEST_F(ManagerBackendTest, SubscribersOfEventsThatAreGoneAreToldHowMany) {
+TEST_F(ManagerBackendTest, ASubscriberGetsTheNumberOfLostEvents) {
   ASSERT_TRUE(backend_->open(7, {{"to", "events"}, {"since", 1}}).is_good());
   for (std::size_t i = 0; i < kEventsKept + 5; ++i) state().tell("command", TaskId{}, RtpuId{}, "x", now());
   const auto news = backend_->pull(7);
@@ -362,7 +362,7 @@ TEST_F(ManagerBackendTest, TheTapIsReadAgainOnlyWhenAllThatWasReadIsTaken) {
     const Json& records = news->at("records");
     last = records[records.size() - 1][0].as_int64();
     if (pulled.size() < 3) continue;
-    EXPECT_GT(last, pulled[pulled.size() - 3].count) << "what is told is not older and older";
+    EXPECT_GT(last, pulled[pulled.size() - 3].count) << "the age of the records does not grow";
   }
 }
 
@@ -381,7 +381,7 @@ TEST_F(ManagerBackendTest, AnalysesATextWithTheLibraryOfTheStart) {
   EXPECT_EQ(good("schedule", {{"text", "subsystem: a\ntasks: {sensr: {}}\n"}})["legal"], false);
 }
 
-TEST_F(ManagerBackendTest, AnswersARefusedSignalWithItsKindItsPlaceAndItsRemedyWhateverItsWordsAre) {
+TEST_F(ManagerBackendTest, ARefusedSignalHasKindPlaceAndRemedy) {
   EXPECT_EQ(answer_to(RefusalKind::kState, "no answer from a parser", "type `chimera clear law`"),
             "-32000 no answer from a parser; type `chimera clear law` "
             R"({"kind":"state","remedy":"type `chimera clear law`","where":"law"})");
@@ -416,7 +416,7 @@ TEST_F(ServedTest, RingsReachTheRtpuAsOftenAsTheTaskIsNamed) {
   EXPECT_EQ(fake_.told("command"), "ring lamp: done\nring lamp, lamp: done\n");
 }
 
-TEST_F(ServedTest, StatusTellsTheServerAndForHowLongTheTaskWasOn) {
+TEST_F(ServedTest, StatusHasTheServerAndTheTimeSinceOn) {
   const Nanoseconds since = now() - seconds(2);
   fake_.rtpu(0).block().profile(fake_.task("lamp")).on_since = since;
   const Json lamp = good("status")["tasks"][1], sensor = good("status")["tasks"][0];
@@ -430,10 +430,10 @@ TEST_F(ServedTest, StatusTellsTheServerAndForHowLongTheTaskWasOn) {
   EXPECT_EQ(profile["server"], server);
   EXPECT_GE(profile["on_ns"].as_int64(), 2'000'000'000);
   (void)good("signal", {{"signal", "off"}, {"tasks", {"lamp"}}});
-  EXPECT_EQ(good("status")["tasks"][1]["on_ns"], 0) << "what it was ON for has not been told";
+  EXPECT_EQ(good("status")["tasks"][1]["on_ns"], 0) << "its time of `on` is unknown";
 }
 
-TEST_F(ServedTest, ARingThatNobodyWouldAnswerIsRefusedAndRingsNothing) {
+TEST_F(ServedTest, RefusesARingForATaskThatCannotAnswer) {
   EXPECT_EQ(refusal("ring", {{"tasks", {"lamp", "sensor"}}}),
             "-32000 sensor is not behind a server: it has no doorbell "
             "{\"kind\":\"no-server\",\"remedy\":\"give it 'server:' in the description\",\"where\":\"sensor\"}");

@@ -23,7 +23,7 @@ TEST(ManagerLoop, BringsTheStartSetUp) {
   EXPECT_NE(fake.told("state").find("law: OFF -> ON\n"), std::string::npos) << fake.told("state");
 }
 
-TEST(ManagerLoop, CarriesOutACommandAndSaysWhatBecameOfIt) {
+TEST(ManagerLoop, CarriesOutACommandAndReturnsTheResult) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -50,7 +50,7 @@ TEST(ManagerLoop, ARefusedCommandChangesNothing) {
   EXPECT_EQ(fake.loop().state().state(fake.task("law")), State::kOn);
 }
 
-TEST(ManagerLoop, ADeadRtpuIsToldWithItsLastWordsAndStartedAgainWithWhatWasOn) {
+TEST(ManagerLoop, ReportsADeadRtpuWithItsMethodAndRestartsItsTasks) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -64,7 +64,7 @@ TEST(ManagerLoop, ADeadRtpuIsToldWithItsLastWordsAndStartedAgainWithWhatWasOn) {
   EXPECT_EQ(fake.loop().state().rtpus[0].last_end, "ended by signal 11 (SIGSEGV) in filter.cycle");
 }
 
-TEST(ManagerLoop, AManagerKilledAtAnyTimeIsFollowedByOneThatGoesOn) {
+TEST(ManagerLoop, ANewManagerResumesAfterAKillAtAnyTime) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -90,7 +90,7 @@ TEST(ManagerLoop, AManagerKilledAtAnyTimeIsFollowedByOneThatGoesOn) {
   EXPECT_TRUE(got->is_accepted()) << got->refusal.text();
 }
 
-TEST(ManagerLoop, WhatHappenedWhileThereWasNoManagerIsToldByTheNext) {
+TEST(ManagerLoop, TheNextManagerReportsEventsFromTheGap) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -102,7 +102,7 @@ TEST(ManagerLoop, WhatHappenedWhileThereWasNoManagerIsToldByTheNext) {
   EXPECT_EQ(fake.told("state"), "filter: ON -> ERROR\n");
 }
 
-TEST(ManagerLoop, AnRtpuThatDiedWhileThereWasNoManagerIsDealtWithByTheNext) {
+TEST(ManagerLoop, TheNextManagerRestartsAnRtpuThatDiedInTheGap) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -114,7 +114,7 @@ TEST(ManagerLoop, AnRtpuThatDiedWhileThereWasNoManagerIsDealtWithByTheNext) {
   EXPECT_TRUE(fake.until_on("law"));
 }
 
-TEST(ManagerLoop, WhatWasOnComesBackWhateverItsRtpuLeftInItsMemory) {
+TEST(ManagerLoop, TurnsTasksOnAgainAfterTheirRtpuOverwroteItsMemory) {
   for (const std::uint64_t word : {std::uint64_t{0xdeadbeef}, UINT64_MAX, std::uint64_t{1}}) {
     FakeSubsystem fake;
     fake.start_manager();
@@ -130,7 +130,7 @@ TEST(ManagerLoop, WhatWasOnComesBackWhateverItsRtpuLeftInItsMemory) {
   }
 }
 
-TEST(ManagerLoop, WhatWasOnInAnRtpuWhoseMemoryCannotBeReadIsKnownToTheNextManager) {
+TEST(ManagerLoop, TheNextManagerKnowsTheTasksOfAnRtpuWithUnreadableMemory) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -158,7 +158,7 @@ TEST(ManagerLoop, WhatWasOnInAnRtpuWhoseMemoryCannotBeReadIsKnownToTheNextManage
   EXPECT_EQ(fake.loop().state().state(fake.task("law")), State::kOff) << "as it was";
 }
 
-TEST(ManagerLoop, AnRtpuThatLivesAndCannotBeReadIsToldWithWhatHelps) {
+TEST(ManagerLoop, ReportsALivingRtpuWithOverwrittenMemoryAndItsRemedy) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -168,13 +168,14 @@ TEST(ManagerLoop, AnRtpuThatLivesAndCannotBeReadIsToldWithWhatHelps) {
   ASSERT_TRUE(fake.until([&] { return !fake.told("fault").empty(); }));
   EXPECT_EQ(fake.told("fault"),
             "its memory cannot be read, something in it has overwritten it (not a state variable table: the first 8 "
-            "bytes are not CHIMTBL1): it can be told nothing until it is started again, as it is when killed\n");
+            "bytes are not CHIMTBL1): the manager cannot send commands to it; `kill -KILL " +
+                std::to_string(fake.loop().state().rtpus[1].pid) + "` restarts it\n");
   fake.kill_rtpu(1, SIGKILL);
   EXPECT_TRUE(fake.until([&] { return fake.loop().state().rtpus[1].restarts == 1; }));
   EXPECT_TRUE(fake.until_on("law"));
 }
 
-TEST(ManagerLoop, TellsTheFaultOfATaskInItsWords) {
+TEST(ManagerLoop, ReportsTheFaultOfATaskInItsWords) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -184,7 +185,7 @@ TEST(ManagerLoop, TellsTheFaultOfATaskInItsWords) {
   EXPECT_TRUE(fake.until([&] { return fake.loop().state().state(fake.task("filter")) == State::kError; }));
 }
 
-TEST(ManagerLoop, TellsTheNoteOfATaskInItsWords) {
+TEST(ManagerLoop, ReportsTheNoteOfATaskInItsWords) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -194,7 +195,7 @@ TEST(ManagerLoop, TellsTheNoteOfATaskInItsWords) {
   EXPECT_EQ(fake.told("fault"), "");
 }
 
-TEST(ManagerLoop, FailuresOfTimeAreToldAsOneEventWithTheirCount) {
+TEST(ManagerLoop, ReportsFailuresOfTimeAsOneEventWithTheirCount) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -208,13 +209,13 @@ TEST(ManagerLoop, FailuresOfTimeAreToldAsOneEventWithTheirCount) {
   EXPECT_EQ(fake.told("overrun"), "law: 2 cycles over budget\n");
 }
 
-TEST(ManagerLoop, CountersThatCannotBeTrueAreToldAsThatAndNotAsNumbers) {
+TEST(ManagerLoop, ReportsImpossibleCountersAsAFaultAndNotAsNumbers) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
   fake.rtpu(1).block().profile(fake.task("law")).overrun = 6'510'615'555'426'900'570u;
   ASSERT_TRUE(fake.until([&] { return !fake.told("fault").empty(); }));
-  EXPECT_EQ(fake.told("fault"), "law: its counters are wrong: something in its unit has overwritten them\n");
+  EXPECT_EQ(fake.told("fault"), "law: its counters are wrong: something in its rtpu has overwritten them\n");
   EXPECT_EQ(fake.told("overrun"), "");
 }
 

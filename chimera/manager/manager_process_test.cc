@@ -135,7 +135,7 @@ TEST(ManagerProcess, ACommandWaitsForTheRestartedManager) {
   EXPECT_TRUE(answer.is_good()) << answer.message;
 }
 
-TEST(ManagerProcess, EndsWithItsKeeperAndSaysWhatItIsFor) {
+TEST(ManagerProcess, EndsWithItsKeeperAndRefusesToRunWithoutOne) {
   const Listening listening;
   FakeSubsystem fake;
   Process manager = fake.start_program(program(), listening.descriptor());

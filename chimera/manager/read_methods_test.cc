@@ -20,7 +20,7 @@ class ReadMethodsTest : public ::testing::Test, public LoneState {
   ReadMethods reads_{state()};
 };
 
-TEST_F(ReadMethodsTest, AnswersWhatChangesNothingAndNothingElse) {
+TEST_F(ReadMethodsTest, AnswersOnlyMethodsThatChangeNothing) {
   std::string answered;
   for (const control::MethodRule& rule : control::methods()) {
     const Json parameters = rule.id == MethodId::kWhy ? Json{{"variable", "x"}} : Json::object();
@@ -29,12 +29,12 @@ TEST_F(ReadMethodsTest, AnswersWhatChangesNothingAndNothingElse) {
   EXPECT_EQ(answered, "hello status describe get profile events why library ");
 }
 
-TEST_F(ReadMethodsTest, HelloSaysTheRoleOfWhoAsks) {
+TEST_F(ReadMethodsTest, HelloNamesTheRoleOfTheClient) {
   EXPECT_EQ((*ask(MethodId::kHello)->result)["role"], "observe");
   EXPECT_EQ((*reads_.answer(MethodId::kHello, Json::object(), control::Role::kOperate)->result)["role"], "operate");
 }
 
-TEST_F(ReadMethodsTest, WhatTheBundleSaysIsMadeIntoTextOnce) {
+TEST_F(ReadMethodsTest, BuildsEachTextOfTheBundleOnce) {
   const auto first = ask(MethodId::kDescribe)->text;
   EXPECT_EQ(Json::parse(*first)["start"], "run");
   EXPECT_EQ(ask(MethodId::kDescribe)->text, first);

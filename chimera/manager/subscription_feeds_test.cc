@@ -79,7 +79,7 @@ TEST_F(SubscriptionFeedsTest, EachSubscriptionHasItsOwnPlaceInTheLog) {
   EXPECT_EQ(pull(1)["events"].size(), 1u);
 }
 
-TEST_F(SubscriptionFeedsTest, StatusIsWhatItIsNow) {
+TEST_F(SubscriptionFeedsTest, AStatusIsThePresentOne) {
   open(1, {{"to", "status"}});
   EXPECT_EQ(pull(1)["tasks"][2]["state"], "NOT-CREATED");
   state().rtpus[1].restarts = 2;

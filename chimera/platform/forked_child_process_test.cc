@@ -26,7 +26,7 @@ TEST(ForkedChild, EndsWithTheResultOfItsWork) {
   EXPECT_EQ(status_of(fork_quietly("", [] { return 7; })), 7);
 }
 
-TEST(ForkedChild, LeavesWhatItWroteIntoFamilyMemoryWhenKilled) {
+TEST(ForkedChild, KeepsItsWritesToFamilyMemoryWhenKilled) {
   const auto memory = FamilyMemory::create(10'000);
   ASSERT_TRUE(memory);
   char* text = reinterpret_cast<char*>(memory->bytes().data());

@@ -47,7 +47,7 @@ TEST(ChromeTrace, KeepsEveryNanosecond) {
   const TapRecord records[] = {record(TapKind::kRun, 1001, 1, CHIMERA_CYCLE, 12'345),
                                record(TapKind::kMiss, 999, 0, 0, 7)};
   const auto events = trace_of(records, 3)["traceEvents"];
-  EXPECT_EQ(events[3]["name"], "miss") << "what came first stands first";
+  EXPECT_EQ(events[3]["name"], "miss") << "the first record comes first";
   EXPECT_EQ(events[3]["args"]["ns"], -1);
   EXPECT_EQ(events[3]["args"]["late_ns"], 7);
   EXPECT_EQ(events[4]["ph"], "X");
@@ -77,7 +77,7 @@ TEST(ChromeTrace, NamesEveryKindOfRecord) {
   EXPECT_EQ(trace["otherData"]["missed_records"], 6);
 }
 
-TEST(ChromeTrace, SortsWhatIsToldLaterAndShowsDeadlines) {
+TEST(ChromeTrace, SortsLateRecordsAndShowsDeadlines) {
   const TapRecord records[] = {record(TapKind::kRun, 3'000, 0, CHIMERA_CYCLE, 500),
                                record(TapKind::kRelease, 2'000, 0, 7, 5'000),
                                record(TapKind::kRun, 4'000, 1, CHIMERA_CYCLE, 10),
@@ -101,7 +101,7 @@ TEST(ChromeTrace, HoldsBackNoMoreThanTwoSeconds) {
   EXPECT_EQ(seen, "preempt drop preempt ");
 }
 
-TEST(ChromeTrace, GivesTheWholeProcessWhatConcernsNoTask) {
+TEST(ChromeTrace, GivesRecordsWithoutATaskToTheWholeProcess) {
   TapRecord flag = record(TapKind::kFlag, 1, 0, 1);
   flag.task = TaskId();
   const TapRecord records[] = {flag, record(TapKind::kRelease, 2, 0)};
@@ -110,7 +110,7 @@ TEST(ChromeTrace, GivesTheWholeProcessWhatConcernsNoTask) {
   EXPECT_EQ(events[4]["s"], "t");
 }
 
-TEST(ChromeTrace, TellsThatItCouldNotBeWritten) {
+TEST(ChromeTrace, ReportsAFileThatCannotBeWritten) {
   std::FILE* full = std::fopen("/dev/full", "w");
   ASSERT_NE(full, nullptr);
   ChromeTrace trace(full, "arm", {}, {}, Nanoseconds{});

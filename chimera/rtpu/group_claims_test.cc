@@ -19,7 +19,7 @@ struct GroupClaimsTest : ::testing::Test {
 
 TEST_F(GroupClaimsTest, OneRtpuAtATimeHasAGroup) {
   EXPECT_TRUE(first.take(0));
-  EXPECT_TRUE(first.take(0)) << "its own";
+  EXPECT_TRUE(first.take(0)) << "the claim is its own";
   EXPECT_FALSE(second.take(0));
   EXPECT_TRUE(second.take(1));
   first.give_back();
@@ -29,22 +29,22 @@ TEST_F(GroupClaimsTest, OneRtpuAtATimeHasAGroup) {
   EXPECT_EQ(decision.claims[1], 0u);
 }
 
-TEST_F(GroupClaimsTest, WhatADeadProcessHoldsIsFree) {
+TEST_F(GroupClaimsTest, AClaimOfADeadProcessIsFree) {
   EXPECT_TRUE(first.take(0));
   keeper.alive[0] = 0;
   EXPECT_TRUE(second.take(0));
   keeper.alive[0] = 2;  // its successor
   first.give_back();
-  EXPECT_NE(decision.claims[0], 0u) << "not its own any more";
+  EXPECT_NE(decision.claims[0], 0u) << "the claim is of its successor now";
 }
 
-TEST_F(GroupClaimsTest, AWordThatNobodyWouldWriteHoldsNothing) {
+TEST_F(GroupClaimsTest, AnInvalidClaimHoldsNoGroup) {
   decision.claims[0] = ~std::uint64_t{0};
   EXPECT_TRUE(first.take(0));
   EXPECT_FALSE(first.take(kMaxGroups));
 }
 
-TEST_F(GroupClaimsTest, NobodyHasOneWhenTheRunEnds) {
+TEST_F(GroupClaimsTest, NoClaimSucceedsWhileTheRunEnds) {
   keeper.ending = 1;
   EXPECT_FALSE(first.take(0));
 }

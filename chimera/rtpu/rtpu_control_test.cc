@@ -123,7 +123,7 @@ TEST_F(EdgeTest, EverySignalWithACommandIsReported) {
   EXPECT_EQ(first().state(kSource), State::kOn);
 }
 
-TEST_F(EdgeTest, TheManagersWishDecidesWhatGoesToTheTap) {
+TEST_F(EdgeTest, TheManagerDecidesWhichGroupsGoToTheTap) {
   all_on();
   EXPECT_FALSE(first().tasks->tasks()[kSource.index].is_tapped);
   rtpus->manager->block.set_tapped(kSource, true);
@@ -168,7 +168,7 @@ TEST_F(EdgeTest, TheFlagGoesUpEverywhereWhenAProducerLeaves) {
   rtpus->send(Signal::kOff, {kSource});
   rtpus->run(milliseconds(3));
   EXPECT_TRUE(rtpus->flag_is_up());
-  EXPECT_TRUE(Follower::illegal) << "the consumer in another rtpu was told";
+  EXPECT_TRUE(Follower::illegal) << "the consumer in another rtpu sees the flag";
   rtpus->send(Signal::kOn, {kSource});
   rtpus->run(milliseconds(3));
   EXPECT_FALSE(rtpus->flag_is_up());
@@ -236,7 +236,7 @@ TEST_F(EdgeTest, AChangedConstantReinitialisesItsUsersInOtherRtpusAndOnlyThen) {
   all_on();
   rtpus->send(Signal::kReinit, {kSource}, 1);
   rtpus->run(milliseconds(2));
-  EXPECT_EQ(Follower::reinits, 0) << "the same value";
+  EXPECT_EQ(Follower::reinits, 0) << "the value has not changed";
   Source::wanted = 5;
   rtpus->send(Signal::kReinit, {kSource}, 2);
   rtpus->run(milliseconds(3));
@@ -244,7 +244,7 @@ TEST_F(EdgeTest, AChangedConstantReinitialisesItsUsersInOtherRtpusAndOnlyThen) {
   EXPECT_NEAR(second().output(kFollower), 5 * first().output(kSource), 5.1);
 }
 
-TEST_F(EdgeTest, ANoteIsToldAtOnceAndTheTaskGoesOn) {
+TEST_F(EdgeTest, ANoteIsReportedAtOnceAndTheTaskStaysOn) {
   all_on();
   rtpus->take(PostKind::kEvent);
   Follower::note_at = first().output(kSource) + 2;
@@ -258,7 +258,7 @@ TEST_F(EdgeTest, ANoteIsToldAtOnceAndTheTaskGoesOn) {
   EXPECT_STREQ(shown_of_follower().note, "as asked");
 }
 
-TEST_F(EdgeTest, AFaultIsToldWithItsTextInTheFaultGroup) {
+TEST_F(EdgeTest, AFaultIsReportedWithItsTextInTheFaultGroup) {
   all_on();
   rtpus->take(PostKind::kEvent);
   Follower::fail_at = first().output(kSource) + 2;
@@ -292,7 +292,7 @@ TEST_F(EdgeTest, TheEndTurnsConsumersOffBeforeTheirProducersOverAllRtpus) {
   first().edge->rtpu_end().tell(false);
   rtpus->change();
   rtpus->run(milliseconds(3));
-  EXPECT_EQ(first().state(kKiller), State::kOff) << "nobody comes before it";
+  EXPECT_EQ(first().state(kKiller), State::kOff) << "no task goes OFF before it";
   EXPECT_EQ(first().state(kSource), State::kOn) << "the follower in the other rtpu is still ON";
   second().edge->rtpu_end().tell(false);
   rtpus->change();

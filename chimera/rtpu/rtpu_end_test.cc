@@ -65,7 +65,7 @@ TEST_F(RtpuEndTest, WaitsForTheConsumersOfOtherRtpus) {
   EXPECT_TRUE(end_of(0).is_over());
 }
 
-TEST_F(RtpuEndTest, WaitsForNobodyWhenAJobOfItsOwnHangs) {
+TEST_F(RtpuEndTest, EndsWithoutWaitingWhenAJobOfItsOwnHangs) {
   rtpu(0).edge->hanging().note(TaskWord(kEndedGiver, Method::kCycle), seconds(1));
   end_of(0).tell(false);
   rtpus->change();
@@ -73,7 +73,7 @@ TEST_F(RtpuEndTest, WaitsForNobodyWhenAJobOfItsOwnHangs) {
   EXPECT_TRUE(end_of(0).is_over());
 }
 
-TEST_F(RtpuEndTest, LeavesItsSuccessorWhatWasOnWhenItEndsAloneAndWaitsForNobody) {
+TEST_F(RtpuEndTest, KeepsTheStatesForItsSuccessorWhenItEndsAlone) {
   end_of(1).tell(true);
   rtpus->change();
   rtpus->run(milliseconds(5));

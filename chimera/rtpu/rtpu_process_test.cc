@@ -128,7 +128,7 @@ struct RtpuProcess : ::testing::Test {
   std::uint64_t commands = 0;
 };
 
-TEST_F(RtpuProcess, CyclesWhatItsManagerTurnsOnAndGoesOnWithoutOne) {
+TEST_F(RtpuProcess, CyclesTasksThatAreTurnedOnAndGoesOnWithoutAManager) {
   introduce_manager();
   EXPECT_EQ(signal(Signal::kSpawn).detail, 1u);
   EXPECT_EQ(signal(Signal::kOn).after, State::kOn);
@@ -140,7 +140,7 @@ TEST_F(RtpuProcess, CyclesWhatItsManagerTurnsOnAndGoesOnWithoutOne) {
   EXPECT_TRUE(std::string_view(peers->at(0)->block().head().grant).starts_with("WARNING: not real time\n"));
 }
 
-TEST_F(RtpuProcess, EndsItsTasksWhenTold) {
+TEST_F(RtpuProcess, EndsItsTasksOnFinish) {
   introduce_manager();
   signal(Signal::kSpawn);
   signal(Signal::kOn);
@@ -163,7 +163,7 @@ TEST_F(RtpuProcess, EndsItsTasksWhenItsKeeperIsGone) {
   EXPECT_EQ(peers->at(0)->block().status(kCounter).state, State::kNotCreated);
 }
 
-TEST_F(RtpuProcess, ItsLastWordsSayWhatRanWhenItDies) {
+TEST_F(RtpuProcess, ItsBlockKeepsTheRunningMethodWhenItDies) {
   introduce_manager();
   signal(Signal::kSpawn);
   signal(Signal::kOn);

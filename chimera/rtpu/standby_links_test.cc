@@ -125,7 +125,7 @@ TEST_F(StandbyLinksTest, TheNextOneTakesOverWhenTheFirstIsDeadOrCannot) {
   EXPECT_EQ(User::illegal, 0);
 }
 
-TEST_F(StandbyLinksTest, ATakeoverThatItsRtpuDiesInIsToldAsFarAsItCame) {
+TEST_F(StandbyLinksTest, ReportsTheCompletedStepsOfATakeoverWhenItsRtpuDies) {
   rtpus->run(microseconds(500));  // between two releases
   rtpus->die(0);
   while (state(kSpare) != State::kOn) rtpus->run(microseconds(10));
@@ -137,7 +137,7 @@ TEST_F(StandbyLinksTest, ATakeoverThatItsRtpuDiesInIsToldAsFarAsItCame) {
   EXPECT_NE(takeover.at, kNever);
 }
 
-TEST_F(StandbyLinksTest, OneWhoseOnFailsMakesPlace) {
+TEST_F(StandbyLinksTest, AStandbyWhoseOnFailsMakesPlace) {
   Standby::fails = true;
   rtpus->die(0);
   rtpus->run(milliseconds(1));
@@ -204,7 +204,7 @@ struct Other {
 };
 
 /// Two groups fail in the first rtpu and are replaced in the second, in the first group later than in the other.
-TEST(StandbyLinks, TakeoversOfTwoGroupsAreToldInTheOrderInWhichTheyCameToSomething) {
+TEST(StandbyLinks, ReportsTakeoversOfTwoGroupsInTheOrderOfTheirResults) {
   constexpr TaskId kOther{0u}, kFirst{1u}, kSlow{2u}, kQuick{3u};
   const std::vector<StandbySpec> two{{kOther, kSlow}, {kFirst, kQuick}};
   TestApplication app;

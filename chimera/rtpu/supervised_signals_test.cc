@@ -34,7 +34,7 @@ TEST(SupervisedSignals, TellTheMethodForAsLongAsItIsUnderWay) {
   rtpus.bring_up({seer});
   rtpus.run(milliseconds(20));
   EXPECT_EQ(Seer::seen_on, TaskWord(seer, Method::kOn).word());
-  EXPECT_EQ(Seer::progress % 2, 1u) << "begun, not done with";
+  EXPECT_EQ(Seer::progress % 2, 1u) << "begun, not ended";
   EXPECT_EQ(Seer::seen_cycle, 0u) << "a job is no signal";
   EXPECT_EQ(watched->acting(), 0u);
   rtpus.send(Signal::kOff, {seer});

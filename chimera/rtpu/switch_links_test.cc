@@ -83,7 +83,7 @@ TEST_F(SwitchLinksTest, TwoRtpusChangeAtOneInstant) {
   EXPECT_TRUE(rtpus->part(1).variables[0].step_of_on.is_known);
 }
 
-TEST_F(SwitchLinksTest, ARequestIsAWordThatStaysUntilItIsDealtWith) {
+TEST_F(SwitchLinksTest, ARequestStaysUntilTheManagerHandlesIt) {
   const auto wish = [&] { return rtpus->rtpus[1]->segment.block.head().wish.wish(); };
   std::string wanted = "direct";
   scene.in_reader = [&](Cycle c) { EXPECT_TRUE(c.request(wanted.c_str())); };
@@ -95,7 +95,7 @@ TEST_F(SwitchLinksTest, ARequestIsAWordThatStaysUntilItIsDealtWith) {
   EXPECT_NE(rtpus->rtpus[1]->segment.block.head().wish.read().at, Nanoseconds{});
   wanted = "direct";
   rtpus->run(milliseconds(5));
-  EXPECT_EQ(wish().number, 2) << "it takes the wish back that nobody has dealt with";
+  EXPECT_EQ(wish().number, 2) << "it takes back the request that the manager has not handled";
   EXPECT_EQ(wish().set, kDirect);
   rtpus->manager->block.memory().wishes[1] = wish_dealt_with(1, 2);
   rtpus->run(milliseconds(5));
@@ -106,10 +106,10 @@ TEST_F(SwitchLinksTest, ARequestIsAWordThatStaysUntilItIsDealtWith) {
   (void)rtpus->switch_to(kObserved);
   rtpus->run(milliseconds(10));
   EXPECT_TRUE(are_on(kSets[kObserved]));
-  EXPECT_EQ(wish().number, 3) << "what is under way, and in force later, is not asked for again";
+  EXPECT_EQ(wish().number, 3) << "the running switch, in force later, is not requested again";
 }
 
-TEST_F(SwitchLinksTest, TheSameRequestIsMadeAgainThoughTheManagerThatDealtWithTheLastOneIsDead) {
+TEST_F(SwitchLinksTest, ARequestIsRepeatedThoughTheManagerOfTheLastIsDead) {
   const auto number = [&] { return rtpus->rtpus[1]->segment.block.head().wish.wish().number; };
   std::string wanted = "observed";
   scene.in_reader = [&](Cycle c) {
@@ -133,7 +133,7 @@ TEST_F(SwitchLinksTest, TheSameRequestIsMadeAgainThoughTheManagerThatDealtWithTh
   EXPECT_EQ(rtpus->rtpus[1]->segment.block.head().wish.wish().set, kObserved);
 }
 
-TEST_F(SwitchLinksTest, WhoStaysSeesNothingOfTenThousandSwitches) {
+TEST_F(SwitchLinksTest, TenThousandSwitchesDoNotDisturbTasksThatStay) {
   const Nanoseconds begin = rtpus->now;
   std::mt19937 random(5);
   std::vector<std::uint32_t> wanted;
@@ -166,7 +166,7 @@ TEST_F(SwitchLinksTest, WhoStaysSeesNothingOfTenThousandSwitches) {
   EXPECT_TRUE(reader == scene.reader);
 }
 
-TEST_F(SwitchLinksTest, AnOnThatFailsInOneRtpuUndoesWhatTheOtherHasArmed) {
+TEST_F(SwitchLinksTest, AnOnThatFailsInOneRtpuUndoesArmingInTheOther) {
   scene.on_of_two_fails = true;
   const std::uint16_t number = rtpus->switch_to(kObserved);
   rtpus->run(milliseconds(10));
@@ -228,7 +228,7 @@ TEST_F(SwitchLinksTest, TheDeathOfAMemberAfterTheCommitDoesNotHoldUpTheChange) {
   EXPECT_EQ(std::get<1>(scene.u.back()), 7);
 }
 
-TEST_F(SwitchLinksTest, ASuccessorAbortsWhatItsPredecessorTookPartIn) {
+TEST_F(SwitchLinksTest, ASuccessorAbortsASwitchOfItsPredecessor) {
   const std::uint16_t number = rtpus->switch_to(kBeside);
   rtpus->start(1, 2);
   rtpus->change();
@@ -239,7 +239,7 @@ TEST_F(SwitchLinksTest, ASuccessorAbortsWhatItsPredecessorTookPartIn) {
   EXPECT_EQ(state(kThree), State::kOff);
 }
 
-TEST_F(SwitchLinksTest, AnOrderThatNobodyWroteIsAborted) {
+TEST_F(SwitchLinksTest, AnOrderWithAChangedWordIsAborted) {
   const std::uint16_t number = rtpus->switch_to(kObserved);
   rtpus->decision.switching.order[3] ^= 4096;
   rtpus->run(milliseconds(10));
@@ -250,7 +250,7 @@ TEST_F(SwitchLinksTest, AnOrderThatNobodyWroteIsAborted) {
 }
 
 // Between its own agreement and the commit an rtpu still aborts if a task of the switch fails.
-TEST_F(SwitchLinksTest, WhatComesAfterTheOwnAgreementStillAborts) {
+TEST_F(SwitchLinksTest, AFailureAfterItsOwnAgreementStillAborts) {
   (void)rtpus->switch_to(kObserved, milliseconds(20));
   testing::TestRtpu* agreed = nullptr;  // steps the rtpus one by one, until one has agreed and the other has not
   while (agreed == nullptr) {

@@ -40,7 +40,7 @@ TEST_F(WaitingSignalsTest, AreTakenInTheOrderInWhichTheyCame) {
   EXPECT_EQ(acted(), "");
 }
 
-TEST_F(WaitingSignalsTest, OfATaskKeepTheirOrderWhenItMustWait) {
+TEST_F(WaitingSignalsTest, SignalsOfATaskKeepTheirOrderWhileTheyWait) {
   add('a', 1);
   add('b', 2);
   add('a', 3);
@@ -49,7 +49,7 @@ TEST_F(WaitingSignalsTest, OfATaskKeepTheirOrderWhenItMustWait) {
   EXPECT_EQ(acted(), "a1 a3 b4 ");
 }
 
-TEST_F(WaitingSignalsTest, OfATransactionGoTogetherOrNotAtAll) {
+TEST_F(WaitingSignalsTest, ATransactionGoesTogetherOrNotAtAll) {
   add('a', 1, true);
   add('b', 1);
   add('a', 2);
@@ -58,14 +58,14 @@ TEST_F(WaitingSignalsTest, OfATransactionGoTogetherOrNotAtAll) {
   EXPECT_EQ(acted(), "a1b1 a2 ");
 }
 
-TEST_F(WaitingSignalsTest, OfATransactionThatHasNotComeWholeWait) {
+TEST_F(WaitingSignalsTest, AnIncompleteTransactionWaits) {
   add('a', 1, true);
   EXPECT_EQ(acted(), "");
   add('b', 1);
   EXPECT_EQ(acted(), "a1b1 ");
 }
 
-TEST_F(WaitingSignalsTest, ThatFillTheirMemoryAreTakenThoughTheirTransactionIsLonger) {
+TEST_F(WaitingSignalsTest, AFullMemoryIsActedOnThoughItsTransactionIsLonger) {
   while (!waiting.is_full()) add('a', 1, true);
   EXPECT_EQ(acted().size(), 2 * WaitingSignals::kMost + 1);
   EXPECT_FALSE(waiting.is_full());

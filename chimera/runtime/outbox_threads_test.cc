@@ -103,7 +103,7 @@ TEST_F(Outboxes, ASuccessorGoesOnWhereTheReaderStopped) {
   EXPECT_FALSE(Inbox::resume(*ring, wrong, 3).take(post));
 }
 
-TEST_F(Outboxes, ANewReaderBeginsBehindWhatWasPosted) {
+TEST_F(Outboxes, ANewReaderBeginsBehindEarlierPosts) {
   Outbox outbox(*ring, &progress, 7);
   ASSERT_TRUE(outbox.try_post(numbered(0)));
   Inbox first(*ring, progress, 7);
@@ -158,7 +158,7 @@ TEST_F(Outboxes, AReaderThatClaimsToBeAheadGetsNothingMore) {
   EXPECT_FALSE(outbox.try_post(numbered(0)));
 }
 
-TEST_F(Outboxes, WhatNoSenderWritesIsPassedOver) {
+TEST_F(Outboxes, SkipsPostsThatNoSenderWrites) {
   Inbox inbox(*ring, progress, 1);
   Outbox outbox(*ring, &progress, 1);
   for (std::uint64_t i = 0; i < 6; ++i) ASSERT_TRUE(outbox.try_post(numbered(i)));
@@ -170,7 +170,7 @@ TEST_F(Outboxes, WhatNoSenderWritesIsPassedOver) {
   bytes[4 * sizeof(Post) + offsetof(Post, why)] = 77;
   ASSERT_TRUE(inbox.take(post));
   EXPECT_EQ(post.command, 5u);
-  EXPECT_EQ(fill(outbox), kPosts);  // what was passed over is counted as taken
+  EXPECT_EQ(fill(outbox), kPosts);  // a skipped post counts as taken
 }
 
 TEST_F(Outboxes, EveryHappeningArrives) {

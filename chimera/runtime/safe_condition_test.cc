@@ -25,7 +25,7 @@ TEST(SafeCondition, ComparesWithItsLimit) {
   EXPECT_EQ(holds_at(Relation::kUnequal), "yny");
 }
 
-TEST(SafeCondition, WhatIsNoNumberIsNeverSafe) {
+TEST(SafeCondition, NotANumberIsNeverSafe) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (int c = 0; c <= static_cast<int>(Relation::kUnequal); ++c)
     EXPECT_FALSE(is_safe({VariableId{0u}, 0, static_cast<Relation>(c), 2}, nan)) << c;

@@ -33,11 +33,11 @@ TEST_F(SafeFrameTest, AWriterThatDiesWhileItWritesLeavesTheFrameBefore) {
   put("whole");
   const auto standing = frame.last_words();
   put("new");
-  EXPECT_NE(frame.last_words().data(), standing.data()) << "the next is written beside the one that stands";
+  EXPECT_NE(frame.last_words().data(), standing.data()) << "the next frame is written beside the present one";
   EXPECT_EQ(std::string(reinterpret_cast<const char*>(standing.data()), 5), "whole");
 }
 
-TEST_F(SafeFrameTest, AWordThatNoOwnerWritesIsNoFrame) {
+TEST_F(SafeFrameTest, AnInvalidWordIsNoFrame) {
   auto* word = reinterpret_cast<std::uint32_t*>(&frame);
   *word = (kSafeBytes + 1) << 1;
   EXPECT_EQ(last(), "");

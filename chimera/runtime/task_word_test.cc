@@ -16,13 +16,13 @@ TEST(TaskWord, HoldsATaskAndAMethod) {
   EXPECT_FALSE(found.is_none());
 }
 
-TEST(TaskWord, OfTheFirstTasksFirstMethodIsNotNone) {
+TEST(TaskWord, TheFirstMethodOfTheFirstTaskIsNotNone) {
   EXPECT_FALSE(TaskWord(TaskId(0u), Method::kInit).is_none());
   EXPECT_TRUE(TaskWord().is_none());
   EXPECT_EQ(TaskWord().word(), 0u);
 }
 
-TEST(TaskWord, NamesNoTaskWhereTheWordHasNone) {
+TEST(TaskWord, AWordWithoutATaskNamesNone) {
   EXPECT_FALSE(TaskWord().task().is_valid());
   EXPECT_FALSE(TaskWord::found(CHIMERA_CYCLE).task().is_valid());
   EXPECT_FALSE(TaskWord::found(CHIMERA_CYCLE).has_method());

@@ -105,7 +105,7 @@ TEST(Analysis, TakesAQuantumForEachOtherTaskOfALaxityLevel) {
   EXPECT_FALSE(Judged({work(10, 4), work(12, 4), work(12, 3)}, uses).at.fits());
 }
 
-TEST(Analysis, SaysWhatItCouldNotCount) {
+TEST(Analysis, CountsTasksWithoutAStatedTime) {
   const Judged j({work(10, 0), work(20, 5)}, {use(Policy::kRm)});
   EXPECT_EQ(j.verdicts[0].guarantee, Guarantee::kNotStated);
   EXPECT_EQ(j.at.unstated, 1u);

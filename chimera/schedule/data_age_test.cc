@@ -33,7 +33,7 @@ TEST(DataAge, HasNoBoundWhereATaskHasNone) {
   EXPECT_EQ(worst_data_age(std::vector<ChainLink>{{work(10, 1), kNever, false}}), kNever);
 }
 
-TEST(DataAge, KnowsWhoAlwaysGoesFirst) {
+TEST(DataAge, KnowsTheTaskThatAlwaysGoesFirst) {
   const Work a = work(10, 1), b = work(20, 1);
   for (const Policy policy : {Policy::kRm, Policy::kEdf, Policy::kMuf}) {
     const ProcessorUse use{.policy = policy};
@@ -50,7 +50,7 @@ TEST(DataAge, KnowsWhoAlwaysGoesFirst) {
 }
 
 // Simulates three tasks on three processors at random: no actuator uses data older than the bound.
-TEST(DataAge, BoundsWhatIsSeenInRandomRuns) {
+TEST(DataAge, BoundsTheAgesOfRandomRuns) {
   std::mt19937 random(7);
   for (int run = 0; run < 300; ++run) {
     std::int64_t period[3], response[3], offset[3];

@@ -32,7 +32,7 @@ TEST(Policy, MufPutsCriticalityBeforeTheDynamicPart) {
   EXPECT_TRUE(is_more_urgent(Policy::kMufLaxity, kTight, kSoon));
 }
 
-TEST(Policy, UserPriorityDecidesATieAndAFullTieNobody) {
+TEST(Policy, UserPriorityDecidesATieAndAFullTieHasNoWinner) {
   Urgency raised = kSoon;
   raised.user_priority = 1;
   for (const Policy p : {Policy::kRm, Policy::kEdf, Policy::kLlf, Policy::kMuf, Policy::kMufLaxity}) {

@@ -195,7 +195,7 @@ TEST(ReadyQueue, ReplacesADeferredReleaseByANewerOne) {
   EXPECT_TRUE(b.queue.is_empty());
 }
 
-TEST(ReadyQueue, OrdersAPreemptedJobByWhatItStillNeeds) {
+TEST(ReadyQueue, OrdersAPreemptedJobByItsRemainingTime) {
   Bench b(Policy::kLlf, {spec(20, 10), spec(20, 8)});
   b.join_all();
   b.release(0);

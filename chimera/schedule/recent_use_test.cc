@@ -19,7 +19,7 @@ TEST(RecentUse, NothingIsInUseBeforeItIsSaid) {
   EXPECT_EQ(use.used(kBegin + seconds(6)), Nanoseconds{});
 }
 
-TEST(RecentUse, CountsWhileInUseAndForgetsWhatLeftTheWindow) {
+TEST(RecentUse, CountsUseWithinTheWindowOnly) {
   RecentUse use(seconds(1));
   use.set(true, kBegin);
   EXPECT_EQ(use.used(kBegin + milliseconds(300)), milliseconds(300));

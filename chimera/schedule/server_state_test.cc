@@ -87,7 +87,7 @@ TEST(ServerState, CapacityThatComesBackWhileTheServerIsActiveCountsFromThen) {
   EXPECT_EQ(server.next_change(ms(13)), ms(18));
 }
 
-TEST(ServerState, WhatWasUsedBeyondTheAllowanceIsMadeUpFor) {
+TEST(ServerState, TimeBeyondTheAllowanceIsTakenFromTheNextCapacity) {
   ServerState deferrable({ServerKind::kDeferrable, ms(2), ms(5)}, {});
   deferrable.activate({});
   deferrable.charge(ms(3));

@@ -6,7 +6,7 @@
 namespace chimera {
 namespace {
 
-TEST(Shares, WhoIsAloneHasAll) {
+TEST(Shares, AMemberAloneOnItsCpuHasAll) {
   constexpr ShareMember kUnits[] = {{0, 0.2}, {1, 0.5}};
   EXPECT_DOUBLE_EQ(share_of(kUnits, 0, 0.94), 0.94);
   EXPECT_DOUBLE_EQ(share_of(kUnits, 1, 0.94), 0.94);

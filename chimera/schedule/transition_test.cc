@@ -37,7 +37,7 @@ bool fits_alone(const std::vector<Work>& works, const std::vector<ProcessorUse>&
   return analyse(works, uses, 0, verdicts, room).fits();
 }
 
-TEST(Transition, OfTwoSetsOfNineTenthsEachMayBeTooMuch) {
+TEST(Transition, ASwitchBetweenTwoSchedulableSetsMayOverload) {
   const std::vector<Work> works = {work(10, 9), work(14, 12, 1)};
   EXPECT_TRUE(fits_alone({works[0]}, {use(Policy::kEdf)}));
   EXPECT_TRUE(fits_alone({works[1]}, {use(Policy::kEdf)}));
@@ -46,7 +46,7 @@ TEST(Transition, OfTwoSetsOfNineTenthsEachMayBeTooMuch) {
   EXPECT_TRUE(Judged({work(10, 5), work(14, 7, 1)}, {Part::kLeaves, Part::kArrives}, {use(Policy::kEdf)}).fits());
 }
 
-TEST(Transition, OfLikeForLikeFitsWhereverTheLongerTimeDoes) {
+TEST(Transition, ALikeForLikeSwitchFitsIfTheLongerTimeFits) {
   for (const Policy policy : {Policy::kEdf, Policy::kRm, Policy::kMuf})
     for (const Dispatch dispatch : {Dispatch::kPreemptive, Dispatch::kExecutive}) {
       const Judged j({work(10, 6), work(10, 4), work(20, 6)}, {Part::kLeaves, Part::kArrives, Part::kStays},
@@ -59,7 +59,7 @@ TEST(Transition, OfLikeForLikeFitsWhereverTheLongerTimeDoes) {
     }
 }
 
-TEST(Transition, OnAnotherGridMeetsTheLastJobOfTheOneBefore) {
+TEST(Transition, OnAnotherGridATaskMeetsTheLastJobOfItsPredecessor) {
   // The same rates and times. The first release after the change comes 9 ms after the last one before it.
   const Judged far({work(10, 6), work(10, 6, 9)}, {Part::kLeaves, Part::kArrives}, {use(Policy::kEdf)});
   EXPECT_FALSE(far.fits());
@@ -100,7 +100,7 @@ TEST(Transition, JudgesEachCriticalityByItself) {
   EXPECT_EQ(j.verdicts[1].guarantee, Guarantee::kNo);
 }
 
-TEST(Transition, SaysWhatItCouldNotCountAndLeavesOutOtherProcessors) {
+TEST(Transition, CountsTasksWithoutATimeAndLeavesOutOtherProcessors) {
   std::vector<Work> works = {work(10, 0), work(10, 5), work(10, 9)};
   works[2].rtpu = 1;
   std::vector<ProcessorUse> uses = {use(Policy::kEdf), use(Policy::kEdf)};
@@ -120,7 +120,7 @@ TEST(Transition, FromOrToTooMuchIsRefused) {
   EXPECT_EQ(Judged(works, {Part::kStays, Part::kArrives, Part::kLeaves}, {use(Policy::kEdf)}).all.settled, kNever);
 }
 
-TEST(Transition, OfAThousandCyclesInTheWindowIsDecidedInTime) {
+TEST(Transition, AWindowOfAThousandCyclesIsAnalysedInTime) {
   std::vector<Work> works;
   std::vector<Part> parts;
   for (std::int64_t i = 0; i < 60; ++i) {

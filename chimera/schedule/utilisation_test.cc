@@ -6,7 +6,7 @@
 namespace chimera {
 namespace {
 
-TEST(Utilisation, OfExactlyTheLimitFitsHoweverItsSharesAreRounded) {
+TEST(Utilisation, ASumAtTheLimitFitsThoughItsSharesAreRounded) {
   double sum = 0;
   for (int i = 0; i < 93; ++i) sum += 0.01;
   EXPECT_GT(sum, kMaxUtilisation) << "as floating numbers add up";

@@ -29,7 +29,7 @@ std::string letters(const std::vector<Work>& works, const ProcessorUse& use, std
 // The example of the MUF literature without its fourth task, which only makes the others late under `edf`.
 const std::vector<Work> kSet = {work(6, 2, 2), work(10, 4, 2), work(12, 3, 2)};
 
-TEST(WorstWindow, DrawsWhoRunsFromASynchronousRelease) {
+TEST(WorstWindow, DrawsTheRunningTasksAfterASynchronousRelease) {
   EXPECT_EQ(letters(kSet, {.policy = Policy::kRm}, 12), "AABBBBAACCBB");
   EXPECT_EQ(letters(kSet, {.policy = Policy::kEdf}, 12), "AABBBBAACCCB");
 }
@@ -38,7 +38,7 @@ TEST(WorstWindow, BeginsBehindTheLongestJobInAnExecutive) {
   EXPECT_EQ(letters(kSet, {.policy = Policy::kRm, .dispatch = Dispatch::kExecutive}, 9), "BBBBAAAAC");
 }
 
-TEST(WorstWindow, ShowsWhereNobodyRunsAndStopsWhenFull) {
+TEST(WorstWindow, ShowsIdleTimeAndStopsWhenFull) {
   EXPECT_EQ(letters({work(5, 1, 0)}, {.policy = Policy::kEdf}, 7), "A....A.");
   std::vector<WindowTask> room(3);
   std::vector<WindowRun> runs(2);

@@ -54,14 +54,14 @@ TEST_F(CommandQueueTest, RefusesTheWholeListForOneWrongTask) {
             "answer 1 no: arm is in state ON, where clear is not legal; type `chimera clear traj`\n");
 }
 
-TEST_F(CommandQueueTest, TellsWhatWasDoneThoughOneFailed) {
+TEST_F(CommandQueueTest, ReportsCompletedTasksThoughAnotherFailed) {
   are_on({kArm, kPid});
   ask(Signal::kOff, {kArm, kPid});
   EXPECT_EQ(report(kPid, State::kError, {RefusalKind::kFault, "no answer from the drive", {}}), "");
   EXPECT_EQ(report(kArm, State::kOff), "answer 1 no: off: pid: no answer from the drive pid ON>ERROR arm ON>OFF\n");
 }
 
-TEST_F(CommandQueueTest, WhoIsOffAlreadyIsSentNothing) {
+TEST_F(CommandQueueTest, ATaskThatIsOffReceivesNoOff) {
   EXPECT_EQ(ask(Signal::kOff, {kArm}), "answer 1 yes arm OFF>OFF already\n");
 }
 
@@ -81,7 +81,7 @@ TEST_F(CommandQueueTest, ASpawnIsAGoalAndEndsWithIt) {
   EXPECT_EQ(report(kReserve, State::kOff), "goal reserve 0\nanswer 1 yes reserve NOT-CREATED>OFF\n");
 }
 
-TEST_F(CommandQueueTest, ASpawnWhoseInitFailsIsRefusedWithItsWords) {
+TEST_F(CommandQueueTest, ASpawnWhoseInitFailsIsRefusedWithTheFault) {
   is(kReserve, State::kNotCreated);
   ask(Signal::kSpawn, {kReserve});
   (void)goals.advance();
@@ -126,7 +126,7 @@ TEST_F(CommandQueueTest, KillOfATaskThatWasLostMakesItNoLongerMissed) {
   EXPECT_FALSE(state.observed.is_lost(kReserve));
 }
 
-TEST_F(CommandQueueTest, ClearOfATaskThatWasLostStartsItsRtpuAndWhatIsWantedBack) {
+TEST_F(CommandQueueTest, ClearOfALostTaskStartsItsRtpuAndTheOtherWantedTasks) {
   die(kSpare);
   state.observed.want_back(kReserve, true);
   EXPECT_EQ(ask(Signal::kClear, {kTraj}), "goal traj 1\ngoal reserve 1\nrestart spare\nstart spare\n");

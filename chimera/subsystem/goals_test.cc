@@ -18,7 +18,7 @@ class GoalsTest : public ::testing::Test, public TestWorld {
   }
 };
 
-TEST_F(GoalsTest, OffOfOneThatIsStillToBeTurnedOnIsDoneAtOnceAndFailsTheTransaction) {
+TEST_F(GoalsTest, OffOfATaskThatWaitsForOnFailsTheTransaction) {
   all_off();
   command(Signal::kOn, {kArm, kTraj, kPid});
   EXPECT_EQ(command(Signal::kOff, {kPid}), "goal pid 0\nanswer 3 yes pid OFF>OFF\n");
@@ -52,7 +52,7 @@ TEST_F(GoalsTest, ACommandForATaskThatIsBroughtUpWaitsAndIsFulfilledByIt) {
 }
 
 // docs/formats/control.md, `signal`: only `on` is one transaction over all rtpus.
-TEST_F(GoalsTest, AListOfOffGoesOutRtpuByRtpuAndWhatWasDoneStaysDone) {
+TEST_F(GoalsTest, ARefusedOffOfAListDoesNotUndoOtherTasks) {
   const std::string asked = command(Signal::kOff, {kArm, kTraj});
   EXPECT_NE(asked.find("send servo: off arm\n"), std::string::npos) << asked;
   EXPECT_NE(asked.find("send spare: off traj\n"), std::string::npos) << asked;
@@ -72,7 +72,7 @@ TEST_F(GoalsTest, OffTakesTheGoalOnBackWhileTheProcessIsRestarted) {
   EXPECT_TRUE(subsystem->is_settled());
 }
 
-TEST_F(GoalsTest, WhatAPersonWasKillingDoesNotComeBack) {
+TEST_F(GoalsTest, ATaskWithAPendingKillDoesNotComeBack) {
   command(Signal::kKill, {kReserve});
   EXPECT_EQ(die(kSpare),
             "rtpu-ended: spare ended by signal 11 (SIGSEGV) in pid.cycle\n"
@@ -124,7 +124,7 @@ TEST_F(GoalsTest, AMuteRtpuIsNoAnswerAndItsTasksMayBeOn) {
   EXPECT_EQ(step(Tick{}), "answer 2 no: no answer from rtpu servo\n");
 }
 
-TEST_F(GoalsTest, ARequestIsKeptOnceAndOneOfNobodyIsNone) {
+TEST_F(GoalsTest, KeepsARequestOnceAndIgnoresUnknownTasks) {
   command(Signal::kOff, {kPid});
   EXPECT_EQ(step(Requested{kReserve, Signal::kOn, kTraj}), "");
   EXPECT_EQ(step(Requested{kReserve, Signal::kOn, kTraj}), "");

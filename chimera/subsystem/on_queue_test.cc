@@ -35,7 +35,7 @@ TEST_F(OnQueueTest, BeginsOneTransactionAfterTheOther) {
             "goal traj 0\nanswer 1 yes traj OFF>ON\ngoal arm 2\ngoal pid 2\nsend servo: on arm pid\n");
 }
 
-TEST_F(OnQueueTest, LetsALaterRequestPassOneThatMustWait) {
+TEST_F(OnQueueTest, ALaterRequestPassesAWaitingOne) {
   goals.add(kArm, kGoalSpawn);
   (void)taken();
   ask(1, {kArm, kPid});
@@ -59,7 +59,7 @@ TEST_F(OnQueueTest, IgnoresATaskThatDoesNotExist) {
   EXPECT_EQ(taken(), "");
 }
 
-TEST_F(OnQueueTest, GoalsGoBeforeThoseWhoWait) {
+TEST_F(OnQueueTest, GoalsGoBeforeWaitingCommands) {
   goals.add(kTraj, kGoalOn);
   (void)taken();
   ask(1, {kArm, kPid});
@@ -78,7 +78,7 @@ TEST_F(OnQueueTest, GoalsToTurnOnWaitUntilEverythingIsSpawned) {
   EXPECT_EQ(advance(), "send spare: on traj\n");
 }
 
-TEST_F(OnQueueTest, LeavesOutAGoalWhoseTaskFailedMeanwhile) {
+TEST_F(OnQueueTest, LeavesOutAGoalWhoseTaskFailed) {
   are_on({kTraj, kPid});
   for (TaskId task : {kArm, kReserve}) goals.add(task, kGoalOn);
   is(kReserve, State::kNotCreated);
@@ -116,7 +116,7 @@ TEST_F(OnQueueTest, ARequestThatAGoalFulfilsIsDoneWithoutASignal) {
   EXPECT_EQ(advance(), "goal traj 0\nanswer 1 yes traj OFF>ON\n");
 }
 
-TEST_F(OnQueueTest, OfNoTaskIsDoneAtOnce) {
+TEST_F(OnQueueTest, ACommandForNoTaskIsDoneAtOnce) {
   ask(1, {});
   EXPECT_EQ(advance(), "answer 1 yes\n");
 }

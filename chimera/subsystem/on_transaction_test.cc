@@ -67,7 +67,7 @@ TEST_F(OnTransactionTest, SendsNothingOfAnIllegalSet) {
   EXPECT_FALSE(transaction.is_under_way());
 }
 
-TEST_F(OnTransactionTest, TurnsOffBackwardsWhatItTurnedOn) {
+TEST_F(OnTransactionTest, AFailureTurnsOffItsTasksInReverse) {
   begin({kPid, kTraj, kArm});
   (void)advance();
   (void)report(kArm, State::kOn);
@@ -78,7 +78,7 @@ TEST_F(OnTransactionTest, TurnsOffBackwardsWhatItTurnedOn) {
   EXPECT_EQ(report(kTraj, State::kOff), "goal arm 0\ngoal traj 0\ngoal pid 0\nanswer 7 no: pid: no sensor\n");
 }
 
-TEST_F(OnTransactionTest, LeavesAloneWhatWasOnBefore) {
+TEST_F(OnTransactionTest, AFailureLeavesTasksOnThatWereOnBefore) {
   are_on({kTraj, kArm});
   begin({kPid, kArm});
   EXPECT_EQ(taken(), "goal pid 2\n");
@@ -93,7 +93,7 @@ TEST_F(OnTransactionTest, FailsWhenAMemberLeavesOnByItself) {
   (void)report(kArm, State::kOn);
   is(kArm, State::kError);
   transaction.on_task_seen(kArm);
-  EXPECT_EQ(report(kTraj, State::kOn), "send spare: off traj\n") << "and no off to one that is in ERROR";
+  EXPECT_EQ(report(kTraj, State::kOn), "send spare: off traj\n") << "and no off to a task in ERROR";
   EXPECT_EQ(report(kTraj, State::kOff),
             "goal arm 0\ngoal traj 0\ngoal pid 0\nanswer 7 no: arm: went from ON to ERROR\n");
 }
@@ -122,7 +122,7 @@ TEST_F(OnTransactionTest, SendsNothingToAnRtpuThatEnded) {
             "goal arm 0\ngoal traj 0\ngoal pid 0\nanswer 7 no: arm: servo ended by signal 9\n");
 }
 
-TEST_F(OnTransactionTest, OfGoalsIsPursuedAgainAfterAnRtpuEnded) {
+TEST_F(OnTransactionTest, KeepsItsGoalsAfterAnRtpuEnded) {
   are_on({kTraj});
   for (TaskId task : {kArm, kPid}) goals.add(task, kGoalOn);
   transaction.begin({0, {kArm, kPid}, TaskId{}, true});
@@ -134,17 +134,18 @@ TEST_F(OnTransactionTest, OfGoalsIsPursuedAgainAfterAnRtpuEnded) {
   EXPECT_TRUE(goals.has(kArm, kGoalOn) && goals.has(kPid, kGoalOn));
 }
 
-TEST_F(OnTransactionTest, OfGoalsTakesUpWhatAnEarlierManagerTurnedOn) {
+TEST_F(OnTransactionTest, ResumesTheGoalsOfAnEarlierManager) {
   are_on({kTraj, kArm});
   for (TaskId task : {kArm, kPid}) goals.add(task, kGoalOn);
   transaction.begin({0, {kArm, kPid}, TaskId{}, true});
   (void)taken();
   EXPECT_EQ(advance(), "send servo: on pid\n");
-  EXPECT_EQ(report(kPid, State::kOff, kNoSensor), "send servo: off arm\n") << "what the earlier one turned on, too";
+  EXPECT_EQ(report(kPid, State::kOff, kNoSensor), "send servo: off arm\n")
+      << "the earlier manager turned arm ON";
   EXPECT_EQ(report(kArm, State::kOff), "refused: pid: no sensor\ngoal arm 0\ngoal pid 0\n");
 }
 
-TEST_F(OnTransactionTest, OfATaskIsToldWithItsSender) {
+TEST_F(OnTransactionTest, ReportsTheSenderOfASignal) {
   transaction.begin({0, {kTraj}, kArm, false});
   (void)advance();
   EXPECT_EQ(report(kTraj, State::kOn), "goal traj 0\nsignal: on sent by arm: traj is ON\n");

@@ -49,7 +49,7 @@ class RemedyTest : public ::testing::Test, public TestParts {
   }
 };
 
-TEST_F(RemedyTest, OfWhatIsThereAlreadyIsNothing) {
+TEST_F(RemedyTest, ASignalWithoutEffectHasNoRemedy) {
   EXPECT_EQ(of(Signal::kOn, State::kOn, State::kOn), "");
   EXPECT_EQ(of(Signal::kOff, State::kOff, State::kOff), "");
   EXPECT_EQ(of(Signal::kSpawn, State::kOff, State::kOn), "");
@@ -63,7 +63,7 @@ TEST_F(RemedyTest, NamesThoseTasksOnlyThatAreNotThereYet) {
   EXPECT_EQ(of(Signal::kReinit, State::kOn, State::kError), "`chimera clear pid`, then `chimera reinit arm pid`");
 }
 
-TEST_F(RemedyTest, OfEverySignalInAllStatesIsLegalAndLeadsAsFarAsItCan) {
+TEST_F(RemedyTest, EveryRemedyIsLegalAndReachesTheState) {
   for (const Signal signal :
        {Signal::kSpawn, Signal::kOn, Signal::kOff, Signal::kKill, Signal::kClear, Signal::kReinit})
     for (const State arm : kAll)

@@ -21,7 +21,7 @@ class SubsystemRivals : public ::testing::Test, public TestWorld {
   }
 };
 
-TEST_F(SubsystemRivals, TheStartLeavesOutWhoseResourceIsTaken) {
+TEST_F(SubsystemRivals, TheStartLeavesOutATaskWhoseResourceIsTaken) {
   make_rivals();
   const std::string told = start_without_reserve();
   EXPECT_EQ(told.find("reserve"), std::string::npos) << told;
@@ -46,7 +46,7 @@ TEST_F(SubsystemRivals, SpawnAndOnAreRefusedWithTheWayToIt) {
   EXPECT_EQ(command(Signal::kSpawn, {kReserve}), "goal reserve 1\nsend spare: spawn reserve\n");
 }
 
-TEST_F(SubsystemRivals, AGoalWaitsUntilTheOtherOneIsKilledAndIsGivenUpAfterTenSeconds) {
+TEST_F(SubsystemRivals, AGoalWaitsForTheKillOfItsRivalAtMostTenSeconds) {
   make_rivals();
   start_without_reserve();
   die(kServo);  // while it is dead, a switch creates reserve
@@ -77,7 +77,7 @@ TEST_F(SubsystemRivals, AStandbyThatHasTakenOverKeepsTheResource) {
   EXPECT_EQ(told.find("spawn pid"), std::string::npos) << told;
 }
 
-TEST_F(SubsystemRivals, OfTwoRtpusThatDieTheOneThatWasOnLastComesBackAlone) {
+TEST_F(SubsystemRivals, AfterTwoDeathsOnlyTheRivalThatWasOnLastComesBack) {
   make_standby();
   start_without_reserve();
   die(kServo);
@@ -102,7 +102,7 @@ TEST_F(SubsystemRivals, OnIsAskedAgainUntilTheDeviceIsReady) {
   EXPECT_NE(end.find("answer 2 yes"), std::string::npos) << end;
 }
 
-TEST_F(SubsystemRivals, AListGoesOnBehindTheOneThatWasNotReady) {
+TEST_F(SubsystemRivals, AListGoesOnBehindATaskThatWasNotReady) {
   start();
   command(Signal::kOff, {kArm, kPid});
   for (TaskId task : {kPid, kArm}) report(task, State::kOff);
@@ -124,7 +124,7 @@ TEST_F(SubsystemRivals, ADeviceThatIsNeverReadyHasItsOff) {
   EXPECT_NE(end.find("answer 2 no: arm: on: it is not ready yet"), std::string::npos) << end;
 }
 
-TEST_F(SubsystemRivals, OffTakesBackWhatAnOnHasBegun) {
+TEST_F(SubsystemRivals, OffTakesBackAnOnThatHasBegun) {
   start();
   command(Signal::kOff, {kArm, kTraj, kPid});
   for (TaskId task : {kPid, kTraj, kArm}) report(task, State::kOff);

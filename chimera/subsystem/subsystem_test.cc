@@ -14,7 +14,7 @@ class SubsystemTest : public ::testing::Test, public TestWorld {
   SubsystemTest() { start(); }
 };
 
-TEST_F(StartTest, RemembersItsGoalsBeforeAnythingElse) {
+TEST_F(StartTest, RemembersItsGoalsFirst) {
   EXPECT_EQ(step(remembered), "goal arm 3\ngoal pid 3\ngoal traj 3\ngoal reserve 1\nremember started\n");
 }
 
@@ -82,7 +82,7 @@ TEST_F(SubsystemTest, NothingOfAListIsSentWhenOneOfItIsIllegal) {
             "answer 4 no: reserve is in state NOT-CREATED, where off is not legal; type `chimera off arm`\n");
 }
 
-TEST_F(SubsystemTest, WhoIsWhereAPersonWantsItIsDoneAlready) {
+TEST_F(SubsystemTest, ATaskInTheWantedStateIsDoneAlready) {
   EXPECT_EQ(command(Signal::kOn, {kArm, kPid}), "answer 1 yes arm ON>ON already pid ON>ON already\n");
   EXPECT_EQ(command(Signal::kOff, {kReserve}), "answer 2 yes reserve OFF>OFF already\n");
   EXPECT_EQ(command(Signal::kOff, {kPid, kReserve}), "send servo: off pid\n");
@@ -91,7 +91,7 @@ TEST_F(SubsystemTest, WhoIsWhereAPersonWantsItIsDoneAlready) {
   EXPECT_EQ(report(kPid, State::kOn), "goal pid 0\nanswer 4 yes pid OFF>ON arm ON>ON already\n");
 }
 
-TEST_F(SubsystemTest, AnOnThatFailsLeavesAloneWhatWasOnAlready) {
+TEST_F(SubsystemTest, AFailedOnLeavesTasksOnThatWereOnAlready) {
   command(Signal::kOff, {kPid});
   report(kPid, State::kOff);
   EXPECT_EQ(command(Signal::kOn, {kPid, kArm}), "goal pid 2\nsend servo: on pid\n");
@@ -99,7 +99,7 @@ TEST_F(SubsystemTest, AnOnThatFailsLeavesAloneWhatWasOnAlready) {
       << "and no off is sent to arm";
 }
 
-TEST_F(SubsystemTest, ARefusalSaysWhatToTypeForTheWholeList) {
+TEST_F(SubsystemTest, ARefusalHasARemedyForTheWholeList) {
   command(Signal::kKill, {kReserve});
   report(kReserve, State::kNotCreated);
   for (std::uint32_t i = 1; i <= 3; ++i) {
@@ -124,7 +124,7 @@ TEST_F(SubsystemTest, OnWaitsForAnOffThatIsNotReportedYet) {
   EXPECT_EQ(report(kReserve, State::kOn), "goal reserve 0\nanswer 2 yes reserve OFF>ON\n");
 }
 
-TEST_F(SubsystemTest, AFailedTransactionTurnsOffBackwardsWhatItTurnedOn) {
+TEST_F(SubsystemTest, AFailedTransactionTurnsOffItsTasksInReverse) {
   command(Signal::kOff, {kArm, kTraj, kPid});
   for (TaskId task : {kPid, kTraj, kArm}) report(task, State::kOff);
   EXPECT_EQ(command(Signal::kOn, {kPid, kTraj, kArm}), "goal arm 2\ngoal traj 2\ngoal pid 2\nsend servo: on arm\n");
@@ -136,7 +136,7 @@ TEST_F(SubsystemTest, AFailedTransactionTurnsOffBackwardsWhatItTurnedOn) {
             "goal arm 0\ngoal traj 0\ngoal pid 0\nanswer 2 no: pid: gains are zero\n");
 }
 
-TEST_F(SubsystemTest, OneThatLeavesOnByItselfFailsTheTransaction) {
+TEST_F(SubsystemTest, ATaskThatLeavesOnByItselfFailsTheTransaction) {
   command(Signal::kOff, {kArm, kTraj, kPid});
   for (TaskId task : {kPid, kTraj, kArm}) report(task, State::kOff);
   command(Signal::kOn, {kPid, kTraj, kArm});
@@ -187,7 +187,7 @@ TEST_F(SubsystemTest, AKillThatIsUnderWayIsWaitedForNoLongerThanItsLimit) {
   now = subsystem->next_due();
   EXPECT_EQ(step(Tick{}), "answer 1 no: no answer from rtpu spare reserve OFF>OFF\n");
   EXPECT_EQ(subsystem->next_due(), kNever);
-  EXPECT_EQ(report(kReserve, State::kNotCreated), "") << "it ends later all the same";
+  EXPECT_EQ(report(kReserve, State::kNotCreated), "") << "it ends later nevertheless";
 }
 
 TEST_F(SubsystemTest, AKillWaitsForAnInitNoLongerThanItsLimitEither) {
@@ -204,12 +204,12 @@ TEST_F(SubsystemTest, AKillWaitsForAnInitNoLongerThanItsLimitEither) {
   EXPECT_NE(said.find("answer 3 no: no answer from rtpu spare"), std::string::npos) << said;
 }
 
-TEST_F(SubsystemTest, ARequestOfATaskIsJudgedAndItsRefusalTold) {
+TEST_F(SubsystemTest, ARequestOfATaskIsJudgedAndItsRefusalReported) {
   EXPECT_EQ(step(Requested{kReserve, Signal::kOn, kTraj}),
             "refused: on sent by traj: tau would have two producers: pid and reserve\n");
 }
 
-TEST_F(SubsystemTest, ADeadRtpuComesBackWithWhatWasOn) {
+TEST_F(SubsystemTest, ADeadRtpuComesBackWithItsTasksOn) {
   EXPECT_EQ(die(kServo),
             "rtpu-ended: servo ended by signal 11 (SIGSEGV) in pid.cycle\n"
             "goal arm 3\ngoal pid 3\nrestart servo\nstart servo\nhandled servo 1\n"
@@ -222,7 +222,7 @@ TEST_F(SubsystemTest, ADeadRtpuComesBackWithWhatWasOn) {
   EXPECT_EQ(report(kPid, State::kOn), "goal arm 0\ngoal pid 0\nstarted: arm pid are ON\n");
 }
 
-TEST_F(SubsystemTest, ATaskInWhosePlaceItsStandbyIsOnComesBackOff) {
+TEST_F(SubsystemTest, ATaskWhoseStandbyIsOnComesBackOff) {
   const StandbySpec pair[] = {{kPid, kReserve}};
   spec.standbys = pair;
   die(kServo);
@@ -234,7 +234,7 @@ TEST_F(SubsystemTest, ATaskInWhosePlaceItsStandbyIsOnComesBackOff) {
 }
 
 // Both rtpus die one after the other. Only the task that had taken over comes back ON.
-TEST_F(SubsystemTest, OfTwoThatStandInForEachOtherTheOneThatDiedLastComesBackOn) {
+TEST_F(SubsystemTest, AfterTwoDeathsTheStandbyThatWasOnComesBackOn) {
   const StandbySpec pair[] = {{kPid, kReserve}};
   spec.standbys = pair;
   die(kServo);
@@ -260,7 +260,7 @@ TEST_F(SubsystemTest, ATaskWhoseStandbyDidNotComeIsTurnedOnAgain) {
   EXPECT_EQ(report(kPid, State::kOff), "goal pid 2\nsend servo: on arm pid\n");
 }
 
-TEST_F(SubsystemTest, WhoWaitsForADeadRtpuIsToldWhy) {
+TEST_F(SubsystemTest, ACommandToADeadRtpuIsAnsweredWithTheCause) {
   command(Signal::kOff, {kPid});
   EXPECT_EQ(die(kServo),
             "rtpu-ended: servo ended by signal 11 (SIGSEGV) in pid.cycle\n"
@@ -292,7 +292,7 @@ TEST_F(SubsystemTest, AfterThreeRestartsInTenSecondsItGivesUpUntilAPersonStartsI
   EXPECT_EQ(report(kTraj, State::kOff), "goal traj 0\nanswer 3 yes traj ERROR>OFF\n");
 }
 
-TEST_F(SubsystemTest, ClearOfOneTaskBringsBackWhatWasLostWithItButNotWhatWasKilled) {
+TEST_F(SubsystemTest, ClearBringsBackLostTasksButNotKilledOnes) {
   command(Signal::kKill, {kReserve});
   report(kReserve, State::kNotCreated);
   for (std::uint32_t i = 1; i <= 4; ++i) {
@@ -308,7 +308,7 @@ TEST_F(SubsystemTest, ClearOfOneTaskBringsBackWhatWasLostWithItButNotWhatWasKill
   EXPECT_EQ(subsystem->state(kReserve), State::kNotCreated);
 }
 
-TEST_F(SubsystemTest, AManagerThatMeetsAGivenUpRtpuSaysHowItsTasksComeBack) {
+TEST_F(SubsystemTest, ANewManagerNamesTheRemedyForAGivenUpRtpu) {
   start();
   remembered.started = true;
   remembered.handled[kServo.index] = 4;
@@ -341,7 +341,7 @@ TEST_F(SubsystemTest, TheNextManagerGoesOnWithATransaction) {
   EXPECT_EQ(report(kPid, State::kOn), "goal arm 0\ngoal traj 0\ngoal pid 0\nstarted: arm traj pid are ON\n");
 }
 
-TEST_F(SubsystemTest, TheNextManagerDealsWithADeathThatNobodySaw) {
+TEST_F(SubsystemTest, TheNextManagerHandlesADeathWithoutAManager) {
   rebirth();
   for (TaskId task : {kArm, kTraj, kPid}) seen(task, State::kOn);
   seen(kReserve, State::kOff);
@@ -352,7 +352,7 @@ TEST_F(SubsystemTest, TheNextManagerDealsWithADeathThatNobodySaw) {
             "rtpu-restarted: servo is restarted, 1 of at most 3 times in 10 s\n");
   rebirth();
   for (TaskId task : {kArm, kPid}) seen(task, State::kOn);
-  EXPECT_EQ(die(kServo), "start servo\n") << "dealt with, but a task of it has goals";
+  EXPECT_EQ(die(kServo), "start servo\n") << "handled, but a task of it has goals";
 }
 
 }  // namespace

@@ -154,7 +154,7 @@ TEST(Group, SuccessorGoesOnWhereTheCounterStands) {
   EXPECT_EQ(values, filled_with(3));
 }
 
-TEST(Group, TellsInitialValuesFromWhatATaskHasPublished) {
+TEST(Group, DistinguishesInitialValuesFromPublications) {
   AlignedMemory memory(kPayload);
   GroupWriter writer(memory.bytes(), kPayload);
   const GroupReader reader(memory.bytes().data(), kPayload);

@@ -95,7 +95,7 @@ TEST(TableLayout, RefusesSizesThatOverflow32Bits) {
             "allowed");
 }
 
-TEST(TableLayout, HashTellsDifferentTablesApart) {
+TEST(TableLayout, DifferentTablesHaveDifferentHashes) {
   const std::uint64_t hash = Planned(kBoth).result.value().hash();
   EXPECT_EQ(Planned(kBoth).result.value().hash(), hash);
   auto renamed = kArm;

@@ -111,7 +111,7 @@ TEST(Component, SaysItsNameAndExtras) {
   EXPECT_EQ(linked_component("complete").abi_version, CHIMERA_ABI_VERSION);
 }
 
-TEST(Component, SaysWhatHoldsBetweenItsConstants) {
+TEST(Component, DeclaresTheRelationsOfItsConstants) {
   EXPECT_EQ(linked_component("minimal").n_orders, 0u);
   ASSERT_EQ(linked_component("ordered").n_orders, 1u);
   EXPECT_STREQ(linked_component("ordered").orders[0].lower, "low");
@@ -158,7 +158,7 @@ TEST(Component, NoMeansTheRightThingInEachMethod) {
   EXPECT_EQ(rig.clear().text, "clear() found the cause still there");
 }
 
-TEST(Component, CycleTellsWhatTheCallSays) {
+TEST(Component, CycleHasTheArgumentsOfTheCall) {
   Rig rig("observer");
   rig.illegal(true);
   rig.dropped(2);

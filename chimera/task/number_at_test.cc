@@ -21,7 +21,7 @@ TEST(NumberAt, ReadsEveryTypeOfNumber) {
   EXPECT_EQ(read(CHIMERA_FLOAT64, -1e300), -1e300);
 }
 
-TEST(NumberAt, WhatIsNoNumberIsZero) {
+TEST(NumberAt, AValueThatIsNoNumberIsZero) {
   EXPECT_EQ(read(CHIMERA_STRING, std::int64_t{0x33323130}), 0);
   EXPECT_EQ(read(CHIMERA_STRUCT, 1.0), 0);
 }

@@ -161,7 +161,7 @@ TEST(Port, AnIndexBeyondTheExtentIsAFault) {
   EXPECT_EQ(rig.cycle().text, "index 2 of a port that has 2");
 }
 
-TEST(Port, TellsAgeFreshnessAndValidity) {
+TEST(Port, HasAgeFreshnessAndValidity) {
   ReaderRig rig;
   ASSERT_TRUE(rig.cycle());
   EXPECT_FALSE(rig.get<bool>("valid"));
@@ -192,7 +192,7 @@ struct Heir {
 };
 CHIMERA_COMPONENT(Heir, "heir", "Outputs what it inherited.");
 
-TEST(Port, AnOutVarTellsHowOldTheValueWasThatItHeldAtOn) {
+TEST(Port, AnOutVarHasTheAgeOfItsValueAtOn) {
   Rig rig("heir");
   ASSERT_TRUE(rig.on());
   EXPECT_EQ(rig.get<std::int64_t>("age"), kNever.count);
@@ -231,7 +231,7 @@ struct Partly {
 };
 CHIMERA_COMPONENT(Partly, "partly", "A struct port with a member left out.");
 
-TEST(Port, WhatCannotBeDeclaredIsRefusedAtConstruction) {
+TEST(Port, ConstructionRefusesAnIllegalPort) {
   alignas(64) std::byte state[4096] = {};
   chimera_fault fault{};
   EXPECT_EQ(linked_component("twice").construct(state, &fault), CHIMERA_FAULT);

@@ -6,7 +6,7 @@
 namespace chimera {
 namespace {
 
-TEST(Profile, WhatAMethodTookOnceIsForgottenByHalvesAndStaysTheLongest) {
+TEST(Profile, ARecentTimeDecaysByHalvesAndTheLongestStays) {
   Profile profile;
   profile.add_call(Method::kOn, milliseconds(8));
   EXPECT_EQ(profile.of_late(Method::kOn), milliseconds(8));

@@ -145,7 +145,7 @@ std::set<std::string> stories_of_the_papers() {
   return stories;
 }
 
-TEST(StateMachine, TellsExactlyTheStoriesOfThePapers) {
+TEST(StateMachine, FollowsTheStoriesOfThePapersExactly) {
   const auto code = stories_of_the_code();
   const auto papers = stories_of_the_papers();
   for (const auto& story : code) EXPECT_TRUE(papers.count(story)) << "only in the code:   " << story;
@@ -176,7 +176,7 @@ TEST(StateMachine, TakesAnAnswerThatIsNotOneForAFault) {
   EXPECT_EQ(answer_of(Method::kError, -1), Answer::kFault);
 }
 
-TEST(StateMachine, ASignalHasArrivedWhereItLeadsAndNowhereElse) {
+TEST(StateMachine, ASignalHasArrivedOnlyInItsTargetState) {
   struct {
     Signal signal;
     State before, after;

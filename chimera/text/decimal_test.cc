@@ -6,7 +6,7 @@
 namespace chimera {
 namespace {
 
-TEST(Decimal, KeepsWhatWasWritten) {
+TEST(Decimal, KeepsSignDigitsAndExponent) {
   const auto number = read_decimal("-12.50e3 kg");
   ASSERT_TRUE(number);
   EXPECT_TRUE(number->value.negative);
@@ -16,7 +16,7 @@ TEST(Decimal, KeepsWhatWasWritten) {
   EXPECT_EQ(number->length, 8u);
 }
 
-TEST(Decimal, IsDecimalWhateverItLooksLike) {
+TEST(Decimal, ReadsDecimalNotationOnly) {
   EXPECT_EQ(read_decimal("010")->nearest, 10);
   EXPECT_EQ(read_decimal("0x10")->length, 1u);
   EXPECT_EQ(read_decimal("+.5")->nearest, 0.5);
@@ -25,7 +25,7 @@ TEST(Decimal, IsDecimalWhateverItLooksLike) {
   EXPECT_EQ(read_decimal("1eV")->length, 1u);
 }
 
-TEST(Decimal, RefusesWhatIsNoFiniteNumber) {
+TEST(Decimal, RefusesTextThatIsNoFiniteNumber) {
   for (const char* text : {"", "-", ".", "e5", "nan", "inf", "--1", " 1", "1e999", "+-1"}) {
     EXPECT_FALSE(read_decimal(text)) << text;
   }

@@ -34,7 +34,7 @@ std::string refusal_of(const Read& read) {
   return "";
 }
 
-TEST(Json, WritesWhatItParsesWithSortedKeysOnOneLine) {
+TEST(Json, WritesParsedJsonWithSortedKeysOnOneLine) {
   EXPECT_EQ(again(R"( {"b" : [1, -2, 2.5, "x", true, false, null, {}],
                        "a": {"z": []}} )"),
             R"({"a":{"z":[]},"b":[1,-2,2.5,"x",true,false,null,{}]})");
@@ -98,7 +98,7 @@ TEST(Json, EscapesStringsAndReplacesBytesThatAreNoUtf8) {
   EXPECT_EQ(Json({{"\xff", 1}}).dump(), "{\"\xef\xbf\xbd\":1}");
 }
 
-TEST(Json, RefusesWhatIsNoJson) {
+TEST(Json, RefusesTextThatIsNoJson) {
   EXPECT_TRUE(refusal("").starts_with("parse error at line 1, column 1: ")) << refusal("");
   EXPECT_TRUE(refusal("{\n\"a\" 1}").starts_with("parse error at line 2, column 5: ")) << refusal("{\n\"a\" 1}");
   EXPECT_EQ(refusal("1e999"), "number overflow parsing '1e999'");

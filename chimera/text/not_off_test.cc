@@ -6,13 +6,13 @@
 namespace chimera {
 namespace {
 
-TEST(NotOff, AFaultIsToldWithItsMethodAndWhatItMayMean) {
+TEST(NotOff, PrintsAFaultWithItsMethodAndConsequence) {
   EXPECT_EQ(not_off_text(Method::kOff, "no answer"), "off failed: no answer: its hardware may not be off");
   EXPECT_EQ(not_off_text(Method::kKill, "no answer"),
             "kill failed: no answer: its hardware may not be off or released");
 }
 
-TEST(NotOff, ADeathIsToldWithItsCause) {
+TEST(NotOff, PrintsADeathWithItsCause) {
   EXPECT_EQ(not_off_text("u ended by signal 9 (SIGKILL) in a.off"),
             "u ended by signal 9 (SIGKILL) in a.off: its hardware may not be off");
 }

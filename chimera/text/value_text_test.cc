@@ -57,7 +57,7 @@ TEST(ValueText, AListOfOneIsAList) {
   EXPECT_EQ(value_text(one, bytes_of(2.0)), "[2] m");
 }
 
-TEST(ValueText, JsonHasNullForWhatItHasNoNumberFor) {
+TEST(ValueText, JsonHasNullForNonFiniteNumbers) {
   const double wild[] = {std::nan(""), HUGE_VAL, 1e308};
   EXPECT_EQ(value_json(form(CHIMERA_FLOAT64, 8, "1", 3), bytes_of(wild)), "[null, null, 1e+308]");
   EXPECT_EQ(value_text(form(CHIMERA_FLOAT64, 8, "1", 3), bytes_of(wild)), "[nan inf 1e+308]");

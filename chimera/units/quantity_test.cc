@@ -63,7 +63,7 @@ TEST(Quantity, RefusesAnotherKindOfUnitAndAMissingOne) {
   EXPECT_EQ(refusal(value_in(quantity("3 rad"), unit("1"), "1")), "expected a quantity in \"1\", found one in \"rad\"");
 }
 
-TEST(Quantity, RefusesWhatIsNone) {
+TEST(Quantity, RefusesMalformedText) {
   EXPECT_EQ(refusal(parse_quantity("fast", our_units())),
             "\"fast\" is no quantity; expected a number and a unit, as in \"1.5 kg\"");
   EXPECT_EQ(refusal(parse_quantity("nan", our_units())),

@@ -29,7 +29,7 @@ TEST(UnitSystem, NamesTheUnknownWordAndTheNearestUnit) {
   EXPECT_EQ(refusal("ft"), "\"ft\" is no known unit; did you mean \"t\"?");
 }
 
-TEST(UnitSystem, RefusesWhatBreaksTheGrammar) {
+TEST(UnitSystem, RefusesTextThatBreaksTheGrammar) {
   EXPECT_EQ(refusal(""), "the unit is empty; write 1 for none");
   EXPECT_EQ(refusal("kg/m.s"),
             "unit \"kg/m.s\": a product after \"/\" can be read in two ways; write a/(b.c) or a.c/b");
@@ -68,7 +68,7 @@ TEST(UnitSystem, SaysWhereItLookedForTheFile) {
   EXPECT_EQ(loaded.error().message.view(), "no unit file; looked for /nowhere/a.xml /nowhere/b.xml");
 }
 
-TEST(UnitSystem, RefusesAFileThatIsNone) {
+TEST(UnitSystem, RefusesAnInvalidUnitFile) {
   const std::string files[] = {testing::TempDir() + "chimera_no_units.xml"};
   std::ofstream(files[0]) << "kind: not even XML\n";
   const auto loaded = UnitSystem::load(files);

@@ -156,7 +156,7 @@ TEST(Configuration, CutsALoopWhereTheDescriptionGivesAValue) {
   EXPECT_EQ(numbers(made.spec().tasks[1].ports[1].value), std::vector<double>{5});
 }
 
-TEST(Configuration, CutsALoopElseAtTheFirstByName) {
+TEST(Configuration, CutsALoopAtTheFirstByNameOtherwise) {
   const Configuration made = legal(
       "subsystem: ring\ntasks:\n"
       "  one: {component: loop, alias: {a: c, b: b}}\n"
@@ -236,7 +236,7 @@ TEST(Configuration, OrdersTasksOutsideTheStartSetToo) {
   EXPECT_EQ(names(made, made.spec().end_order), (Names{"sink", "gain", "source"}));
 }
 
-TEST(Configuration, TellsWhoProducesAndWhoUsesAVariable) {
+TEST(Configuration, NamesProducersAndUsersOfAVariable) {
   const Configuration made = legal(kRobot);
   for (const ConfiguredVariable& variable : made.variables()) {
     if (variable.name != "tau") continue;
@@ -284,7 +284,7 @@ TEST(Configuration, HandsTheSetsAndTheLargestStepsDown) {
   EXPECT_TRUE(std::ranges::equal(made.spec().start, sets[0].order));
 }
 
-TEST(Configuration, OutlivesWhatItWasMadeOfAndItsCopies) {
+TEST(Configuration, OutlivesItsSourcesAndCopies) {
   std::optional<Configuration> first = legal(kRobot);
   const Configuration second = *first;
   first.reset();

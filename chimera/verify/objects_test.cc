@@ -55,7 +55,7 @@ class FaultyObjects : public ::testing::Test {
   }()};
 };
 
-TEST_F(FaultyObjects, AnObjectThatCannotRunIsToldOnceWithItsPlace) {
+TEST_F(FaultyObjects, AnObjectThatCannotRunIsReportedOnceWithItsPlace) {
   EXPECT_EQ(said(), line("is missing"));
   object("");
   EXPECT_EQ(said(), line("is empty (0 bytes)"));

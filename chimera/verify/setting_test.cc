@@ -84,7 +84,7 @@ TEST_F(SettingTest, OneValueFillsAList) {
   EXPECT_EQ(numbers(made->spec().operators[1].value), (std::vector<double>{7, 7}));
 }
 
-TEST_F(SettingTest, AWrongValueIsToldWithItsPlaceAndWhoSaidIt) {
+TEST_F(SettingTest, AWrongValueIsReportedWithItsPlaceAndOption) {
   EXPECT_EQ(refusal({set("limit", "2 N.m"), set("kp", "5 rad")}),
             "arm.yaml:7:7: --set kp '5 rad': operator variable 'kp': expected a quantity in \"N.m/rad\", "
             "found one in \"rad\"");
@@ -93,7 +93,7 @@ TEST_F(SettingTest, AWrongValueIsToldWithItsPlaceAndWhoSaidIt) {
   EXPECT_EQ(refusal({set("kp", "1, q: 2")}).substr(0, 34), "arm.yaml:7:7: --set kp '1, q: 2': ");
 }
 
-TEST_F(SettingTest, AWrongNameIsToldWithTheNearest) {
+TEST_F(SettingTest, AWrongNameIsReportedWithTheNearest) {
   EXPECT_EQ(refusal({set("kpp", "5")}),
             "arm.yaml: --set kpp '5': the file has no operator variable or constant 'kpp'; did you mean 'kp'?");
   EXPECT_EQ(refusal({set("lw.cutoff", "5 Hz")}), "arm.yaml: --set lw.cutoff '5 Hz': no task 'lw'; did you mean 'law'?");
@@ -104,7 +104,7 @@ TEST_F(SettingTest, AWrongNameIsToldWithTheNearest) {
       << refusal({set("law.cutof", "5 Hz")});
 }
 
-TEST_F(SettingTest, WhatATaskProducesAndWhatIsSetTwiceIsRefused) {
+TEST_F(SettingTest, RefusesAProducedVariableAndASecondValue) {
   EXPECT_EQ(refusal({set("tau", "5 N.m")}),
             "arm.yaml:4:3: --set tau '5 N.m': 'tau' is produced by task 'law'; operator variables and constants of the "
             "file can be set");

@@ -27,7 +27,7 @@ TEST(Busy, RoundsToTheNearestNanosecond) {
   EXPECT_EQ(rig.spent().count, 2);
 }
 
-TEST(Busy, RefusesATimeThatIsNone) {
+TEST(Busy, RefusesAnInvalidTime) {
   Rig rig("busy");
   for (double time : {-1e-3, 3601.0, std::nan("")}) {
     rig.set("time", time);

@@ -57,7 +57,7 @@ TEST_P(AnyCar, ReinitTakesAnotherLoadWhereItIsAndAtItsSpeed) {
   EXPECT_NEAR(rig.get<double>("xw"), angle + before * 0.01 / 0.5, 1e-3);
 }
 
-TEST_P(AnyCar, GoesOnWhereThatOneIsWhosePlaceItTakes) {
+TEST_P(AnyCar, StartsAtTheStateOfTheTaskThatItReplaces) {
   rig.set("start_speed", 5.0);
   rig.resource("road", "0:0 200:0.1");
   ASSERT_TRUE(rig.init());

@@ -29,7 +29,7 @@ TEST_F(CinterpTest, BeginsWhereTheToolIs) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(xr().position[i], kHere.position[i]);
 }
 
-TEST_F(CinterpTest, GoesOnFromTheReferenceThatIsHandedOver) {
+TEST_F(CinterpTest, StartsAtTheHandedOverReference) {
   Pose ahead = kHere;
   ahead.position[1] += 0.03;
   rig.set("xr", ahead);
@@ -90,7 +90,7 @@ TEST_F(CinterpTest, StandsWithoutGainAndWhileTheConfigurationIsIllegal) {
   EXPECT_EQ(xr().position[0], 0.5);
 }
 
-TEST_F(CinterpTest, RefusesAPoseThatIsNoneAndGoesOnAfterIt) {
+TEST_F(CinterpTest, RefusesAnInvalidPoseAndGoesOnAfterIt) {
   rig.set("xd", Pose{{0, 0, 0}, {0, 0, 0, 0}});
   EXPECT_EQ(rig.refusal(), "a pose is not finite, or has no orientation");
   rig.set("xd", kHere);

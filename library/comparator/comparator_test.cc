@@ -56,7 +56,7 @@ TEST_F(ComparatorTest, FollowsALevelThatMoves) {
   EXPECT_EQ(answers({11}), "0");
 }
 
-TEST_F(ComparatorTest, GoesOnFromTheAnswerThatStands) {
+TEST_F(ComparatorTest, StartsAtItsLastAnswer) {
   give("above", 0, 2);
   ASSERT_TRUE(rig.init());
   EXPECT_EQ(answers({12}), "1");
@@ -85,7 +85,7 @@ TEST_F(ComparatorTest, NaNIsAFaultOfThatCycleAlone) {
   EXPECT_EQ(SignalRig("comparator").cycle().status, CHIMERA_ABORTED);
 }
 
-TEST_F(ComparatorTest, RefusesWhatCouldNeverAnswer) {
+TEST_F(ComparatorTest, RefusesConstantsThatNeverTrigger) {
   EXPECT_EQ(run("over", 0, 0, {}), "when must be above, below, inside or outside");
   EXPECT_EQ(run("above", 0, -1, {}), "width and hysteresis must be 0 or more");
   EXPECT_EQ(run("above", std::nan(""), 0, {}), "width and hysteresis must be 0 or more");

@@ -110,7 +110,7 @@ TEST_F(ComputedTorqueTest, AnErrorTakesTheTorqueOfItsAcceleration) {
   EXPECT_NEAR(torque()[5], (kPuma560Links[5].rotor + kPuma560Links[5].inertia[2]) * 10 * 10 * 0.2, 1e-12);
 }
 
-TEST_F(ComputedTorqueTest, StaysWithinWhatTheDrivesGive) {
+TEST_F(ComputedTorqueTest, StaysWithinTheTorqueOfTheDrives) {
   rig.set("tau_max", 5.0, 1);
   ASSERT_TRUE(rig.init());
   ASSERT_TRUE(rig.cycle());

@@ -35,7 +35,7 @@ TEST_F(ControlTest, StaysWithinItsLimitsAndDoesNotWindUpAtThem) {
   EXPECT_NEAR(cycle(30, 30), 0, 1e-9);
 }
 
-TEST_F(ControlTest, OnGoesOnFromTheForceThatStands) {
+TEST_F(ControlTest, OnStartsAtTheLastForce) {
   rig.set("ki", 0.0);
   rig.set("fd", 1000.0);
   ASSERT_TRUE(rig.init());

@@ -49,7 +49,7 @@ TEST(Pi, Holds100KilometresAnHourOnAHillWithin1) {
   EXPECT_NEAR(drive.car.speed() * 3.6, 100, 0.05);
 }
 
-TEST(Pi, ComesBackSoonAfterADriverWhoHeldTheCarFast) {
+TEST(Pi, RecoversSoonAfterAFastDriver) {
   Drive drive;
   drive.car.place(130 / 3.6);
   drive.pi.start(600);

@@ -41,7 +41,7 @@ TEST_F(ControlPmTest, IsTheControlWithItsForceSplit) {
   }
 }
 
-TEST_F(ControlPmTest, OnGoesOnFromWhatTheEngineOrTheBrakesDo) {
+TEST_F(ControlPmTest, OnStartsAtTheForceOfTheEngineOrTheBrakes) {
   rig.set("ki", 0.0);
   rig.set("fde", 1000.0);
   rig.set("fdw", 0.0);
@@ -66,7 +66,7 @@ TEST_F(ControlPmTest, OnDoesNotGoOnFromAnOldForce) {
   EXPECT_NEAR(cycle(20, 19.5), 0.5 * 2500, 1e-9);
 }
 
-TEST_F(ControlPmTest, HoldsItsForcesWhileTheConfigurationIsIllegalAndRefusesWhatIsNotFinite) {
+TEST_F(ControlPmTest, HoldsItsForcesUnderTheFlagAndRefusesNonFiniteInputs) {
   ASSERT_TRUE(rig.init());
   const double force = cycle(20, 19.9);
   rig.illegal(true);

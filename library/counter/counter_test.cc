@@ -77,7 +77,7 @@ TEST(Counter, StandsAtItsLimitsOrWraps) {
   EXPECT_EQ(rig.run("ru"), kMostCounted);
 }
 
-TEST(Counter, GoesOnFromTheCountThatStandsAndMissesWhatCameWhileItWasOff) {
+TEST(Counter, KeepsItsCountAndMissesEdgesWhileOff) {
   Counted rig;
   rig.limits(0, 100, 5);
   ASSERT_TRUE(rig.init() && rig.on());

@@ -90,7 +90,7 @@ TEST_F(CsvLogTest, CountsTheRowsThatFindNoRoomAndGoesOnWhenThereIsSome) {
   EXPECT_EQ(text(), "t(s),in[0][0],in[0][1],in[1][0],in[1][1]\n0.001,,,,\n0.002,,,,\n0.006,,,,\n");
 }
 
-TEST_F(CsvLogTest, TellsAScalarByItsNumberAndAMatrixRowByRow) {
+TEST_F(CsvLogTest, NamesAScalarByItsNumberAndAMatrixRowByRow) {
   const auto written = [this](std::uint32_t rows, std::uint32_t columns) {
     Rig log("csv_log");
     log.shape("n", rows, columns);
@@ -150,7 +150,7 @@ TEST_F(CsvLogTest, AFullDiskCostsRowsAndNoCycleAndKillSaysHowMany) {
   path = "";
 }
 
-TEST_F(CsvLogTest, TellsAtOnceAndOnceThatTheDiskRefusesAndThatRowsAreLost) {
+TEST_F(CsvLogTest, ReportsARefusingDiskAndLostRowsAtOnceAndOnce) {
   path = "/dev/full";
   start(10);
   for (int i = 0; i < 4; ++i) ASSERT_TRUE(rig.cycle());
@@ -177,7 +177,7 @@ TEST_F(CsvLogTest, NamesItsColumnsByVariableElementAndUnit) {
   EXPECT_EQ(text(), "t(s),q[0][0](rad),q[0][1](rad),speed[0][0](m.s-1),speed[0][1](m.s-1),ratio[0][0],ratio[0][1]\n");
 }
 
-TEST_F(CsvLogTest, ADiskThatFailsIsTold) {
+TEST_F(CsvLogTest, ReportsAWriteErrorOfTheDisk) {
   path = "/proc/self/mem";  // no memory is mapped at its start, so a write fails with EIO
   start(10);
   ASSERT_TRUE(rig.cycle());

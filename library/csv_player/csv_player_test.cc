@@ -84,7 +84,7 @@ TEST_F(CsvPlayerTest, BeginsAgainWhenAsked) {
   EXPECT_FALSE(rig.get<bool>("done"));
 }
 
-TEST_F(CsvPlayerTest, PlaysWhatCsvLogWrote) {
+TEST_F(CsvPlayerTest, PlaysAFileOfCsvLog) {
   {
     Rig log("csv_log");
     log.instances("in", 1);

@@ -101,7 +101,7 @@ TEST_F(DampedLeastSquaresTest, SpeedsAreZeroWhileTheConfigurationIsIllegalAndAft
   EXPECT_EQ(rig.six("qd_ref"), Puma560::Vector{});
 }
 
-TEST_F(DampedLeastSquaresTest, RefusesWhatIsNotFiniteAndGoesOnAfterIt) {
+TEST_F(DampedLeastSquaresTest, RefusesNonFiniteInputsAndGoesOnAfterThem) {
   rig.set("xd", Pose{{kNotANumber, 0, 0}, {1, 0, 0, 0}});
   EXPECT_EQ(rig.refusal(), "a pose is not finite, or has no orientation");
   stand(kBent);

@@ -29,7 +29,7 @@ TEST(Deadband, HasNoJumpAnywhere) {
   }
 }
 
-TEST(Deadband, OfNoWidthChangesNothing) {
+TEST(Deadband, ZeroWidthChangesNothing) {
   SignalRig rig("deadband");
   rig.set("width", 0.0);
   ASSERT_TRUE(rig.init());

@@ -36,7 +36,7 @@ TEST(Edge, IsTrueForOneCycleAtTheEdgesThatCount) {
   }
 }
 
-TEST(Edge, LastsAsLongAsItIsTold) {
+TEST(Edge, APulseLastsForItsConfiguredTime) {
   Pulses rig("rising", 3e-3);
   ASSERT_TRUE(rig.init() && rig.on());
   EXPECT_EQ(rig.run("011111000"), "011100000");
@@ -56,7 +56,7 @@ TEST(Edge, CountsTheTimeOfDroppedReleases) {
   EXPECT_FALSE(rig.get<bool>("y"));
 }
 
-TEST(Edge, WhatChangedWhileItWasOffIsNoEdgeAndNeitherIsTheFirstValue) {
+TEST(Edge, AChangeWhileOffAndTheFirstValueAreNoEdges) {
   Pulses rig("both", 5e-3);
   ASSERT_TRUE(rig.init() && rig.on());
   EXPECT_EQ(rig.run("1"), "0");

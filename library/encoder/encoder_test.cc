@@ -146,7 +146,7 @@ TEST(Encoder, AWindowTakesTheMeanOfUnevenCounts) {
   }
 }
 
-TEST(Encoder, ACountOf32BitsWrapsByItselfAndOthersWhereTheyAreTold) {
+TEST(Encoder, ACountOf32BitsWrapsByItselfAndOthersAtWrap) {
   Count<std::int32_t> rig;
   rig.begin();
   EXPECT_EQ(rig.see(2147483640), 0);
@@ -193,7 +193,7 @@ TEST(Encoder, TheFirstIndexOrEveryOneIsZero) {
   }
 }
 
-TEST(Encoder, AnIndexThatIsTrueAsItIsFoundFirstIsNone) {
+TEST(Encoder, AnIndexThatIsTrueAtTheFirstReadingDoesNotCount) {
   Count<std::int32_t> rig(true);
   rig.set("in", true, 0, 1);
   rig.begin();
@@ -206,7 +206,7 @@ TEST(Encoder, AnIndexThatIsTrueAsItIsFoundFirstIsNone) {
   EXPECT_EQ(rig.see(25), 5);
 }
 
-TEST(Encoder, GoesOnFromTheCountThatStandsAndLosesItsReference) {
+TEST(Encoder, KeepsItsCountAndLosesItsReference) {
   Count<std::int32_t> rig(true);
   rig.begin();
   rig.see(0);
@@ -230,7 +230,7 @@ TEST(Encoder, CountsEachElementByItself) {
   EXPECT_EQ(rig.get<std::int64_t>("count", 1), -1);
 }
 
-TEST(Encoder, ACountThatIsNoneIsAFaultOfThatCycleAlone) {
+TEST(Encoder, AnInvalidCountIsAFaultOfItsCycleOnly) {
   Count<double> rig;
   rig.begin();
   EXPECT_EQ(rig.cycle().status, CHIMERA_ABORTED);

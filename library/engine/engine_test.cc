@@ -29,7 +29,7 @@ TEST_F(EngineTest, ReinitTakesAnotherLimit) {
   EXPECT_DOUBLE_EQ(cycle(1000), 0.25);
 }
 
-TEST_F(EngineTest, GoesOnFromAPresentCommandAndNotFromAnOldOne) {
+TEST_F(EngineTest, StartsAtAFreshCommandOnly) {
   ASSERT_TRUE(rig.init());
   rig.set("gas", 0.5);
   rig.inherit("gas", milliseconds(20), milliseconds(20));

@@ -6,7 +6,7 @@
 namespace chimera::library {
 namespace {
 
-TEST(FwdkinJacobian, TellsWhereTheToolIsAndHowItMovesWithEachJoint) {
+TEST(FwdkinJacobian, PublishesThePoseOfTheToolAndItsMotionWithEachJoint) {
   ArmRig rig("fwdkin_jacobian");
   rig.build_puma();
   rig.give("q", kBent);

@@ -14,7 +14,7 @@ struct GfwdkinTest : ::testing::Test {
   }
 };
 
-TEST_F(GfwdkinTest, TellsWhereTheToolIsFromOnAlready) {
+TEST_F(GfwdkinTest, PublishesThePoseOfTheToolFromOn) {
   ASSERT_TRUE(rig.init());
   ASSERT_TRUE(rig.on());
   EXPECT_LT(distance(rig.pose("xm"), Puma560::forward(kBent)), 1e-12);

@@ -127,7 +127,7 @@ TEST_F(GinvkinTest, NarrowerLimitsCutTheReferenceAtOnce) {
   EXPECT_EQ(rig.six("q_ref")[1], kBent[1] - 0.05);
 }
 
-TEST_F(GinvkinTest, JointsToSpareDoWhatALimitKeepsAnotherFrom) {
+TEST_F(GinvkinTest, SpareJointsReplaceAJointAtItsLimit) {
   ArmRig four("ginvkin");
   four.set("ndof", std::int32_t{4});
   DhChain chain;
@@ -149,7 +149,7 @@ TEST_F(GinvkinTest, JointsToSpareDoWhatALimitKeepsAnotherFrom) {
 }
 
 // The drives lag behind the command: starting at the measurement would step back by that lag.
-TEST_F(GinvkinTest, GoesOnFromTheCommandThatIsHandedOverAndElseFromTheMeasurement) {
+TEST_F(GinvkinTest, StartsAtTheHandedOverCommandOrTheMeasurement) {
   Puma560::Vector ahead = kBent;
   for (double& angle : ahead) angle += 0.05;
   want(Puma560::forward(ahead));
@@ -169,7 +169,7 @@ TEST_F(GinvkinTest, GoesOnFromTheCommandThatIsHandedOverAndElseFromTheMeasuremen
   EXPECT_EQ(rig.six("q_ref")[2], kBent[2]);
 }
 
-TEST_F(GinvkinTest, RefusesLimitsThatAreNone) {
+TEST_F(GinvkinTest, RefusesInvalidLimits) {
   rig.set("q_min", 1.0, 3);
   rig.set("q_max", 0.5, 3);
   EXPECT_EQ(rig.init().text, "a joint limit is not a number, or q_min is above q_max");
@@ -177,7 +177,7 @@ TEST_F(GinvkinTest, RefusesLimitsThatAreNone) {
   EXPECT_EQ(rig.reinit().text, "a joint limit is not a number, or q_min is above q_max");
 }
 
-TEST_F(GinvkinTest, RefusesWhatIsNotFiniteAndGoesOnAfterIt) {
+TEST_F(GinvkinTest, RefusesNonFiniteInputsAndGoesOnAfterThem) {
   rig.set("xr", Pose{{0, kNotANumber, 0}, {1, 0, 0, 0}});
   EXPECT_EQ(rig.refusal(), "xr is not finite or no orientation");
   rig.set("xr", Pose{{0.5, 0, 0}, {0.5, 0, 0, 0}});

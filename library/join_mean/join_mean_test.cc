@@ -34,7 +34,7 @@ TEST(JoinMean, WeighsEachInput) {
   EXPECT_DOUBLE_EQ(rig.get<double>("out"), 12.5);
 }
 
-TEST(JoinMean, LeavesOutWhatIsNotValidYet) {
+TEST(JoinMean, LeavesOutInvalidInputs) {
   Joined rig(2, 0);
   rig.set("in", 7.0, 0, 1);
   ASSERT_TRUE(rig.init());

@@ -34,7 +34,7 @@ TEST_F(JoinPriorityTest, TakesTheFirstThatHasBeenWritten) {
   EXPECT_EQ(rig.get<double>("out", 1), 11);
 }
 
-TEST_F(JoinPriorityTest, LeavesWhatIsTooOldAndComesBackWhenItIsRenewed) {
+TEST_F(JoinPriorityTest, LeavesAnInputThatIsTooOldUntilItIsRenewed) {
   start(0.01);
   give(0, 1);
   give(1, 5);
@@ -49,7 +49,7 @@ TEST_F(JoinPriorityTest, LeavesWhatIsTooOldAndComesBackWhenItIsRenewed) {
   EXPECT_EQ(rig.get<double>("out", 0), 2);
 }
 
-TEST_F(JoinPriorityTest, OfNoAgeCountsHoweverOld) {
+TEST_F(JoinPriorityTest, WithoutAMaximumAgeAnOldInputCounts) {
   start(0);
   give(0, 1);
   ASSERT_TRUE(rig.cycle(seconds(1000)));

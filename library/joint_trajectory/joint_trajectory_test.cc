@@ -63,7 +63,7 @@ TEST_F(JointTrajectoryTest, StartsAgainFromTheReferenceThatStands) {
 }
 
 // A predecessor in motion: each profile continues with its velocity and acceleration.
-TEST_F(JointTrajectoryTest, GoesOnFromTheMotionThatIsHandedOver) {
+TEST_F(JointTrajectoryTest, StartsAtTheHandedOverMotion) {
   for (const char* profile : {"quintic", "jerk", "trapezoid"}) {
     SCOPED_TRACE(profile);
     give(2.0);

@@ -100,7 +100,7 @@ TEST(SevenSegments, IsAlwaysAtSomeLimit) {
   }
 }
 
-TEST(SevenSegments, StretchedTakesExactlySoLongAndGoesTheSameWay) {
+TEST(SevenSegments, AStretchedMotionHasTheGivenDurationAndThePathOfTheOriginal) {
   SevenSegments motion(1, 3, {1, 2, 5}), same = motion;
   same.stretch(2 * motion.least_duration());
   EXPECT_DOUBLE_EQ(same.duration(), 2 * motion.duration());

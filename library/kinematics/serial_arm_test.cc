@@ -122,7 +122,7 @@ TEST(PoseSearch, EndsNearAPoseThatIsOutOfReach) {
   for (double angle : q) EXPECT_TRUE(std::isfinite(angle));
 }
 
-TEST(PoseSearch, TakesNoMoreStepsThanItsBoundWhateverIsAsked) {
+TEST(PoseSearch, TakesNoMoreStepsThanItsBound) {
   const SerialArm arm = puma();
   RandomJoints joints;
   PoseSearch search;

@@ -27,7 +27,7 @@ TEST(Limit, CutsEachElementAtItsOwnLimits) {
   EXPECT_EQ(rig.get<double>("y", 2), 1);
 }
 
-TEST(Limit, LeavesWhatIsWithinToTheBit) {
+TEST(Limit, ANumberWithinTheLimitsIsUnchangedToTheBit) {
   SignalRig rig("limit");
   rig.set("low", -kInfinity);
   rig.set("high", 10.0);
@@ -65,7 +65,7 @@ TEST(Limit, AnInputThatIsNotFiniteIsAFaultThatLeavesTheOutputAndIsRecovered) {
   EXPECT_EQ(rig.get<double>("y", 1), 1);
 }
 
-TEST(Limit, WaitsForAnInputThatNobodyHasWrittenYet) {
+TEST(Limit, AbortsItsCycleUntilTheInputIsWritten) {
   SignalRig rig("limit");
   rig.set("low", -1.0);
   rig.set("high", 1.0);

@@ -80,7 +80,7 @@ TEST(Logic, CountsEveryElementOfAList) {
   EXPECT_FALSE(rig.get<bool>("out"));
 }
 
-TEST(Logic, WaitsForAnInputThatNobodyHasWritten) {
+TEST(Logic, AbortsItsCycleWhileAnInputIsUnwritten) {
   Combined rig("or", 2);
   rig.set("in", true, 0, 0);
   ASSERT_TRUE(rig.init());
@@ -89,7 +89,7 @@ TEST(Logic, WaitsForAnInputThatNobodyHasWritten) {
   EXPECT_EQ(rig.cycle().status, CHIMERA_ABORTED);
 }
 
-TEST(Logic, RefusesWhatDoesNotFitItsFunction) {
+TEST(Logic, RefusesInputsThatDoNotFitItsFunction) {
   EXPECT_EQ(Combined("and", 0).init().text, "there is nothing to combine: name at least one input");
   EXPECT_EQ(Combined("AND", 2).init().text, "function must be and, or, xor, nand, nor, xnor, not or latch");
   EXPECT_EQ(Combined("not", 2).init().text, "not has one input");

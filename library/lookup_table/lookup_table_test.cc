@@ -81,7 +81,7 @@ TEST(LookupTable, NaNIsAFaultOfThatCycleAlone) {
   EXPECT_EQ(rig.step(0.5), 1);
 }
 
-TEST(LookupTable, RefusesATableThatIsNone) {
+TEST(LookupTable, RefusesAnInvalidTable) {
   EXPECT_EQ(Table().make({0, 1, 1, 2}, {0, 0, 0, 0}).text,
             "at[2] is 1, after 1: each point of at must be above the one before");
   EXPECT_EQ(Table().make({0, -1}, {0, 0}).text, "at[1] is -1, after 0: each point of at must be above the one before");

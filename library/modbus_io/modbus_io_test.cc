@@ -249,7 +249,7 @@ TEST_F(ModbusIoTest, TheSafeFramesWriteIdleOverASecondConnection) {
   ::close(second);
 }
 
-TEST_F(ModbusIoTest, WhatIsNotFiniteIsNeverWrittenAndTheRestIsHeldWithinTheRegister) {
+TEST_F(ModbusIoTest, NeverWritesANonFiniteNumberAndClampsToTheRegister) {
   start(device.tcp());
   rig.set("holding", 7.0, 0, 0);
   rig.set("holding", 1e300, 0, 1);
@@ -308,7 +308,7 @@ TEST_F(ModbusIoTest, ADeviceThatSaysNothingDelaysNoCycle) {
   EXPECT_LT(std::clock() - before, CLOCKS_PER_SEC);
 }
 
-TEST_F(ModbusIoTest, RefusesWhatIsNoDeviceOrHasOtherRegisters) {
+TEST_F(ModbusIoTest, RefusesAnUnknownDeviceOrOtherRegisters) {
   const auto answer = [this](const std::string& where) {
     rig.resource("device", where.c_str());
     return rig.init().text;

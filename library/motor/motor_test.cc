@@ -30,7 +30,7 @@ TEST_F(MotorTest, ReinitTakesAnotherLimit) {
   EXPECT_EQ(cycle(-3000), -2000);
 }
 
-TEST_F(MotorTest, GoesOnFromAPresentCommandAndNotFromAnOldOne) {
+TEST_F(MotorTest, StartsAtAFreshCommandOnly) {
   ASSERT_TRUE(rig.init());
   rig.set("fm", 3000.0);
   rig.inherit("fm", milliseconds(20), milliseconds(20));

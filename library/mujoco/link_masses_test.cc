@@ -13,7 +13,7 @@ Joints random_joints(std::mt19937& random, double most) {
 }
 
 // Rows and masses read from the model give the torques that MuJoCo computes.
-TEST(LinkMasses, OfAModelGiveMujocosInverseDynamics) {
+TEST(LinkMasses, GiveTheInverseDynamicsOfMujoco) {
   std::mt19937 random(560);
   double farthest = 0, largest = 0;
   for (std::size_t a = 0; a < 30; ++a) {
@@ -40,7 +40,7 @@ TEST(LinkMasses, OfAModelGiveMujocosInverseDynamics) {
   EXPECT_LT(farthest / largest, 1e-11);
 }
 
-TEST(LinkMasses, WhatSlidesOnALinkAndTheSceneryAreCountedWhereTheyAre) {
+TEST(LinkMasses, IncludeBodiesThatSlideOnALinkButNotTheScenery) {
   MujocoArm mujoco(R"(<mujoco><worldbody>
     <body><joint axis="0 0 1" armature="0.3" damping="2"/>
       <inertial pos="0.5 0 0" mass="2" diaginertia="0.1 0.2 0.2"/>

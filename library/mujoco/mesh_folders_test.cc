@@ -61,7 +61,7 @@ TEST_F(MeshFoldersTest, PathsAreTakenFromTheFolderOfTheFileAndABareNameLast) {
   EXPECT_EQ(find("base.stl", "../meshes"), "ws/arm_description/meshes/base.stl");
 }
 
-TEST_F(MeshFoldersTest, WhatLeadsOutOrIsNoFileIsNotFoundAndSaysWhy) {
+TEST_F(MeshFoldersTest, RefusesAPathThatLeadsOutOrNamesNoFile) {
   files.put(files.root / "ws" / "secret.stl", "x");
   files.put(files.package / "meshes" / "folder.stl" / "x", "x");
   const auto refusal = [&](const std::string& name) {

@@ -88,7 +88,7 @@ TEST_F(ModelNumbers, SoundFilesPassAndLoadNamesCalledNanToo) {
   EXPECT_TRUE(loads(sound(kMjcf)));
 }
 
-TEST_F(ModelNumbers, WhatIsNoFiniteNumberIsRefusedWhereverItStands) {
+TEST_F(ModelNumbers, RefusesANonFiniteNumberInEveryAttribute) {
   std::size_t files = 0;
   for (const std::string marked : {kUrdf, kMjcf}) {
     for (const std::string word : {"nan", "-NaN", "inf", "+Infinity", "&#110;an", "nan(1)"}) {
@@ -103,7 +103,7 @@ TEST_F(ModelNumbers, WhatIsNoFiniteNumberIsRefusedWhereverItStands) {
 }
 
 // Either check_model_numbers or MuJoCo refuses each of these files.
-TEST_F(ModelNumbers, GarbageAndWhatIsLeftOutMakesNoArm) {
+TEST_F(ModelNumbers, GarbageAndMissingNumbersMakeNoArm) {
   std::size_t files = 0;
   for (const std::string marked : {kUrdf, kMjcf}) {
     for (const std::string word : {"x", "1x", "0x10", "1,2", "1e999", "--1"}) {
@@ -116,7 +116,7 @@ TEST_F(ModelNumbers, GarbageAndWhatIsLeftOutMakesNoArm) {
   EXPECT_EQ(files, 294u);
 }
 
-TEST_F(ModelNumbers, NamesFileLineElementAndWhatWasExpected) {
+TEST_F(ModelNumbers, NamesFileLineElementAndTheExpectation) {
   EXPECT_EQ(refusal("<robot name='r'>\n<joint name='elbow'>\n<axis xyz='0 nan 0'/></joint></robot>"),
             ":3: attribute 'xyz' of <axis>: found 'nan', expected a finite number; write one, or leave the attribute "
             "out");
@@ -142,13 +142,13 @@ TEST_F(ModelNumbers, LooksIntoIncludedFilesAndEndsWhereOneIncludesItself) {
   EXPECT_EQ(refusal("<mujoco><include file='" + path + "'/></mujoco>"), "sound");
 }
 
-TEST_F(ModelNumbers, WhatIsNoXmlIsLeftToMujoco) {
+TEST_F(ModelNumbers, TextThatIsNoXmlIsLeftToMujoco) {
   for (const char* text : {"", "<", "<a", "<a b", "<a b=", "<a b='", "<!--", "<a b=c d='nan'/>", "</", "<?"})
     EXPECT_EQ(refusal(text), "sound") << text;
 }
 
 // Every attribute of MuJoCo's schema is either in a list here or holds numbers.
-TEST_F(ModelNumbers, EveryAttributeOfTheSchemaIsKnownForWhatItHolds) {
+TEST_F(ModelNumbers, TheKindOfEveryAttributeOfTheSchemaIsKnown) {
   std::vector<char> schema(200000);
   ASSERT_GT(mj_printSchema(nullptr, schema.data(), static_cast<int>(schema.size()), 0, 0), 0);
   std::istringstream lines{std::string(schema.data())};  // "element (*)  attribute attribute", or attributes alone

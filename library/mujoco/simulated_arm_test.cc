@@ -133,7 +133,7 @@ TEST_F(SimulatedArmTest, ReadsAUrdf) {
   EXPECT_EQ(arm.arm().high[0], 1.5);
 }
 
-TEST_F(SimulatedArmTest, RefusesWhatIsNoArm) {
+TEST_F(SimulatedArmTest, RefusesAModelWithoutAnArm) {
   EXPECT_EQ(refusal("<mujoco><worldbody/></mujoco>"), ": found no joint that turns a link of an arm");
   EXPECT_EQ(refusal(kTwoLinks, "toes"), ": there is no body and no site 'toes'");
   EXPECT_EQ(refusal(kTwoLinks, "finger"), ": joint 'without a name' is no hinge: an arm has hinges only");

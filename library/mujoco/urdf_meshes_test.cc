@@ -129,7 +129,7 @@ TEST_F(UrdfMeshesTest, AnObjFileOfFacesWithoutVerticesIsNoMesh) {
   }
 }
 
-TEST_F(UrdfMeshesTest, LinesKeepTheirNumbersAndEverythingElseStays) {
+TEST_F(UrdfMeshesTest, LinesKeepTheirNumbersAndOtherElementsStay) {
   const std::string text = "<robot name='r'>\n<link name='a'>\n" + files.mesh("x.dae") + "<!-- <mesh/> -->\n</link>" +
                            files.mesh("y.dae", "visual") + "<link name='b'><inertial/></link>\n</robot>";
   ASSERT_TRUE(UrdfMeshes::are_in(text));

@@ -35,7 +35,7 @@ struct RobotTest : ::testing::Test {
   }
 };
 
-TEST_F(RobotTest, TellsHowItIsBuiltAtInit) {
+TEST_F(RobotTest, PublishesItsGeometryAtInit) {
   Rig rig("mujoco_robot");
   start(rig, "q_ref");
   EXPECT_EQ(rig.get<std::int32_t>("ndof"), 2);
@@ -70,7 +70,7 @@ TEST_F(RobotTest, FallsWithoutTorque) {
   EXPECT_GT(rig.get<double>("q", 0), 0.02);
 }
 
-TEST_F(RobotTest, ARobotThatTakesTorquesTellsWhatItsLinksWeigh) {
+TEST_F(RobotTest, ARobotThatTakesTorquesPublishesTheMassesOfItsLinks) {
   Rig rig("mujoco_robot_torque");
   start(rig, "tau");
   const auto link = rig.get<library::LinkMass>("links", 1);  // a sphere of water beside an axis along y
@@ -117,7 +117,7 @@ TEST_F(RobotTest, ReinitTakesOtherLimitsWhereItStands) {
   EXPECT_EQ(rig.get<double>("tau_max", 0), 5);
 }
 
-TEST_F(RobotTest, GoesOnWhereThatOneIsWhosePlaceItTakes) {
+TEST_F(RobotTest, StartsAtTheStateOfTheTaskThatItReplaces) {
   constexpr std::pair<const char*, const char*> kRobots[] = {
       {"mujoco_robot", "q_ref"}, {"mujoco_robot_velocity", "qd_ref"}, {"mujoco_robot_torque", "tau"}};
   for (const auto& [component, command] : kRobots) {

@@ -26,7 +26,7 @@ TEST(Offset, ElementByElement) {
   EXPECT_EQ(rig.get<double>("y", 1), 2);
 }
 
-TEST(Offset, NamesWhatIsNotFiniteAndWaitsForWhatNobodyHasWritten) {
+TEST(Offset, NamesAValueThatIsNotFiniteAndAbortsOnAnUnwrittenInput) {
   SignalRig rig("offset");
   rig.set("x", 1.0);
   EXPECT_EQ(rig.cycle().status, CHIMERA_ABORTED);

@@ -21,7 +21,7 @@ TEST(OnEvent, SpendsItsTimeForEveryEventAndCounts) {
   }
 }
 
-TEST(OnEvent, RefusesATimeThatIsNone) {
+TEST(OnEvent, RefusesAnInvalidTime) {
   Rig rig("on_event");
   for (double time : {-1e-3, 3601.0, std::nan("")}) {
     rig.set("time", time);

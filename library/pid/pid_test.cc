@@ -147,7 +147,7 @@ TEST_F(PidTest, TakesAnErrorWithinTheDeadbandForNone) {
   EXPECT_DOUBLE_EQ(step(-0.75, 0), -2.5);
 }
 
-TEST_F(PidTest, GoesOnFromTheOutputThatStands) {
+TEST_F(PidTest, StartsAtItsLastOutput) {
   give(4, 1, 0.1);
   rig.set("ff", 2.0), rig.set("reference_weight", 0.3);
   rig.set("output", 7.0);
@@ -155,7 +155,7 @@ TEST_F(PidTest, GoesOnFromTheOutputThatStands) {
   EXPECT_NEAR(step(10, 8), 7 + 1 * 2 * 1e-3, 1e-12);
 }
 
-TEST_F(PidTest, GoesOnFromTheOutputThatIsHandedOverAndNotFromAnOldOne) {
+TEST_F(PidTest, StartsAtAFreshHandedOverOutputOnly) {
   give(4, 1, 0.1);
   rig.set("output", 7.0);
   rig.inherit("output", milliseconds(200), milliseconds(100));

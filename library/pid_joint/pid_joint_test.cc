@@ -37,14 +37,14 @@ TEST_F(PidJointTest, GivesTheThreeTermsForEachJointAlone) {
   EXPECT_DOUBLE_EQ(rig.get<double>("tau", 1), 5 * 0.2);
 }
 
-TEST_F(PidJointTest, StaysWithinWhatTheDrivesGive) {
+TEST_F(PidJointTest, StaysWithinTheTorqueOfTheDrives) {
   start();
   rig.set("q_ref", 3.0, 0);
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(rig.get<double>("tau", 0), 50);
 }
 
-TEST_F(PidJointTest, GoesOnFromTheTorqueThatStands) {
+TEST_F(PidJointTest, StartsAtItsLastTorque) {
   start();
   rig.set("q_ref", 0.2, 0);
   for (int i = 0; i < 500; ++i) ASSERT_TRUE(rig.cycle());
@@ -57,7 +57,7 @@ TEST_F(PidJointTest, GoesOnFromTheTorqueThatStands) {
   EXPECT_NEAR(rig.get<double>("tau", 0), stands, 1e-3);
 }
 
-TEST_F(PidJointTest, GoesOnFromTheTorqueThatIsHandedOverAndNotFromAnOldOne) {
+TEST_F(PidJointTest, StartsAtAFreshHandedOverTorqueOnly) {
   start();
   rig.set("q_ref", 0.1, 0);
   rig.set("tau", 20.0, 0);

@@ -22,7 +22,7 @@ TEST_F(PinvkinTest, StaysWithTheSolutionThatIsNearest) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(rig.six("q_ref")[i], kBent[i], 1e-9);
 }
 
-TEST_F(PinvkinTest, GoesOnFromTheCommandThatIsHandedOverAndElseFromTheMeasurement) {
+TEST_F(PinvkinTest, StartsAtTheHandedOverCommandOrTheMeasurement) {
   for (std::size_t i = 0; i < 6; ++i) rig.set("q_ref", kBent[i] + 0.05, i);
   rig.inherit("q_ref", milliseconds(10));
   ASSERT_TRUE(rig.on());
@@ -52,7 +52,7 @@ TEST_F(PinvkinTest, FollowsAPathWithoutChangingTheArm) {
   }
 }
 
-TEST_F(PinvkinTest, WhatIsOutOfReachOrBeyondTheLimitsLeavesTheReferenceAndIsSaid) {
+TEST_F(PinvkinTest, AnUnreachableTargetKeepsTheReferenceAndIsReported) {
   ASSERT_TRUE(rig.cycle());
   const Puma560::Vector stands = rig.six("q_ref");
   Frame far = Puma560::forward(kBent);
@@ -80,7 +80,7 @@ TEST_F(PinvkinTest, ComesThroughTheSingularPosesOfThePuma) {
   }
 }
 
-TEST_F(PinvkinTest, RefusesAPoseThatIsNoneAndGoesOnAfterIt) {
+TEST_F(PinvkinTest, RefusesAnInvalidPoseAndGoesOnAfterIt) {
   for (const Pose& bad : {Pose{{kNotANumber, 0, 0}, {1, 0, 0, 0}}, Pose{{0.5, 0, 0}, {0, 0, 0, 0}}}) {
     rig.set("xr", bad);
     EXPECT_EQ(rig.refusal(), "xr is not finite or no orientation");

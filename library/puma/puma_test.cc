@@ -25,7 +25,7 @@ struct PumaTest : ::testing::Test {
   }
 };
 
-TEST_F(PumaTest, TellsItsRows) {
+TEST_F(PumaTest, PublishesItsDhRows) {
   start();
   EXPECT_EQ(rig.get<std::int32_t>("ndof"), 6);
   EXPECT_EQ(rig.get<library::DhLink>("dh", 1).a, .4318);
@@ -33,7 +33,7 @@ TEST_F(PumaTest, TellsItsRows) {
 }
 
 // An arm that replaces another starts at the place and speed of that arm, not in its start pose.
-TEST_F(PumaTest, GoesOnWhereThatOneIsWhosePlaceItTakes) {
+TEST_F(PumaTest, StartsAtTheStateOfTheTaskThatItReplaces) {
   start();
   const auto inherit = [&](Nanoseconds age, double elbow) {
     for (std::size_t i = 0; i < 6; ++i) {

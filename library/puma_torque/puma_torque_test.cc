@@ -31,7 +31,7 @@ struct PumaTorqueTest : ::testing::Test {
   }
 };
 
-TEST_F(PumaTorqueTest, TellsItsJointsAndLimitsAtInit) {
+TEST_F(PumaTorqueTest, PublishesItsJointsAndLimitsAtInit) {
   start();
   EXPECT_EQ(rig.get<std::int32_t>("ndof"), 6);
   EXPECT_EQ(rig.get<double>("tau_max", 0), 97.6);
@@ -71,7 +71,7 @@ TEST_F(PumaTorqueTest, ComesBackFromAnErrorWhereItStands) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(rig.get<double>("qd", i), 0) << i;
 }
 
-TEST_F(PumaTorqueTest, TellsHowItIsBuiltAndWhatItWeighsWithoutPayload) {
+TEST_F(PumaTorqueTest, PublishesItsGeometryAndItsMassesWithoutPayload) {
   rig.set("payload_mass", 5.0);
   start();
   for (std::size_t i = 0; i < 6; ++i) {

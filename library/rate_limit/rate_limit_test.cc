@@ -30,7 +30,7 @@ TEST_F(RateLimitTest, TakesTheTimeThatWentByWhenReleasesWereDropped) {
   EXPECT_NEAR(rig.step(5, milliseconds(10)), 0.02, 1e-12);
 }
 
-TEST_F(RateLimitTest, GoesOnFromWhatStands) {
+TEST_F(RateLimitTest, StartsAtItsLastOutput) {
   start(1);
   ASSERT_TRUE(rig.off());
   rig.set("x", 9.0);

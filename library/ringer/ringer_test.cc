@@ -6,7 +6,7 @@
 namespace chimera {
 namespace {
 
-TEST(Ringer, RingsABurstEverySoManyCycles) {
+TEST(Ringer, RingsABurstOncePerEveryCycles) {
   Rig rig("ringer");
   rig.set("target", Text<64>("valve"));
   rig.set("every", std::int64_t{3});
@@ -21,7 +21,7 @@ TEST(Ringer, RingsABurstEverySoManyCycles) {
   EXPECT_EQ(rig.signals()[0], "wakeup valve");
 }
 
-TEST(Ringer, RefusesWhatCannotBe) {
+TEST(Ringer, RefusesImpossibleConstants) {
   Rig rig("ringer");
   EXPECT_EQ(rig.init().text, "target is empty");
   rig.set("target", Text<64>("valve"));

@@ -41,7 +41,7 @@ TEST_P(PedalTest, AsksForTheForceOfItsConstant) {
   EXPECT_DOUBLE_EQ(rig.get<double>(GetParam().output), 100);
 }
 
-TEST_P(PedalTest, RefusesWhatNoPedalDoes) {
+TEST_P(PedalTest, RefusesForcesThatNoPedalHas) {
   const auto said = [](const char* script, double force) {
     Rig rig(GetParam().component);
     rig.resource("pedal", script);

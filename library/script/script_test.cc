@@ -37,7 +37,7 @@ TEST(Script, HoldsItsValuesToARange) {
   EXPECT_STREQ(script.read("", -2, 1, "too much"), "the script is empty: write at:value at:value ...");
 }
 
-TEST(Script, SaysWhatIsWrong) {
+TEST(Script, NamesTheError) {
   Script script;
   EXPECT_STREQ(script.read(""), "the script is empty: write at:value at:value ...");
   EXPECT_STREQ(script.read("x:1"), "a point of the script does not begin with a number");

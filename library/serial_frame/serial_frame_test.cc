@@ -122,7 +122,7 @@ TEST_F(SerialFrameTest, NoiseCutFramesAndWrongChecksumsAreCountedAndPassedOver) 
   EXPECT_EQ(state(1), 2);  // no value of a frame that is not finite
 }
 
-TEST_F(SerialFrameTest, WhatIsNotFiniteIsNeverSentAndTheRestIsHeldWithinTheLimit) {
+TEST_F(SerialFrameTest, NeverSendsANonFiniteNumberAndClampsToTheLimit) {
   rig.set("limit", 10.0);
   start(1, 1);
   rig.set("command", std::nan(""));
@@ -170,7 +170,7 @@ TEST_F(SerialFrameTest, IdleIsSentAtOffAndWhileTheFlagIsUp) {
   EXPECT_EQ(heard(8), frame({0.25}));
 }
 
-TEST_F(SerialFrameTest, TheSafeFrameIsIdleBehindWhatEndsACutFrame) {
+TEST_F(SerialFrameTest, TheSafeFrameEndsACutFrameBeforeIdle) {
   rig.set("idle", 0.25);
   start(1, 1);
   const auto& safe = rig.safe_frame(0);
@@ -195,7 +195,7 @@ TEST_F(SerialFrameTest, TheSafeFrameIsIdleBehindWhatEndsACutFrame) {
   EXPECT_LT(rig.safe_frame(0).descriptor, 0);
 }
 
-TEST_F(SerialFrameTest, ALineThatIsFullWaitsForNobodyAndLosesNoFrameInTheMiddle) {
+TEST_F(SerialFrameTest, AFullLineDoesNotBlockAndLosesWholeFramesOnly) {
   rig.set("timeout", 3600.0);
   start(1, 16);
   for (int i = 0; i < 3000; ++i) ASSERT_TRUE(rig.cycle());  // the device does not read
@@ -260,7 +260,7 @@ TEST_F(SerialFrameTest, ADeviceThatIsUnpluggedIsAFaultAndComesBackByClear) {
   EXPECT_EQ(state(0), 2.0);
 }
 
-TEST_F(SerialFrameTest, RefusesWrongConstantsAndWhatIsNoSerialDevice) {
+TEST_F(SerialFrameTest, RefusesWrongConstantsAndOtherDevices) {
   const auto answer = [this](const char* name) {
     rig.resource("device", name);
     return rig.init().text;

@@ -77,7 +77,7 @@ TEST_F(SignalGeneratorTest, RepeatsItsNoiseFromOn) {
   EXPECT_NE(first[0], first[1]);
 }
 
-TEST_F(SignalGeneratorTest, RefusesWhatItDoesNotKnow) {
+TEST_F(SignalGeneratorTest, RefusesImpossibleConstants) {
   give("sinus");
   EXPECT_EQ(rig.init().text, "wave must be sine, square, triangle, sawtooth, chirp, noise or step");
   give("sine");

@@ -21,7 +21,7 @@ Jacobian of_puma(const Puma560::Vector& q) {
   return jacobian;
 }
 
-TEST(SingularValues, OfAJacobianWhoseMotionsAreOrthogonalAreTheirLengths) {
+TEST(SingularValues, AreTheLengthsOfOrthogonalMotions) {
   Jacobian jacobian;
   jacobian.linear = {library::Vec3{3, 0, 0}, {0, 2, 0}, {0, 0, 5}};
   jacobian.angular[3] = {0, 0, 0.5};

@@ -60,7 +60,7 @@ TEST(Sum, NamesTheInputThatIsNotFiniteAndIsOverItWithTheNext) {
   EXPECT_EQ(rig.get<double>("out"), 4);
 }
 
-TEST(Sum, WaitsForAnInputThatNobodyHasWritten) {
+TEST(Sum, AbortsItsCycleWhileAnInputIsUnwritten) {
   Summed rig(2, 0);
   rig.set("in", 1.0, 0, 0);
   ASSERT_TRUE(rig.init());

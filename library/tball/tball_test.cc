@@ -104,7 +104,7 @@ TEST_F(TballTest, TwoRunsOfARecordingAgreeToTheBit) {
   }
 }
 
-TEST_F(TballTest, GoesOnFromTheReferenceThatIsHandedOver) {
+TEST_F(TballTest, StartsAtTheHandedOverReference) {
   rig.instances("xm", 1);
   rig.set("xm", Pose{{1, 2, 3}, {1, 0, 0, 0}});
   rig.set("xd", Pose{{1, 2, 4}, {1, 0, 0, 0}});
@@ -154,7 +154,7 @@ TEST_F(TballTest, WholeReportsOfADeviceCountAndLostOnesDoNot) {
   EXPECT_EQ(rig.get<std::int32_t>("buttons"), 2);
 }
 
-TEST_F(TballTest, WhatWaitedBeforeOnIsForgottenInTheFirstCycles) {
+TEST_F(TballTest, EventsFromBeforeOnAreDroppedInTheFirstCycles) {
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
   plug();
   const RigAnswer made = init(path);
@@ -252,7 +252,7 @@ TEST_F(TballTest, HoldsStillWhileTheFlagIsUp) {
   EXPECT_EQ(xd().position[0], 0.0);
 }
 
-TEST_F(TballTest, RefusesWhatIsNoBall) {
+TEST_F(TballTest, RefusesADeviceThatIsNoBall) {
   EXPECT_EQ(init("/dev/input/event99").text,
             "/dev/input/event99: No such file or directory: plug the device in, or name another under `resources`");
   EXPECT_EQ(init("/dev/null").text,

@@ -30,7 +30,7 @@ TEST(TimeDerivative, DividesByTheTimeThatWentByWhenReleasesWereDropped) {
   EXPECT_DOUBLE_EQ(rig.get<double>("dx"), 1000.0);
 }
 
-TEST(TimeDerivative, StartsAtZeroWhateverTheSignalIs) {
+TEST(TimeDerivative, StartsAtZeroForAnySignal) {
   Rig rig("tderiv");
   EXPECT_EQ(rig.get<double>("dx"), 0.0);
   rig.set("x", 42.0);

@@ -47,7 +47,7 @@ TEST_F(TimeIntegratorTest, TakesAScalarAndAMatrixElementByElement) {
   for (int i = 0; i < 64; ++i) EXPECT_EQ(matrix.get<double>("integral", static_cast<std::size_t>(i)), 0.5 * i);
 }
 
-TEST_F(TimeIntegratorTest, AStartThatIsRefusedLeavesWhatStood) {
+TEST_F(TimeIntegratorTest, ARefusedStartLeavesTheIntegral) {
   start();
   rig.set("start", 7.0, 0);
   rig.set("start", std::nan(""), 1);
@@ -55,7 +55,7 @@ TEST_F(TimeIntegratorTest, AStartThatIsRefusedLeavesWhatStood) {
   EXPECT_EQ(rig.get<double>("integral", 0), 1);
 }
 
-TEST_F(TimeIntegratorTest, GoesOnFromTheIntegralThatIsHandedOverAndElseFromItsStart) {
+TEST_F(TimeIntegratorTest, StartsAtTheHandedOverIntegralOrItsStart) {
   start();
   rig.set("integral", 5.0, 0);
   rig.inherit("integral", milliseconds(4), milliseconds(2));

@@ -18,7 +18,7 @@ struct ToolTest : ::testing::Test {
   }
 };
 
-TEST_F(ToolTest, TellsItsFrameAndItsMassAtInitAndItsPlaceWhileItIsOn) {
+TEST_F(ToolTest, PublishesFrameAndMassAtInitAndItsPoseWhileOn) {
   ASSERT_TRUE(rig.init());
   EXPECT_EQ(rig.get<Pose>("tool").position[2], 0.2);
   EXPECT_EQ(rig.get<Pose>("tool").orientation[1], 0.6);
@@ -31,14 +31,14 @@ TEST_F(ToolTest, TellsItsFrameAndItsMassAtInitAndItsPlaceWhileItIsOn) {
   EXPECT_FALSE(rig.get<bool>("is_attached"));
 }
 
-TEST_F(ToolTest, TellsAnotherMassByReinit) {
+TEST_F(ToolTest, PublishesAnotherMassByReinit) {
   ASSERT_TRUE(rig.init());
   rig.set("mass", 2.5);
   ASSERT_TRUE(rig.reinit());
   EXPECT_EQ(rig.get<double>("payload_mass"), 2.5);
 }
 
-TEST_F(ToolTest, RefusesWhatIsNoFrameAndNoMass) {
+TEST_F(ToolTest, RefusesAnInvalidFrameOrMass) {
   rig.set("mass", std::numeric_limits<double>::quiet_NaN());
   EXPECT_EQ(rig.init().text, "mass is 0 to 100 kg");
   rig.set("mass", 1.0);

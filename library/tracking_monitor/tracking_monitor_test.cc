@@ -25,7 +25,7 @@ struct TrackingMonitorTest : ::testing::Test {
   }
 };
 
-TEST_F(TrackingMonitorTest, TellsTheWorstJointNowAndEver) {
+TEST_F(TrackingMonitorTest, PublishesTheWorstJointNowAndEver) {
   start();
   place(1.02, -1.05);
   ASSERT_TRUE(rig.cycle());

@@ -107,7 +107,7 @@ TEST_F(UdpFrameTest, TheSafeFrameHasANumberThatADeviceStillTakes) {
   say(bytes);
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(count("old"), 0);
-  EXPECT_EQ(count("received"), 2) << "this side stands for the device: it drops what is old";
+  EXPECT_EQ(count("received"), 2) << "this side acts as the device and drops old datagrams";
   ASSERT_TRUE(rig.off());
   EXPECT_EQ(rig.safe_frame(0).size, 0u);
 }
@@ -140,7 +140,7 @@ TEST_F(UdpFrameTest, ACycleTakesEightDatagramsAtMost) {
   EXPECT_EQ(state(), 12);
 }
 
-TEST_F(UdpFrameTest, WhatCameBeforeOnIsForgottenInTheFirstCyclesAndIsNoSilence) {
+TEST_F(UdpFrameTest, DatagramsFromBeforeOnAreDroppedAndAreNoSilence) {
   start();
   ASSERT_TRUE(rig.off());
   for (std::uint32_t i = 1; i <= 150; ++i) say(datagram(i, 99));
@@ -179,7 +179,7 @@ TEST_F(UdpFrameTest, StrangersAreNotHeard) {
   EXPECT_EQ(count("received"), 0);
 }
 
-TEST_F(UdpFrameTest, WhatIsNotFiniteIsNeverSent) {
+TEST_F(UdpFrameTest, NeverSendsANonFiniteNumber) {
   start();
   rig.set("command", std::nan(""));
   ASSERT_TRUE(rig.cycle());
@@ -240,7 +240,7 @@ TEST_F(UdpFrameTest, SendsIdleAtOff) {
   EXPECT_EQ(heard(), datagram(2, 0));
 }
 
-TEST_F(UdpFrameTest, RefusesWhatIsNoAddressAndAPortThatIsTaken) {
+TEST_F(UdpFrameTest, RefusesABadAddressAndATakenPort) {
   rig.extent("m", 1);
   for (const std::string text : {"", "localhost:5000", "1.2.3.4", "1.2.3.4:", "1.2.3.4:0", "1.2.3.4:65536",
                                  "1.2.3.4:5x"}) {

@@ -50,7 +50,7 @@ TEST_F(UrdfChainTest, ThePumasFlangeStandsWhereItIsPublished) {
   }
 }
 
-TEST_F(UrdfChainTest, TellsNamesAndLimits) {
+TEST_F(UrdfChainTest, ReadsNamesAndLimits) {
   const Result<UrdfChain> puma = read_urdf(shipped_urdf("puma560.urdf"), "flange");
   ASSERT_TRUE(puma);
   EXPECT_EQ(puma->joints[4], "q5");
@@ -76,7 +76,7 @@ TEST_F(UrdfChainTest, MujocoSeesTheSameRobotInTheFile) {
   }
 }
 
-TEST_F(UrdfChainTest, RefusesWhatIsNoChainOfTurningJoints) {
+TEST_F(UrdfChainTest, RefusesAModelWithoutAChainOfTurningJoints) {
   const std::string ends = "<parent link='a'/><child link='b'/>";
   EXPECT_EQ(refusal("<joint name='j' type='fixed'>" + ends + "</joint>"),
             ": no joint turns between the root and the tip");

@@ -14,7 +14,7 @@ namespace {
 
 std::string name_of(const char* what) { return std::string(what) + "_" + std::to_string(::getpid()); }
 
-TEST(Pinhole, LocatesWhatItProjects) {
+TEST(Pinhole, LocatesProjectedPoints) {
   Pinhole camera;
   camera.place = frame_of(Pose{{1.6, 0, 0.4}, {0.5, -0.5, -0.5, 0.5}});
   std::mt19937 random(3);
@@ -107,7 +107,7 @@ TEST(FeatureLink, OneAddressHasOneReader) {
   EXPECT_TRUE(second.open("unix:" + path));
 }
 
-TEST(FeatureLink, PlaysWhatItRecorded) {
+TEST(FeatureLink, PlaysItsOwnRecording) {
   const std::string path = testing::TempDir() + name_of("recording");
   FeatureWriter writer;
   ASSERT_TRUE(writer.open("file:" + path));
@@ -130,7 +130,7 @@ TEST(FeatureLink, PlaysWhatItRecorded) {
   ::unlink(path.c_str());
 }
 
-TEST(FeatureLink, RefusesWhatIsNoLinkAndSaysWhichLineIsBad) {
+TEST(FeatureLink, RefusesABadLinkAndNamesTheBadLine) {
   FeatureReader reader;
   const auto refusal = [&](const std::string& link) { return std::string(reader.open(link).error().message.view()); };
   EXPECT_EQ(refusal("tcp:1"), "tcp:1: expected udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH");

@@ -63,7 +63,7 @@ TEST_F(VisionTest, FollowsABallThatMoves) {
   EXPECT_EQ(camera.get<std::int64_t>("sent"), 101);
 }
 
-TEST_F(VisionTest, GoesOnFromTheReferenceThatIsHandedOver) {
+TEST_F(VisionTest, StartsAtTheHandedOverReference) {
   start(0);
   servo.set("xd", Pose{{0.6, 0.2, 0.4}, {1, 0, 0, 0}});
   servo.inherit("xd", milliseconds(20), milliseconds(10));
@@ -111,7 +111,7 @@ TEST_F(VisionTest, ABallOutOfThePictureSendsNothing) {
   EXPECT_EQ(camera.get<double>("feature", 2), 0);
 }
 
-TEST(VisualServoInterface, RefusesALinkThatIsNoneAndACameraThatStandsNowhere) {
+TEST(VisualServoInterface, RefusesAnInvalidLinkOrCameraPose) {
   Rig rig("visual_servo_interface");
   rig.set("camera", kCamera);
   rig.resource("link", "camera");
@@ -152,7 +152,7 @@ TEST(VisualServoInterface, DoesNotBeginWhereTheToolIsNot) {
   EXPECT_EQ(rig.on().text, "xm is not a number");
 }
 
-TEST(CameraTargets, RefusesALinkThatIsNoneAndACameraThatStandsNowhere) {
+TEST(CameraTargets, RefusesAnInvalidLinkOrCameraPose) {
   Rig rig("camera_targets");
   rig.set("camera", kCamera);
   for (std::size_t i = 0; i < 3; ++i) rig.set("centre", 0.0, i);
@@ -167,7 +167,7 @@ TEST(CameraTargets, RefusesALinkThatIsNoneAndACameraThatStandsNowhere) {
   EXPECT_EQ(rig.init().text, "centre and phase must be finite");
 }
 
-TEST(PoseMonitor, JudgesNothingThatNobodyHasWritten) {
+TEST(PoseMonitor, RefusesToJudgeUnwrittenPoses) {
   Rig rig("pose_monitor");
   ASSERT_TRUE(rig.init());
   ASSERT_TRUE(rig.on());

@@ -43,7 +43,7 @@ TEST_F(WatchdogTest, SaysWhichManyAreLateAndWhenTheyAreRenewed) {
   EXPECT_TRUE(alive());
 }
 
-TEST_F(WatchdogTest, GivesWhatNobodyHasWrittenTheSameTimeFromOn) {
+TEST_F(WatchdogTest, GivesAnUnwrittenInputMaxAgeFromOn) {
   start("report");
   renew(1);
   for (int ms = 1; ms <= 10; ++ms) ASSERT_TRUE(rig.cycle());
@@ -56,7 +56,7 @@ TEST_F(WatchdogTest, GivesWhatNobodyHasWrittenTheSameTimeFromOn) {
   EXPECT_TRUE(alive());  // max_age counts from `on` again
 }
 
-TEST_F(WatchdogTest, AsAFaultSaysWhoIsLateAndClearBringsItBack) {
+TEST_F(WatchdogTest, AsAFaultNamesTheLateInputAndClearBringsItBack) {
   start("fault");
   renew(0);
   ASSERT_TRUE(rig.cycle(milliseconds(5)));

@@ -29,7 +29,7 @@ TEST_F(WheelsTest, ReinitTakesAnotherLimit) {
   EXPECT_EQ(cycle(3000), 2000);
 }
 
-TEST_F(WheelsTest, GoesOnFromAPresentCommandAndNotFromAnOldOne) {
+TEST_F(WheelsTest, StartsAtAFreshCommandOnly) {
   ASSERT_TRUE(rig.init());
   rig.set("fb", 4000.0);
   rig.inherit("fb", milliseconds(20), milliseconds(20));

@@ -118,7 +118,7 @@ TEST(Kinds, ASafetyPortGoesWrongOnDemand) {
   EXPECT_EQ(rig.get<double>("command"), 0.003);
 }
 
-TEST(Kinds, TheThrowerFailsInTheMethodAndWayItIsTold) {
+TEST(Kinds, TheThrowerFailsInTheConfiguredMethodAndWay) {
   const char* const texts[] = {"thrown on demand", "an exception that is not a std::exception", "refused on demand",
                                "text on demand"};
   for (int how = 1; how <= 4; ++how) {

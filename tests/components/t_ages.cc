@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an in-var tells about its value.
+// Publishes age, freshness and validity of its in-var.
 #include "chimera/task/component.h"
 
 using namespace chimera;

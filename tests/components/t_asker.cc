@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Asks for a configuration in every cycle, as long as it is told to.
+// Requests a configuration in every cycle while its input says so.
 #include "chimera/task/component.h"
 
 using namespace chimera;

@@ -22,7 +22,7 @@ struct Ball : Rig {
   }
 };
 
-TEST(CFace, DeclaresWhatPboPortsSays) {
+TEST(CFace, DeclaresThePortsOfPboPorts) {
   EXPECT_EQ(ball().n_ports, 11u);
   EXPECT_STREQ(ball().doc, "Trackball, written in C.");
   EXPECT_STREQ(ball().source, "Stewart 2000, figure 9");
@@ -65,7 +65,7 @@ TEST(CFace, FindsTheMethodsThatAreWrittenAndTakesTermForKill) {
     EXPECT_EQ(ball().methods[m], nullptr) << m;
 }
 
-TEST(CFace, AnOutVarTellsWhatItHeldAtOn) {
+TEST(CFace, AnOutVarHasItsValueAtOn) {
   Ball rig;
   ASSERT_TRUE(rig.init());
   ASSERT_TRUE(rig.on());
@@ -93,7 +93,7 @@ TEST(CFace, MethodsReachTheirPortsByName) {
   EXPECT_TRUE(rig.kill());
 }
 
-TEST(CFace, GoesOnFromTheOutputThatStands) {
+TEST(CFace, StartsAtItsLastOutput) {
   Ball rig;
   rig.set("xd", 5.0, 0);
   ASSERT_TRUE(rig.on());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Cycle tells, as outputs; and a count that on() takes over from whoever produced it before.
+// Publishes what Cycle holds, and a count that on() takes over from its former producer.
 #include "chimera/task/component.h"
 
 using namespace chimera;
@@ -23,4 +23,4 @@ struct Counter {
     *illegal = c.illegal();
   }
 };
-CHIMERA_COMPONENT(Counter, "t_counter", "Shows what a cycle is told.", rate = 1000.0);
+CHIMERA_COMPONENT(Counter, "t_counter", "Publishes the arguments of its cycle.", rate = 1000.0);

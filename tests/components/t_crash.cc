@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dies, hangs or writes everywhere, in the method it is told to, while a file exists.
+// Dies, hangs or overwrites memory, in the configured method, while a file exists.
 #include <sys/mman.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -59,7 +59,7 @@ struct Crash {
     if (is("scribble")) scribble("memfd:chimera-"), scribble("memfd:"), ::abort();
     while (is("hang")) (void)::access(armed.c_str(), F_OK);
   }
-  // Into the file that lets it happen, the first time.
+  // Writes the time of the first act into the file that permits it.
   void note_begin() {
     timespec now{};
     ::clock_gettime(CLOCK_MONOTONIC, &now);
@@ -69,14 +69,14 @@ struct Crash {
       std::fprintf(file, "%lld\n", static_cast<long long>(now.tv_sec) * 1'000'000'000 + now.tv_nsec);
     std::fclose(file);
   }
-  // As deep as a stack that is locked can be and deeper.
+  // Recurses deeper than any locked stack.
   double overflow(int depth) {
     volatile char page[4096];
     page[0] = static_cast<char>(depth);
     return depth < 1'000'000 ? overflow(depth + 1) + page[0] : 0;
   }
-  // Writes over every mapping of that name that this process may write to, one after the other: first what it shares
-  // with others, for it does not survive the data of its own objects.
+  // Overwrites every mapping of that name. The caller begins with the shared memory of the subsystem, because the
+  // process dies when the data of its own objects is overwritten.
   static void scribble(const char* name) {
     std::FILE* maps = std::fopen("/proc/self/maps", "r");
     char line[512];
@@ -87,7 +87,7 @@ struct Crash {
       const bool is_memory = std::sscanf(line, "%lx-%lx %4s", &begin, &end, rights) == 3;
       const bool is_shared = std::strstr(line, name) != nullptr;
       if (!is_memory || !is_shared) continue;
-      // Also what is mapped read-only: first asked for, then tried through the file.
+      // Overwrites read-only mappings too: first by mprotect, then through the file.
       const bool may = rights[1] == 'w' || ::mprotect(reinterpret_cast<void*>(begin), end - begin, kWritable) == 0;
       if (!may) continue;
       for (unsigned long at = begin; at < end; at += 64) *reinterpret_cast<volatile unsigned long*>(at) = 0xdeadbeef;

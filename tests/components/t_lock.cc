@@ -10,8 +10,8 @@ using namespace chimera;
 
 struct Lock {
   Resource device{"device", doc = "the file that is locked"};
-  InConst<double> value{"value", "1", initial = 1.0, doc = "what it publishes"};
-  InConst<int> late{"late", "1", initial = 0, range(0, 1000000), doc = "so often `on` answers not yet"};
+  InConst<double> value{"value", "1", initial = 1.0, doc = "the published number"};
+  InConst<int> late{"late", "1", initial = 0, range(0, 1000000), doc = "number of times that `on` answers not yet"};
   InConst<int> fails_at{"fails_at", "1", initial = 0, range(0, 1000000), doc = "the cycle that fails; 0: none"};
   Out<double> y{"y", "1", initial = 0.0};
 

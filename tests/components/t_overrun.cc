@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uses anything from nothing to three times what it is allowed, and judges what it is told about the releases it lost.
+// Uses from none to three times of its budget, and checks the number of dropped releases that its cycle receives.
 #include <cmath>
 
 #include "chimera/task/component.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Events in C: those of the named pipe that its resource port names ("none": rings of its doorbell), each passed on to
- * the doorbell of another task, or as a request for a configuration. */
+/* Events in C. They come from the named pipe of its resource port, or from its doorbell for "none". Each rings the
+ * doorbell of another task, or requests a configuration. */
 #define _POSIX_C_SOURCE 200809L
 #include <fcntl.h>
 #include <unistd.h>
@@ -13,7 +13,7 @@ typedef struct {
 
 PBO_PORTS(t_relay,
   (resource, pipe,   text,  "", "1", PBO_DOC("a named pipe, or none")),
-  (in_const, target, text,  "", "1", PBO_INITIAL(text, ""), PBO_DOC("the task whose doorbell is rung; empty: nobody")),
+  (in_const, target, text,  "", "1", PBO_INITIAL(text, ""), PBO_DOC("the task whose doorbell is rung; empty: none")),
   (in_const, set,    text,  "", "1", PBO_INITIAL(text, ""), PBO_DOC("the configuration asked for; empty: none")),
   (out_var,  passed, int64, "", "1", PBO_INITIAL(int64, 0), PBO_DOC("events so far")))
 PBO_MODULE(t_relay, .doc = "Passes events on.", .default_rate_hz = 100);
@@ -30,7 +30,7 @@ int t_relayEventSource(t_relayLocal_t *local) { return local->descriptor; }
 
 int t_relaySync(t_relayLocal_t *local) {
   char byte;
-  if (local->descriptor < 0) return PBO_OK; /* whoever calls it has the event */
+  if (local->descriptor < 0) return PBO_OK; /* the caller of sync has the event */
   return read(local->descriptor, &byte, 1) == 1 ? PBO_OK : PBO_NO_EVENT;
 }
 

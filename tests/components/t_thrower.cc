@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fails in the method it is told to, in the way it is told to.
+// Fails in the configured method and way.
 #include <stdexcept>
 
 #include "chimera/task/component.h"
@@ -21,7 +21,7 @@ struct Thrower {
   Outcome reinit() { return act("reinit"); }
   Outcome on() { return act("on"); }
   Outcome cycle() {
-    *count = -1;  // seen by nobody when the cycle fails
+    *count = -1;  // not published when the cycle fails
     const Outcome outcome = act("cycle");
     if (outcome.status() == CHIMERA_OK) *count = ++good_;
     return outcome;

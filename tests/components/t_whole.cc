@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Publishes what is whole or not: 256 numbers that must be equal and their sum, written slowly, so that whoever kills
-// its process mostly does so between the first and the last of them. t_judge looks at them.
+// Publishes 256 numbers that must be equal, and their sum. It writes slowly, so that most kills of its process come
+// between the first and the last number. t_judge checks them.
 #include "chimera/task/component.h"
 
 using namespace chimera;

@@ -25,7 +25,7 @@ class Demote : public ::testing::Test {
     ASSERT_TRUE(runner->start());
     runner->run(milliseconds(ms));
   }
-  /// Who had the processor: "bad 0-2, a 2-5".
+  /// Tasks that had the processor, with times in ms: "bad 0-2, a 2-5".
   std::string slices() {
     std::string text;
     for (const TapRecord& r : runner->records()) {
@@ -43,7 +43,7 @@ class Demote : public ::testing::Test {
   const Profile& profile(const char* name = "bad") { return app.task(name).profile; }
 };
 
-TEST_F(Demote, AfterItsBudgetAJobRunsWhenNobodyElseDoes) {
+TEST_F(Demote, AfterItsBudgetAJobRunsInIdleTime) {
   add_bad(40, 6, 2).on_overrun = OnMiss::kDemote;
   app.add("a", milliseconds(10), milliseconds(5));
   run(40);
@@ -51,7 +51,7 @@ TEST_F(Demote, AfterItsBudgetAJobRunsWhenNobodyElseDoes) {
   EXPECT_EQ(profile().demoted, 1u);
   EXPECT_EQ(profile().overrun, 1u);
   EXPECT_EQ(profile().cycles, 1u);
-  EXPECT_EQ(profile().preempted, 0u) << "whoever is below all others gives way uncounted";
+  EXPECT_EQ(profile().preempted, 0u) << "a demoted job gives way uncounted";
   EXPECT_EQ(profile().execution[CHIMERA_CYCLE].max, milliseconds(6));
   EXPECT_EQ(profile("a").missed, 0u);
 }
@@ -71,7 +71,7 @@ TEST_F(Demote, AnOverrunIsRecordedOnceWhenItHappens) {
   EXPECT_EQ(overruns_recorded(), 2);
 }
 
-TEST_F(Demote, AfterItsDeadlineAJobRunsWhenNobodyElseDoes) {
+TEST_F(Demote, AfterItsDeadlineAJobRunsInIdleTime) {
   TaskSpec& spec = add_bad(40, 6, 0);
   spec.deadline = milliseconds(3);
   spec.on_miss = OnMiss::kDemote;
@@ -103,7 +103,7 @@ TEST_F(Demote, ReleasesDuringADemotedJobWaitForItsEnd) {
   EXPECT_EQ(profile().cycles, 3u);
 }
 
-TEST_F(Demote, TheFirstThatWasDemotedGoesOnUntilItEnds) {
+TEST_F(Demote, TheFirstDemotedJobContinuesToItsEnd) {
   add_bad(40, 6, 1).on_overrun = OnMiss::kDemote;
   TaskSpec& spec = app.add("a", milliseconds(40), milliseconds(4));
   spec.budget = milliseconds(2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every executor of one context must do, whatever its idea of time.
+// Rules for every executor of one context, in real and in virtual time.
 #include <gtest/gtest.h>
 
 #include "chimera/runtime/hosted/tap_rows.h"
@@ -67,14 +67,14 @@ TEST_P(Executors, TakeSignalsAtEdgesAndKeepThePhase) {
   EXPECT_EQ(app.task("a").state, chimera::State::kOff);
 }
 
-TEST_P(Executors, TellHowOldIsWhatAnOutVarHeldAtOn) {
+TEST_P(Executors, GiveTheAgeOfAnOutVarAtOn) {
   app.add("a", milliseconds(10), microseconds(100));
   acts = {signal_at(12, Signal::kOff, app.id("a")), signal_at(33, Signal::kOn, app.id("a")),
           signal_at(45, Signal::kOff, app.id("a")), signal_at(45, Signal::kOn, app.id("a"))};
   go(60);
   const std::vector<Call> on = app.calls_of("a", Method::kOn), cycles = app.calls_of("a", Method::kCycle);
   ASSERT_EQ(on.size(), 3u);
-  EXPECT_EQ(on[0].inherited, -1) << "nobody had published it";
+  EXPECT_EQ(on[0].inherited, -1) << "no job had published it";
   EXPECT_EQ(on[1].inherited, milliseconds(21).count) << "off published it last";
   EXPECT_EQ(on[2].inherited, 0);
   ASSERT_EQ(cycles.size(), 4u);
@@ -99,16 +99,16 @@ TEST_P(Executors, ShowAPublicationToTheNextReaderAndNothingBefore) {
   go(30);
   const auto cycles = app.calls_of("reader", Method::kCycle);
   ASSERT_EQ(cycles.size(), 3u);
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(cycles[static_cast<std::size_t>(i)].in, i + 1) << "at the same release";
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(cycles[static_cast<std::size_t>(i)].in, i + 1) << "at this release";
 }
 
-TEST_P(Executors, PublishAtCompletionSoAReaderInBetweenSeesTheOldValue) {
+TEST_P(Executors, PublishAtCompletionSoAReaderBeforeItSeesTheOldValue) {
   app.add("writer", milliseconds(20), milliseconds(6));
   app.add("reader", milliseconds(5), milliseconds(1), "writer").offset = milliseconds(3);
   go(20, {}, Policy::kRm);
   const auto cycles = app.calls_of("reader", Method::kCycle);
   ASSERT_GE(cycles.size(), 2u);
-  // Released at 3 while the writer works till 6: preempted, it is read as it was; else it ran afterwards.
+  // Released at 3 while the writer works until 6. With preemption the job reads the old value, otherwise it runs later.
   EXPECT_EQ(cycles[0].in, GetParam() == Kind::kPreemptive ? 0 : 1);
   EXPECT_EQ(cycles[1].in, 1);
 }
@@ -213,7 +213,7 @@ TEST_P(Executors, PublishNothingOfACycleThatGaveUp) {
   EXPECT_EQ(app.task("a").state, chimera::State::kOn);
 }
 
-TEST_P(Executors, StopWhenTold) {
+TEST_P(Executors, StopOnRequest) {
   app.add("a", milliseconds(10), milliseconds(1));
   std::atomic<bool> stop{true};
   RunOptions options;

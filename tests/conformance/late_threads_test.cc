@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A job that is not over at its deadline: what the others learn of it while it is still under way. Without real-time
-// levels, so also under the thread sanitizer. Who is to blame is proved on a stepped clock (miss_cause_test.cc,
-// edge_access_test.cc).
+// Reports about a job that misses its deadline, while it still runs. The tests need no real-time levels, so they run
+// under the thread sanitizer too. miss_cause_test.cc and edge_access_test.cc prove the blame on a stepped clock.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -18,7 +17,7 @@
 namespace chimera::toy {
 namespace {
 
-/// "late" stays in its second cycle until the test has seen what it waits for; "beside" looks at the flag.
+/// "late" stays in its second cycle until the test sets `has_seen`; "beside" reads the flag.
 class Late : public ::testing::Test {
  protected:
   Late() {
@@ -50,7 +49,7 @@ class Late : public ::testing::Test {
     return executor->run(time);
   }
   const Profile& profile() { return app.task("late").profile; }
-  /// Its second job was late, with the releases that it was in the way of; else the machine has held up another one.
+  /// True if only the second job of "late" missed, with the releases that it dropped. False: the host delayed a job.
   bool is_the_only_one_late() { return profile().missed == profile().dropped + 1; }
 
   Application app;
@@ -66,9 +65,8 @@ class Late : public ::testing::Test {
   int cycles_ = 0;  // of "late"
 };
 
-// One miss of a task is told in 100 ms at most; this job ends later than that. Nor are the releases that it was in the
-// way of told as misses of their own.
-TEST_F(Late, IsToldOnce) {
+// The listener hears of a miss within 100 ms; this job ends later. The releases that it drops are no further misses.
+TEST_F(Late, ALongMissIsReportedOnce) {
   std::atomic<int> told_under_way{0};
   listener.on_miss = [&](TaskId task, const MissCause::Verdict&) {
     if (task == app.id("late") && stays) ++told_under_way;
@@ -99,7 +97,7 @@ TEST_F(Late, DoesNotRaiseTheFlagWhenTheMissIsTolerated) {
     has_seen = true;
   };
   run(milliseconds(600));
-  EXPECT_GE(listener.of(app.id("late")).size(), 1u) << "it is told all the same";
+  EXPECT_GE(listener.of(app.id("late")).size(), 1u) << "a tolerated miss is reported too";
   EXPECT_FALSE(has_flag && is_the_only_one_late());
   EXPECT_GE(profile().tolerated, 1u);
 }
@@ -132,7 +130,7 @@ TEST_F(Late, StopsTheRunWhileItIsUnderWay) {
   executor->at_edge([&] { before = executor->counts().supervised; });
   (void)LinuxClock().wait_until(LinuxClock().now() + milliseconds(300));
   executor->at_edge([&] {
-    EXPECT_LT(executor->counts().supervised - before, 100u) << "nobody is released: no reason to look again and again";
+    EXPECT_LT(executor->counts().supervised - before, 100u) << "without releases there is no reason to poll";
   });
   executor->at_edge([this] { executor->releases().settlement().forget_stop(); });
   has_seen = true;
@@ -173,7 +171,7 @@ TEST_F(Late, TakesSignalsAlsoWhenItAlwaysIs) {
   EXPECT_LE(profile().cycles, came_in + 1) << "one may have begun that had not counted itself yet";
 }
 
-TEST_F(Late, IsNobodyWhoEndsInTime) {
+TEST_F(Late, AJobThatEndsInTimeIsNoMiss) {
   has_seen = true;
   run();
   EXPECT_EQ(listener.of(app.id("late")).empty(), profile().missed == 0);

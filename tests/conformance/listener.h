@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A guest of the edges that writes down what it is told.
+// A boundary listener that records its calls.
 #pragma once
 
 #include <functional>

@@ -47,7 +47,7 @@ namespace {
 
 bool allocates = false;  // the planted fault: the component itself does
 
-// A component without a log: reads, computes, publishes, now and then fails or tells another task to go off.
+// A component without a log: reads, computes, publishes, and sometimes fails or sends `off` to another task.
 struct Quiet {
   chimera_port out;
   chimera_port in;
@@ -90,7 +90,7 @@ void add(const TaskSet& set, Counted& counted) {
   }
 }
 
-// Runs five tasks that read one another in a ring, on so many rtpus, with signals, faults and late jobs.
+// Runs five tasks that read one another in a ring, on `n_rtpus` rtpus, with signals, faults and late jobs.
 template <class Run>
 Counted count(std::uint32_t n_rtpus, Run run) {
   const std::array<chimera_port_decl, 2> decls = {port("out", CHIMERA_OUT_VAR, CHIMERA_FLOAT64, offsetof(Quiet, out)),
@@ -177,7 +177,7 @@ Counted count_on_two_rtpus() {
   });
 }
 
-// To a set in which nothing is ON, and back.
+// Switches to a set in which no task is ON, and back.
 std::vector<ScriptAct> with_switches(std::span<const ScriptAct> acts) {
   std::vector<ScriptAct> all(acts.begin(), acts.end());
   for (const std::uint32_t to : {1u, 0u}) {

@@ -28,7 +28,7 @@ class Levels : public ::testing::TestWithParam<Policy> {
     spec.criticality = criticality;
     return spec;
   }
-  /// What each job of the task does before it ends.
+  /// Runs `act` in each job of the task, before the job ends.
   void each_job(const std::string& task, std::function<void()> act) {
     app_.toy(task).during = [act](const chimera_call&) { return act(), CHIMERA_OK; };
   }

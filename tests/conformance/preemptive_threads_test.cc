@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The preemptive executor without real-time levels, where the section alone excludes: what it promises about data,
+// The preemptive executor without real-time levels, where only the critical section excludes: its guarantees for data,
 // states and counts, also under the thread sanitizer.
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -82,7 +82,7 @@ TEST(PreemptiveThreads, AFaultLeadsToErrorAndTheOthersGoOn) {
   EXPECT_EQ(app.task("bad").profile.cycles, 1u);
 }
 
-TEST(PreemptiveThreads, AJobThatSleepsIsChargedForWhatItComputed) {
+TEST(PreemptiveThreads, AJobThatSleepsIsChargedForItsComputingTime) {
   Application app;
   app.add("sleeper", milliseconds(20));
   app.toy("sleeper").during = [](const chimera_call&) {
@@ -96,7 +96,7 @@ TEST(PreemptiveThreads, AJobThatSleepsIsChargedForWhatItComputed) {
   EXPECT_LE(p.execution[CHIMERA_CYCLE].sum, p.response.sum - milliseconds(5) * static_cast<std::int64_t>(p.cycles));
 }
 
-// Also where nobody looks at a job that is alone before it ends.
+// Holds also for a job that is alone: the executor does not check such a job before its end.
 TEST(PreemptiveThreads, EveryJobOverItsBudgetIsRecordedOnce) {
   Application app;
   app.add("over", milliseconds(10), milliseconds(2)).budget = milliseconds(1);

@@ -191,7 +191,7 @@ class Minimum : public Reactions {
 INSTANTIATE_TEST_SUITE_P(All, Minimum, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
                          [](const auto& one) { return kind_name(one.param); });
 
-TEST_P(Minimum, RefusedWithContinueRunsAllTheSame) {
+TEST_P(Minimum, AStartWithoutItsMinimumRunsUnderContinue) {
   start(OnMiss::kContinue);
   EXPECT_EQ(profile().min_refused, 1u);
   EXPECT_EQ(releases(), "0 ");

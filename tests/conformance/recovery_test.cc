@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What failed comes back by itself, on every executor of one context: standbys take over from tasks that went to ERROR,
-// and on_fault restarts tasks.
+// Recovery on every executor of one context: standbys take over from tasks that went to ERROR, and on_fault restarts
+// tasks.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -13,10 +13,10 @@
 namespace chimera::toy {
 namespace {
 
-/// What the components of a run do, and what they saw. One run at a time.
+/// Actions of the components of a run, and the values that they read. One run at a time.
 struct Scene {
   std::function<Outcome(Cycle)> cycle_of_first, on_of_first, clear_of_first, cycle_of_spare, on_of_spare;
-  std::vector<double> u;         // that the reader read
+  std::vector<double> u;         // values that the reader read
   std::vector<bool> illegal;     // and whether the flag was up then
   std::vector<bool> valid;       // and whether that was valid
   std::vector<std::int64_t> spare_cycles;  // instants
@@ -178,12 +178,12 @@ TEST_P(RecoveryTest, ATakeoverHasAReceipt) {
   EXPECT_EQ(receipt.variables[0].handover.from.task, kFirst);
   EXPECT_EQ(receipt.variables[0].handover.to.task, kSpare);
   EXPECT_TRUE(receipt.variables[0].step_of_on.is_known);
-  EXPECT_EQ(receipt.variables[0].step_of_on.size, 0) << "it goes on from what stands";
+  EXPECT_EQ(receipt.variables[0].step_of_on.size, 0) << "it continues from the last value";
   EXPECT_EQ(receipt.variables[0].step_of_cycle.size, 95) << "from 5 to 100";
   EXPECT_TRUE(receipt.variables[0].step_of_cycle.is_beyond);
 }
 
-TEST_P(RecoveryTest, AnAttemptThatFailsHasAReceiptAndSoHasOneThatTheEndCuts) {
+TEST_P(RecoveryTest, AFailedAttemptAndOneCutByTheEndHaveReceipts) {
   fail_first_in(5);
   scene.on_of_spare = [n = 0](Cycle) mutable -> Outcome { return n++ == 0 ? fault("no voltage") : ok(); };
   go(milliseconds(5) + microseconds(100));
@@ -215,7 +215,7 @@ TEST_P(RecoveryTest, ALateTakeoverSaysHowLongTheFlagWasUp) {
   EXPECT_EQ(receipt.flag, receipt.at - receipt.asked - milliseconds(1));
 }
 
-TEST_P(RecoveryTest, OneThatCannotGoOnMakesPlaceForTheNext) {
+TEST_P(RecoveryTest, AStandbyThatCannotGoOnMakesPlaceForTheNext) {
   fail_first_in(5);
   scene.on_of_spare = [n = 0](Cycle) mutable -> Outcome { return n++ == 0 ? fault("no voltage") : ok(); };
   go(milliseconds(10));
@@ -307,8 +307,8 @@ TEST_P(RecoveryTest, AHotStandbyCyclesUnreadAndIsReadFromTheTakeoverOn) {
   EXPECT_EQ(scene.ons_of_spare, 1) << "no on at the takeover";
   EXPECT_EQ(task(kSpare).profile.takeovers, 1u);
   EXPECT_FALSE(was_up());
-  // It began in the gap behind the first cycles, and goes on from where it is: at 5 ms, in which `first` fails, what it
-  // published at 4 ms is read already.
+  // The standby began in the gap behind the first cycles and goes on. At 5 ms, when `first` fails, readers already have
+  // the value that the standby published at 4 ms.
   EXPECT_EQ(scene.u, (std::vector<double>{1, 2, 3, 4, 5, 103, 104, 105, 106, 107}));
 }
 
@@ -325,7 +325,7 @@ TEST_P(RecoveryTest, AHotStandbyThatIsNotReadyIsAskedAgainAPeriodLater) {
   EXPECT_TRUE(task(kSpare).is_unread);
 }
 
-TEST_P(RecoveryTest, AHotStandbyIsOffForAllOthersAndWhatItSendsIsNotSent) {
+TEST_P(RecoveryTest, AHotStandbyIsOffForOtherTasksAndSendsNothing) {
   make_hot(standbys_);
   scene.cycle_of_spare = [](Cycle c) -> Outcome {
     c.request("alone");
@@ -338,11 +338,11 @@ TEST_P(RecoveryTest, AHotStandbyIsOffForAllOthersAndWhatItSendsIsNotSent) {
   EXPECT_GE(scene.spare_cycles.size(), 9u);
   EXPECT_EQ(runner_->receipts().size(), 0u);
   EXPECT_TRUE(set_->flag().is_on_set_legal());
-  EXPECT_EQ(scene.u.back(), 10) << "nobody reads it";
+  EXPECT_EQ(scene.u.back(), 10) << "no task reads the standby";
   EXPECT_FALSE(was_up());
 }
 
-TEST_P(RecoveryTest, AHotStandbyRestsWhileNobodyOfItsGroupIsOn) {
+TEST_P(RecoveryTest, AHotStandbyRestsWhileItsPrimaryIsOff) {
   make_hot(standbys_);
   go(milliseconds(12), {signal(milliseconds(3), Signal::kOff, kFirst), signal(milliseconds(8), Signal::kOn, kFirst)});
   EXPECT_EQ(scene.ons_of_spare, 2);
@@ -392,7 +392,7 @@ TEST_P(RecoveryTest, AnInputThatIsTooOldIsNotValid) {
   stale_ = {{kReader, microseconds(2500)}};
   fail_first_in(3);
   go(milliseconds(8), {signal(microseconds(6500), Signal::kClear, kFirst)});
-  // Published at 2 ms for the last time; what clear leaves as it was stays as old as it is.
+  // The last publication is from 2 ms. A value that `clear` does not change keeps its age.
   EXPECT_EQ(scene.valid, (std::vector<bool>{true, true, true, true, true, false, false, false}));
 }
 

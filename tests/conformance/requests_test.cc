@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tasks that ask for a configuration, on every executor of one context: the last request stands, none is lost while a
-// switch is under way, and one that changes nothing has no effect.
+// Requests of tasks for a configuration, on every executor of one context: the last request counts, none is lost during
+// a switch, and a request that changes nothing has no effect.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -13,7 +13,7 @@
 namespace chimera::toy::requests_test {
 namespace {
 
-/// What the components of a run do. One run at a time.
+/// Actions of the components of a run. One run at a time.
 struct Scene {
   std::function<void(Cycle)> first, second;  // in the cycles of the two that ask
   std::function<Outcome(Cycle)> on_of_high, cycle_of_low;
@@ -102,7 +102,7 @@ class Requests : public ::testing::TestWithParam<Kind> {
 INSTANTIATE_TEST_SUITE_P(All, Requests, ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
                          [](const auto& one) { return kind_name(one.param); });
 
-// `high` has its first cycle half a second after the change: nobody waits for it who asks.
+// `high` has its first cycle half a second after the change. The next request does not wait for it.
 TEST_P(Requests, DoNotWaitForFirstCycles) {
   change_ = [](testing::TestApplication& app) {
     app.tasks[kHigh.index].period = app.tasks[kHigh.index].deadline = seconds(1);
@@ -120,7 +120,7 @@ TEST_P(Requests, DoNotWaitForFirstCycles) {
   EXPECT_TRUE(is_on(kLow));
 }
 
-TEST_P(Requests, TheSameThatIsRefusedIsTakenTenTimesASecondAndAnotherOneAtOnce) {
+TEST_P(Requests, RepeatsARefusedRequestTenTimesASecondAndTakesAnotherAtOnce) {
   scene.on_of_high = [](Cycle) { return fault("no"); };
   scene.first = [](Cycle c) { (void)c.request(c.count() == 270 ? "other" : "high"); };
   const auto receipts = go(milliseconds(300));
@@ -135,11 +135,11 @@ TEST_P(Requests, TheSameThatIsRefusedIsTakenTenTimesASecondAndAnotherOneAtOnce) 
   EXPECT_EQ(receipts[3].end, SwitchEnd::kDone);
   EXPECT_EQ(receipts[3].after, kOtherSet);
   EXPECT_LT(receipts[3].at, milliseconds(272));
-  EXPECT_LT(receipts[4].asked, milliseconds(273)) << "it is not the one that was taken last";
+  EXPECT_LT(receipts[4].asked, milliseconds(273)) << "the request before was for another set";
   EXPECT_TRUE(is_on(kOther));
 }
 
-TEST_P(Requests, WhatIsRefusedIsTakenAgainAlthoughItIsAskedForOnlyOnceMore) {
+TEST_P(Requests, ASecondRequestRepeatsARefusedSwitch) {
   scene.on_of_high = [](Cycle) { return fault("no"); };
   scene.first = [](Cycle c) {
     if (c.count() == 10 || c.count() == 20) ask(c, "high");
@@ -180,9 +180,9 @@ TEST_P(Requests, TheLastOfAMethodCounts) {
   EXPECT_EQ(receipts[0].after, kOtherSet);
 }
 
-TEST_P(Requests, ForWhatIsInForceOrUnderWayHaveNoEffect) {
+TEST_P(Requests, ARequestForTheSetInForceOrUnderWayHasNoEffect) {
   scene.on_of_high = [](Cycle c) {
-    c.spend(microseconds(1500));  // the releases that come meanwhile go before the change
+    c.spend(microseconds(1500));  // the releases during `on` come before the change
     return ok();
   };
   scene.first = [](Cycle c) {
@@ -195,7 +195,7 @@ TEST_P(Requests, ForWhatIsInForceOrUnderWayHaveNoEffect) {
   EXPECT_EQ(scene.answers, (std::vector<bool>{true, true, true}));
 }
 
-TEST_P(Requests, ThatComeMeanwhileAreTakenNextAndTheLastOfThemStands) {
+TEST_P(Requests, DuringASwitchTheLastRequestIsCarriedOutNext) {
   scene.on_of_high = [](Cycle c) {
     c.spend(microseconds(1500));
     return ok();
@@ -218,7 +218,7 @@ TEST_P(Requests, ThatComeMeanwhileAreTakenNextAndTheLastOfThemStands) {
   EXPECT_TRUE(is_on(kOther));
 }
 
-TEST_P(Requests, OfAnOperatorAreRefusedWhileOneOfATaskIsUnderWay) {
+TEST_P(Requests, ARequestOfAnOperatorIsRefusedDuringASwitch) {
   scene.on_of_high = [](Cycle c) {
     c.spend(microseconds(1500));
     return ok();
@@ -234,7 +234,7 @@ TEST_P(Requests, OfAnOperatorAreRefusedWhileOneOfATaskIsUnderWay) {
   EXPECT_EQ(receipts[1].cause, SwitchCause::kScript);
 }
 
-TEST_P(Requests, OfAnArmedTaskGoOutAtTheChangeAndAreForgottenWithoutOne) {
+TEST_P(Requests, ARequestOfAnArmedTaskIsSentAtTheChangeOnly) {
   scene.on_of_high = [](Cycle c) {
     ask(c, "other");
     return ok();
@@ -266,20 +266,20 @@ TEST_P(Requests, ForAnUnknownConfigurationAreRefusedCountedAndNotedOnce) {
   EXPECT_STREQ(task.faults.note, "asks for the configuration 'hihg': there is none of this name");
 }
 
-TEST_P(Requests, ForTasksAreWorkedOutFromWhatIsOn) {
+TEST_P(Requests, ARequestForTasksDependsOnTheTasksThatAreOn) {
   scene.first = [](Cycle c) {
     if (c.count() == 3) ask(c, "--on high");
-    if (c.count() == 4 || c.count() == 8) ask(c, "--on high --off low");  // what is under way, and what is in force
+    if (c.count() == 4 || c.count() == 8) ask(c, "--on high --off low");  // at 4 under way, at 8 in force
     if (c.count() == 12) ask(c, "--off second");
     if (c.count() == 20) ask(c, "--on low --off high");
   };
   const auto receipts = go(milliseconds(30), {to(kOtherSet, milliseconds(25))});
   EXPECT_EQ(scene.answers, std::vector<bool>(5, true));
   ASSERT_EQ(receipts.size(), 4u);
-  EXPECT_EQ(receipts[0].after, kHighSet) << "`high` alone: who produces the same goes OFF";
+  EXPECT_EQ(receipts[0].after, kHighSet) << "`high` alone: its rival producer goes OFF";
   EXPECT_EQ(receipts[0].cause, SwitchCause::kRequest);
   EXPECT_EQ(receipts[0].by, kFirst);
-  EXPECT_EQ(receipts[1].after, kNoSet) << "it is none of them";
+  EXPECT_EQ(receipts[1].after, kNoSet) << "it is no configuration";
   EXPECT_EQ(receipts[2].before, kNoSet);
   for (const SwitchReceipt& receipt : receipts) EXPECT_EQ(receipt.end, SwitchEnd::kDone);
   EXPECT_TRUE(runner_->asked().refused().empty());
@@ -300,7 +300,7 @@ TEST_P(Requests, ForTasksThatAreNoLegalSetAreRefusedAndKept) {
   EXPECT_TRUE(is_on(kLow));
 }
 
-TEST_P(Requests, OfOneConfigurationTurnSomeOfItsTasksOff) {
+TEST_P(Requests, MayTurnOffATaskOfTheOnlyConfiguration) {
   n_sets_ = 1;
   scene.first = [](Cycle c) {
     if (c.count() == 3) ask(c, "--off second");
@@ -319,7 +319,7 @@ TEST_P(Requests, WhereThereIsOneConfigurationAreRefused) {
   EXPECT_STREQ(set_->tasks()[kFirst.index].faults.note, "asks for the configuration 'low': it is the only one");
 }
 
-TEST_P(Requests, OfTheReactionOnMissFollowTheLateCycle) {
+TEST_P(Requests, AReactionOnMissSwitchesAfterTheLateCycle) {
   change_ = [](testing::TestApplication& app) {
     app.tasks[kLow.index].on_miss = OnMiss::kSwitch;
     app.tasks[kLow.index].on_miss_set = kHighSet;
@@ -340,7 +340,7 @@ TEST_P(Requests, OfTheReactionOnMissFollowTheLateCycle) {
   EXPECT_TRUE(is_on(kHigh));
 }
 
-TEST_P(Requests, OfTheReactionOnOverrunFollowTheCycleThatUsedTooMuch) {
+TEST_P(Requests, AReactionOnOverrunSwitchesAfterTheLongCycle) {
   change_ = [](testing::TestApplication& app) {
     app.tasks[kLow.index].on_overrun = OnMiss::kSwitch;
     app.tasks[kLow.index].on_overrun_set = kOtherSet;
@@ -357,7 +357,7 @@ TEST_P(Requests, OfTheReactionOnOverrunFollowTheCycleThatUsedTooMuch) {
   EXPECT_TRUE(is_on(kOther));
 }
 
-TEST_P(Requests, OfTheReactionOnFaultLeaveTheTaskInErrorBehind) {
+TEST_P(Requests, AReactionOnFaultLeavesTheTaskInError) {
   change_ = [](testing::TestApplication& app) {
     app.tasks[kLow.index].on_fault = OnFault::kSwitch;
     app.tasks[kLow.index].on_fault_set = kHighSet;
@@ -368,7 +368,7 @@ TEST_P(Requests, OfTheReactionOnFaultLeaveTheTaskInErrorBehind) {
   EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
   EXPECT_EQ(receipts[0].cause, SwitchCause::kFault);
   EXPECT_EQ(receipts[0].by, kLow);
-  EXPECT_EQ(receipts[0].before, kNoSet) << "a member was in ERROR by then";
+  EXPECT_EQ(receipts[0].before, kNoSet) << "a member was already in ERROR";
   EXPECT_LT(receipts[0].at, milliseconds(4));
   EXPECT_EQ(set_->tasks()[kLow.index].state, chimera::State::kError);
   EXPECT_TRUE(is_on(kHigh));
@@ -383,7 +383,7 @@ TEST_P(Requests, AreNotMadeByAFaultThatLeavesFlag) {
   const ScriptAct clear{milliseconds(6), ScriptAct::Kind::kSignal, Signal::kClear, kSecond};
   EXPECT_TRUE(go(milliseconds(5), {clear}).empty());
   EXPECT_EQ(set_->tasks()[kSecond.index].state, chimera::State::kError);
-  EXPECT_TRUE(set_->flag().is_on_set_legal()) << "nobody reads what it writes";
+  EXPECT_TRUE(set_->flag().is_on_set_legal()) << "no task reads its output";
   EXPECT_TRUE(set_->flag().is_up());
   EXPECT_EQ(runner_->run(milliseconds(7)), RunEnd::kTime);
   EXPECT_FALSE(set_->flag().is_up()) << "no longer in ERROR";

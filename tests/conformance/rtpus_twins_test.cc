@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An rtpu among others whose tasks get nothing from them does in virtual time what it does alone, record by record; a
-// run of several rtpus repeats to the byte, however it is cut into pieces and whichever context is made first.
+// In virtual time an rtpu without inputs from others gives the records of a run alone. A run of several rtpus repeats
+// to the byte, for all lengths of its pieces and for each order in which contexts are made.
 #include <gtest/gtest.h>
 
 #include "tests/conformance/random_toys.h"
@@ -22,7 +22,7 @@ struct Outcome {
 
 constexpr Nanoseconds kRan = milliseconds(45), kCompared = milliseconds(40);
 
-// What the first `n` tasks did: the others are company. How a run ends is another matter.
+// Records of the first `n` tasks, without those of the end of the run.
 Outcome outcome_of(std::vector<TapRecord> records, const std::vector<Call>& calls, std::uint32_t n, RtpuId rtpu) {
   Outcome outcome;
   for (const TapRecord& r : records)
@@ -54,7 +54,7 @@ Outcome alone(std::uint32_t seed, bool preemptive, const VirtualOptions& how) {
   return outcome_of(runner.records(), app.calls, n, RtpuId(0u));
 }
 
-// The same tasks on rtpu `me` of three; on the others tasks that read each other, preemptive and not.
+// These tasks on rtpu `me` of three. The other rtpus, preemptive and not, have tasks that read each other.
 Outcome in_company(std::uint32_t seed, bool preemptive, std::uint32_t me, const VirtualOptions& how) {
   Dice dice(seed);
   Application app;
@@ -80,7 +80,7 @@ Outcome in_company(std::uint32_t seed, bool preemptive, std::uint32_t me, const 
   return outcome_of(run.records(), app.calls, n, RtpuId(me));
 }
 
-TEST(RtpusTwins, AnRtpuThatGetsNothingFromOthersDoesWhatItDoesAlone) {
+TEST(RtpusTwins, AnRtpuWithoutInputsFromOthersRunsAsAlone) {
   std::size_t n_records = 0;
   for (std::uint32_t seed = 1; seed <= 40; ++seed)
     for (const bool preemptive : {false, true}) {
@@ -131,7 +131,7 @@ struct Entangled {
   std::unique_ptr<RtpusRun> run;
 };
 
-TEST(RtpusTwins, ARunRepeatsInWhicheverOrderTheContextsAreMade) {
+TEST(RtpusTwins, ARunRepeatsForEachOrderOfTheContexts) {
   for (std::uint32_t seed = 1; seed <= 25; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Entangled first(seed), again(seed), turned(seed, {2, 0, 1});

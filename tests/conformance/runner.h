@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The executors behind one face, so that one suite runs over all of them; and what any of them leaves on its tap.
+// The executors behind one interface, so that one suite runs over all of them, and the records on their taps.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 
 namespace chimera::toy {
 
-/// What a job computing means on the virtual twin of the clock: it steps.
+/// Computing on the virtual twin of the clock: the clock steps.
 class TwinClock final : public JobClock {
  public:
   explicit TwinClock(VirtualClock& clock) noexcept : clock_(clock) {}

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A switch waits until what its configuration asks by `safe_when` holds, and until what an arriving task reads has a
-// value: on every executor of one context, and over several rtpus in virtual time, where the value comes from the other
-// rtpu.
+// A switch waits until `safe_when` of its configuration holds and until the inputs of arriving tasks have values: on
+// every executor of one context, and over several rtpus in virtual time, where the value comes from the other rtpu.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +16,7 @@
 namespace chimera::toy::safe_when_test {
 namespace {
 
-/// What the components of a run do. One run at a time.
+/// Actions of the components of a run. One run at a time.
 struct Scene {
   std::function<double(std::uint64_t)> speed;  // by cycle
   std::function<void(Cycle)> on_of_hand;
@@ -63,15 +62,15 @@ struct Late {
   void cycle(Cycle) { *late = 3; }
 };
 
-struct Guest {
+struct Remote {
   In<double> late{"late", "1"};
   Out<double> u{"u", "1", initial = 0.0};
   void on() { scene.late_at_on = *late; }
   void cycle(Cycle) { *u = *late; }
 };
 
-constexpr TaskId kPlant{0u}, kAuto{1u}, kHand{2u}, kThird{3u}, kLate{4u}, kGuest{5u};
-constexpr std::uint32_t kToHand = 1, kToGuest = 2;
+constexpr TaskId kPlant{0u}, kAuto{1u}, kHand{2u}, kThird{3u}, kLate{4u}, kRemote{5u};
+constexpr std::uint32_t kToHand = 1, kToRemote = 2;
 
 struct Asked {
   const char* variable;
@@ -80,8 +79,8 @@ struct Asked {
   double limit;
 };
 
-/// The tasks on two rtpus, of which one context may take all; 'hand' may be switched to when `asked` holds, 'guest'
-/// when the task late has cycled, from its offset on.
+/// The tasks on two rtpus, or all in one context. A switch to 'hand' may happen when `asked` holds, a switch to
+/// 'remote' when the task late has cycled, from its offset on.
 struct Application {
   Application(const Asked& asked, Nanoseconds offset_of_late) {
     app.rtpus = {{"first", 0, Policy::kEdf}, {"second", 1, Policy::kEdf}};
@@ -94,8 +93,8 @@ struct Application {
     late.budget = microseconds(20);
     late.offset = offset_of_late;
     late.rtpu = RtpuId{0u};
-    app.add("guest", testing::component<Guest>("guest")).budget = microseconds(20);
-    app.tasks[kHand.index].rtpu = app.tasks[kThird.index].rtpu = app.tasks[kGuest.index].rtpu = RtpuId{1u};
+    app.add("remote", testing::component<Remote>("remote")).budget = microseconds(20);
+    app.tasks[kHand.index].rtpu = app.tasks[kThird.index].rtpu = app.tasks[kRemote.index].rtpu = RtpuId{1u};
     app.port(kPlant.index, 2).extent[0].max = 3;
     app.make({kPlant, kAuto, kLate}, false);
     const std::size_t variable = Variables(app.spec).find(asked.variable);
@@ -104,8 +103,8 @@ struct Application {
     app.spec.sets = sets;
   }
   testing::TestApplication app;
-  TaskId automatic[3] = {kPlant, kAuto, kLate}, hand[3] = {kPlant, kHand, kLate}, guest[3] = {kPlant, kLate, kGuest};
-  NamedSet sets[3] = {{"automatic", automatic}, {"hand", hand}, {"guest", guest}};
+  TaskId automatic[3] = {kPlant, kAuto, kLate}, hand[3] = {kPlant, kHand, kLate}, remote[3] = {kPlant, kLate, kRemote};
+  NamedSet sets[3] = {{"automatic", automatic}, {"hand", hand}, {"remote", remote}};
 };
 
 ScriptAct switch_to(std::uint32_t set, Nanoseconds at) {
@@ -134,9 +133,9 @@ class SafeWhen : public ::testing::TestWithParam<How> {
     return go_to(kToHand, duration, at);
   }
   /// The task late has its first cycle at `first`.
-  SwitchReceipt go_to_guest(Nanoseconds first, Nanoseconds duration) {
+  SwitchReceipt go_to_remote(Nanoseconds first, Nanoseconds duration) {
     application_ = std::make_unique<Application>(Asked{"speed", 0, Relation::kUnequal, 100}, first);
-    return go_to(kToGuest, duration, microseconds(2500));
+    return go_to(kToRemote, duration, microseconds(2500));
   }
   SwitchReceipt go_to(std::uint32_t to, Nanoseconds duration, Nanoseconds at) {
     testing::TestApplication& app = application_->app;
@@ -197,7 +196,7 @@ TEST_P(SafeWhen, IsAskedOfElementsAndOfOtherTypes) {
   EXPECT_GE(receipt.armed, milliseconds(7));
 }
 
-TEST_P(SafeWhen, ThatNeverHoldsEndsTheSwitchWithTheValue) {
+TEST_P(SafeWhen, AConditionThatNeverHoldsAbortsWithTheValue) {
   const SwitchReceipt receipt = go({"speed", 0, Relation::kMore, 100}, seconds(11));
   EXPECT_EQ(receipt.end, SwitchEnd::kAborted);
   EXPECT_EQ(receipt.why, NoSwitch::kNotSafe);
@@ -207,13 +206,13 @@ TEST_P(SafeWhen, ThatNeverHoldsEndsTheSwitchWithTheValue) {
   EXPECT_LE(receipt.ended, seconds(10) + milliseconds(5));
 }
 
-TEST_P(SafeWhen, WhatNobodyProducesIsNotSafe) {
+TEST_P(SafeWhen, AVariableWithoutAProducerIsNotSafe) {
   const SwitchReceipt receipt = go({"third", 0, Relation::kUnequal, 100}, seconds(11));
   EXPECT_EQ(receipt.why, NoSwitch::kNotSafe);
   EXPECT_TRUE(std::isnan(receipt.value));
 }
 
-TEST_P(SafeWhen, WhatNeverHadAValueIsNotSafe) {
+TEST_P(SafeWhen, AnUnwrittenVariableIsNotSafe) {
   int cycles = 0;
   scene.on_of_hand = [&cycles](Cycle) { cycles = scene.cycles; };
   const SwitchReceipt receipt = go({"speed", 0, Relation::kUnequal, 100}, milliseconds(20), {});
@@ -222,7 +221,7 @@ TEST_P(SafeWhen, WhatNeverHadAValueIsNotSafe) {
 }
 
 TEST_P(SafeWhen, AnInputWithoutAValueHoldsArmingUpUntilItHasOne) {
-  const SwitchReceipt receipt = go_to_guest(milliseconds(6), milliseconds(20));
+  const SwitchReceipt receipt = go_to_remote(milliseconds(6), milliseconds(20));
   EXPECT_EQ(receipt.end, SwitchEnd::kDone) << static_cast<int>(receipt.why);
   EXPECT_GE(receipt.armed, milliseconds(6));
   EXPECT_LE(receipt.armed, milliseconds(7));
@@ -230,18 +229,18 @@ TEST_P(SafeWhen, AnInputWithoutAValueHoldsArmingUpUntilItHasOne) {
 }
 
 TEST_P(SafeWhen, AnInputThatNeverHasAValueEndsTheSwitchByItsName) {
-  const SwitchReceipt receipt = go_to_guest(seconds(50), seconds(11));
+  const SwitchReceipt receipt = go_to_remote(seconds(50), seconds(11));
   EXPECT_EQ(receipt.end, SwitchEnd::kAborted);
   EXPECT_EQ(receipt.why, NoSwitch::kNoValue);
-  EXPECT_EQ(receipt.task, kGuest);
+  EXPECT_EQ(receipt.task, kRemote);
   EXPECT_EQ(receipt.variable.index, Variables(application_->app.spec).find("late"));
   EXPECT_GE(receipt.ended, seconds(10));
   EXPECT_LE(receipt.ended, seconds(10) + milliseconds(5));
   EXPECT_EQ(scene.late_at_on, 0) << "its on was not called";
 }
 
-// `on` takes 5 ms, within which the value becomes another: on one context nobody cycles meanwhile.
-TEST_P(SafeWhen, ThatHoldsNoMoreWhenTheInstantWouldBeProposedTakesTheSwitchBack) {
+// `on` takes 5 ms, in which the value changes. With one context no task cycles during `on`.
+TEST_P(SafeWhen, OnSeveralRtpusAConditionThatFailsBeforeTheProposalAborts) {
   scene.on_of_hand = [](Cycle c) { c.spend(milliseconds(5)); };
   const SwitchReceipt receipt = go({"speed", 0, Relation::kMore, 5.5}, milliseconds(40));
   EXPECT_EQ(receipt.end, GetParam() >= How::kTwoRtpus ? SwitchEnd::kAborted : SwitchEnd::kDone);

@@ -19,8 +19,8 @@ struct Device {
   std::vector<std::string> story;
   std::string fails;      // the method that answers with a fault: "init drill"
   int users = 0;
-  int not_ready = 0;      // so often `on` of the drill answers not yet
-  int hand_not_ready = 0, arm_not_ready = 0;  // the same of the hand and the arm
+  int not_ready = 0;      // number of times that `on` of the drill answers not yet
+  int hand_not_ready = 0, arm_not_ready = 0;  // of the hand and of the arm
   std::uint64_t hand_fails_at = 0;  // cycle of the hand that is a fault; 0: none
 };
 Device device;
@@ -139,7 +139,7 @@ INSTANTIATE_TEST_SUITE_P(All, SameResource,
                          ::testing::Values(Kind::kExecutiveOnTwin, Kind::kVirtual, Kind::kPreemptive),
                          [](const auto& one) { return kind_name(one.param); });
 
-TEST_P(SameResource, ASwitchClosesItForTheOneBeforeItOpensItForTheOther) {
+TEST_P(SameResource, ASwitchClosesTheDeviceBeforeItOpensItForTheOther) {
   const auto receipts = go(milliseconds(40), {to(kWithDrill, milliseconds(5)), to(kWithHand, milliseconds(25))});
   ASSERT_EQ(receipts.size(), 2u);
   for (const SwitchReceipt& receipt : receipts) {
@@ -165,7 +165,7 @@ TEST_P(SameResource, DeclaredSharedBothAreCreatedAndTheSwitchIsFast) {
   EXPECT_EQ(device.story, (Story{"init hand", "init drill", "on hand", "on drill", "off hand"}));
 }
 
-TEST_P(SameResource, WhateverFailsTheOldTaskHasItsDeviceAgain) {
+TEST_P(SameResource, AfterAFailedSwitchTheOldTaskHasItsDevice) {
   for (const char* fails : {"init drill", "on drill"}) {
     device = {};
     device.fails = fails;
@@ -198,7 +198,7 @@ TEST_P(SameResource, ADeviceThatCannotBeOpenedAgainIsNamed) {
   EXPECT_EQ(receipt.why, NoSwitch::kFlagRaised);
   EXPECT_EQ(receipt.not_back, kHand);
   EXPECT_EQ(states(), (Story{"NOT-CREATED", "NOT-CREATED", "ON"}));
-  EXPECT_EQ(device.users, 0) << "what the drill had begun is ended, and its device closed";
+  EXPECT_EQ(device.users, 0) << "the drill is ended, and its device closed";
 }
 
 TEST_P(SameResource, OnMayTakeSomeCycles) {
@@ -230,7 +230,7 @@ TEST_P(SameResource, OnThatIsNeverReadyIsTakenBackWithItsOff) {
   EXPECT_EQ(end, (Story{"off drill", "kill drill", "init hand", "on hand"}));
 }
 
-TEST_P(SameResource, AFastSwitchToADeviceThatIsNotReadyGoesTheSlowWay) {
+TEST_P(SameResource, AFastSwitchToAnUnreadyDeviceBecomesSlow) {
   is_shared_ = true;
   device.users = -1;
   device.not_ready = 3;
@@ -280,7 +280,7 @@ TEST_P(SameResource, TheStartWaitsForADeviceAndGivesItUpAfterTenSeconds) {
   EXPECT_EQ(states(), (Story{"OFF", "NOT-CREATED", "OFF"}));
 }
 
-TEST_P(SameResource, SpawnByHandIsRefusedWhileTheOtherOneIsThere) {
+TEST_P(SameResource, SpawnByHandIsRefusedWhileTheOtherTaskIsCreated) {
   const auto signal = [](Nanoseconds at, Signal which, TaskId task) {
     return ScriptAct{at, ScriptAct::Kind::kSignal, which, task};
   };

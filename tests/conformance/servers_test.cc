@@ -48,7 +48,7 @@ const Example kExamples[] = {
     {Policy::kRm, {{'A', 3, 10}, {'B', 4, 15}}, kSporadic, 2, 8, 0, {{2, 2}, {6, 2}}, "AASSABBBB.SSAAABBBB.AAA."},
     // Dynamic: due at 9 by the request at 3, at 12 by that at 6, and at 15 by what comes back at 9.
     {Policy::kEdf, {{'A', 2, 8}, {'B', 3, 12}}, kSporadic, 3, 6, 0, {{3, 2}, {6, 2}}, "AABSSBBSASA.BBB.AA......"},
-    // The same under maximum urgency: A is more critical than the server, B less.
+    // The example under maximum urgency: A is more critical than the server, B less.
     {Policy::kMuf, {{'A', 2, 8, 2}, {'B', 3, 12, 0}}, kSporadic, 3, 6, 1, {{3, 2}, {6, 2}},
      "AABSSBSBAAS.BBB.AA......"},
 };
@@ -91,7 +91,7 @@ std::vector<ScriptAct> add_example(Application& app, const Example& example) {
   return acts;
 }
 
-/// Which task had each millisecond: a letter of `names`, '.' if none.
+/// Task that had each millisecond: a letter of `names`, '.' if none.
 std::string timeline(const std::vector<TapRecord>& records, const std::string& names, std::size_t length) {
   std::string line(length, '.');
   for (const TapRecord& r : records) {
@@ -118,7 +118,7 @@ TEST(Servers, TheTextbookExamplesComeOutToTheLetter) {
   }
 }
 
-TEST(Servers, AJobLongerThanTheCapacityGoesOnWheneverSomeIsBack) {
+TEST(Servers, AJobLongerThanTheCapacityContinuesWhenCapacityReturns) {
   for (const ServerKind kind : {kDeferrable, kSporadic}) {
     Application app;
     add_served(app, "S", kind, 2, 5);
@@ -151,13 +151,13 @@ TEST(Servers, EveryRingOfAnotherTaskIsAnsweredByOneJob) {
   EXPECT_EQ(app.task("S").events, 0u);
 }
 
-TEST(Servers, ARingIsRefusedWhereNobodyWouldAnswerIt) {
+TEST(Servers, RefusesARingForATaskWithoutAServer) {
   Application app;
   app.add("A", milliseconds(4), milliseconds(1));
   add_served(app, "S", kDeferrable, 1, 6);
   std::vector<int> answers;
   app.toy("A").during = [&answers](const chimera_call& call) {
-    for (const char* target : {"A", "S", "nobody"})
+    for (const char* target : {"A", "S", "absent"})
       answers.push_back(call.host->signal(call.context, CHIMERA_SIGNAL_WAKEUP, target));
     return CHIMERA_OK;
   };
@@ -185,7 +185,7 @@ TEST(Servers, AnEventWithoutAnythingBehindItCostsNoCycle) {
   EXPECT_EQ(app.task("S").profile.cycles, 1u);
 }
 
-TEST(Servers, WhatWaitsWhenTheTaskGoesOffIsForgotten) {
+TEST(Servers, EventsThatWaitAreDroppedWhenTheTaskGoesOff) {
   Application app;
   add_served(app, "S", kDeferrable, 1, 6);
   app.toy("S").spend = milliseconds(1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The slow way of a switch on every executor of one context: constants of two tools that change under a task that
-// stays, the flag meanwhile, and the way back from each step.
+// The slow switch on every executor of one context: constants of two tools that change under a task that stays, the
+// flag during the switch, and the way back from each step.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -13,11 +13,11 @@
 namespace chimera::toy::slow_switch_test {
 namespace {
 
-/// What the components of a run do, and what they saw. One run at a time.
+/// Actions of the components of a run, and the values that they read. One run at a time.
 struct Tools {
   std::vector<std::string> story;
   std::string fails;          // the method that answers with a fault: "on heavy"
-  double heavy = 3;           // what tool heavy weighs
+  double heavy = 3;           // mass of the tool heavy
   std::int32_t heavy_axes = 2;
   std::vector<std::pair<std::int64_t, bool>> arm;  // release, flag
   std::vector<double> weighed;                     // by the cycles of the arm
@@ -177,7 +177,7 @@ TEST_P(SlowSwitches, EqualBytesOrNoUserThatStaysAreFast) {
   ASSERT_EQ(receipts[1].end, SwitchEnd::kDone) << static_cast<int>(receipts[1].why);
   EXPECT_EQ(receipts[1].way.slow, 0);
   EXPECT_EQ((std::vector<TaskId>{receipts[1].reinitialised.begin(), receipts[1].reinitialised.end()}),
-            (std::vector<TaskId>{kArm, kLaw})) << "who arrives has the constants of the set, too";
+            (std::vector<TaskId>{kArm, kLaw})) << "arriving tasks have the constants of the set, too";
   EXPECT_EQ(tools.weighed.back(), 3);
 }
 
@@ -208,7 +208,7 @@ TEST_P(SlowSwitches, AnExtentBeyondItsMaximumIsFoundBeforeAnythingHappens) {
 }
 
 // Each step fails once.
-TEST_P(SlowSwitches, WhateverFailsTheOldTasksAndConstantsComeBack) {
+TEST_P(SlowSwitches, AFailureInAnyStepRestoresTasksAndConstants) {
   struct Case {
     const char* fails;
     std::vector<std::string> story;
@@ -228,7 +228,7 @@ TEST_P(SlowSwitches, WhateverFailsTheOldTasksAndConstantsComeBack) {
     ASSERT_EQ(receipts[0].end, SwitchEnd::kAborted) << each.fails;
     EXPECT_EQ(receipts[0].said.view(), "no");
     EXPECT_EQ(receipts[0].way.slow, kSlowForConstants);
-    if (!each.is_back) continue;  // the default `error` leads to ERROR: told below
+    if (!each.is_back) continue;  // the default `error` leads to ERROR, which a test below checks
     EXPECT_EQ(tools.story, each.story) << each.fails;
     EXPECT_FALSE(receipts[0].not_back.is_valid());
     EXPECT_TRUE(are_on(with_light_)) << each.fails;
@@ -237,14 +237,14 @@ TEST_P(SlowSwitches, WhateverFailsTheOldTasksAndConstantsComeBack) {
   }
 }
 
-TEST_P(SlowSwitches, WhoDoesNotComeBackIsNamed) {
+TEST_P(SlowSwitches, NamesATaskThatDoesNotComeBack) {
   tools.fails = "reinit arm";
   const auto receipts = go(milliseconds(40), {to(kWithHeavy, milliseconds(5))});
   EXPECT_EQ(receipts[0].why, NoSwitch::kStepFailed);
   EXPECT_EQ(receipts[0].task, kArm);
   EXPECT_EQ(receipts[0].not_back, kArm);
   EXPECT_EQ(set_->tasks()[kLight.index].state, chimera::State::kOn);
-  EXPECT_TRUE(set_->flag().is_up()) << "nobody produces force";
+  EXPECT_TRUE(set_->flag().is_up()) << "no task produces force";
 }
 
 TEST_P(SlowSwitches, ASignalToAMemberAndTheFlagTakeItBack) {
@@ -266,7 +266,7 @@ TEST_P(SlowSwitches, ASignalToAMemberAndTheFlagTakeItBack) {
 }
 
 // Outside the configuration in force a task has the constants of the first one that names it.
-TEST_P(SlowSwitches, OnByHandReinitialisesWhoWasInitialisedWithOtherConstants) {
+TEST_P(SlowSwitches, OnByHandReinitialisesATaskWithOtherConstants) {
   tools.heavy = 1;
   tools.heavy_axes = 3;
   const ScriptAct off{milliseconds(25), ScriptAct::Kind::kSignal, Signal::kOff, kScreen};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A preemptive context that switches among configurations again and again: who read what, by the release of the job.
+// A preemptive context that switches among configurations repeatedly: the values that each job read, by its release.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ struct Reading {
   double u;
 };
 
-/// What a run has left behind. One run at a time.
+/// Records of a run. One run at a time.
 struct Seen {
   std::vector<Reading> reader;
   std::vector<SwitchReceipt> receipts;  // their lists are not kept
@@ -54,7 +54,7 @@ struct Load {
   }
 };
 
-/// The producers of u say who they are; nobody may read what they write when they are OFF.
+/// Each producer of u publishes its own number. No task may read the value that a producer writes in `off`.
 struct One {
   Out<double> u{"u", "1", initial = 1.0};
   void on(Cycle) { *u = 1; }

@@ -12,10 +12,10 @@
 namespace chimera::toy {
 namespace {
 
-std::vector<double> seen;  // what the reader read in each cycle
+std::vector<double> seen;  // values that the reader read in each cycle
 Nanoseconds off_at = kNever;
 
-struct Link {  // passes on what it reads
+struct Link {  // publishes its input
   In<double> x{"x", "1"};
   Out<double> y{"y", "1", initial = 1.0};
   void on(Cycle) { *y = *x; }
@@ -123,7 +123,7 @@ TEST_P(SwitchLoops, OffThatWasNeverCalledWaitsForAGapForAHundredMilliseconds) {
   EXPECT_LE(off_at, receipt.at + milliseconds(waits ? 102 : 2));
 }
 
-TEST_P(SwitchLoops, OnlyAContextWhoseJobsDoNotPreemptEachOtherNeedsAGapForOn) {
+TEST_P(SwitchLoops, OnlyAContextWithoutPreemptionNeedsAGapForOn) {
   const TaskId stays = add("stays", testing::component<Busy>("busy"), milliseconds(1), microseconds(30));
   const TaskId heavy = add("heavy", testing::component<Busy>("busy"), milliseconds(10), milliseconds(3));
   app_.link(heavy.index, 0, "yb");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A switch of configurations on every executor of one context: no cycle is lost, who stays is not touched, what fails
-// leaves nothing behind.
+// A switch of configurations on every executor of one context: no cycle is lost, tasks that stay are not disturbed, and
+// a switch that fails leaves nothing behind.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -16,10 +16,10 @@
 namespace chimera::toy {
 namespace {
 
-/// What a task published, and when that job was released.
+/// Release of each job in ns, and the value that it published.
 using Log = std::vector<std::tuple<std::int64_t, double>>;
 
-/// What the components of a run do, and what they saw. One run at a time.
+/// Actions of the components of a run, and the values that they read. One run at a time.
 struct Scene {
   Log plant, beacon, u;
   std::vector<std::string> story;  // "on two", "off one" in the order of the calls
@@ -27,7 +27,7 @@ struct Scene {
   double first_cycle_of_two = 0;   // added to the first cycle's law
   bool on_of_two_fails = false, two_sends = false;
   Nanoseconds on_takes = microseconds(30);
-  Nanoseconds long_beacon_at = kNever, long_beacon;  // one cycle of it takes so long
+  Nanoseconds long_beacon_at = kNever, long_beacon;  // from this instant one cycle takes this time
 };
 Scene scene;
 
@@ -43,7 +43,7 @@ struct Plant {
   }
 };
 
-struct Beacon {  // knows nobody
+struct Beacon {  // is connected to no task
   Out<double> b{"b", "1", initial = 0.0};
   void cycle(Cycle c) {
     if (c.now() >= scene.long_beacon_at) c.spend(std::exchange(scene.long_beacon, {}));
@@ -63,7 +63,7 @@ struct One {
   void off(Cycle c) {
     scene.story.emplace_back("off one");
     c.spend(microseconds(20));
-    *u = 1e6;  // nobody may see this
+    *u = 1e6;  // no task may read this
   }
 };
 
@@ -141,7 +141,7 @@ class Switches : public ::testing::TestWithParam<Kind> {
   const TaskPart& part(const SwitchReceipt& receipt, TaskId task) const {
     return *std::ranges::find(receipt.tasks, task, &TaskPart::task);
   }
-  /// What stands in the groups of those who were ON: header and values of the latest publication.
+  /// Groups of the tasks of the first set: header and values of the latest publication.
   std::vector<std::byte> groups() const {
     std::vector<std::byte> bytes;
     for (const TaskId id : direct_) {
@@ -193,8 +193,8 @@ TEST_P(Switches, ArmBesideThePredecessorCommitAtOneInstantAndTurnOffBehindIt) {
   EXPECT_EQ(set_->tasks()[kOne.index].profile.cycles, 6u);   // at 0 to 5 ms
 }
 
-// The laws of both sets come to the same value, so that whoever stays must publish the same bits with and without.
-TEST_P(Switches, TenThousandAtRandomInstantsLoseNothingAndDoNotTouchWhoStays) {
+// The laws of both sets compute equal values: tasks that stay must publish equal bits with and without the switches.
+TEST_P(Switches, TenThousandAtRandomInstantsLoseNoCycleOfTasksThatStay) {
   std::vector<ScriptAct> acts;
   std::mt19937 random(7);
   Nanoseconds at = milliseconds(10);
@@ -218,7 +218,7 @@ TEST_P(Switches, TenThousandAtRandomInstantsLoseNothingAndDoNotTouchWhoStays) {
   EXPECT_EQ(losses(), 0u);
   EXPECT_TRUE(plant == scene.plant);
   EXPECT_TRUE(beacon == scene.beacon);
-  EXPECT_TRUE(u == scene.u);  // what `on` and `off` write is never read
+  EXPECT_TRUE(u == scene.u);  // values that `on` and `off` write are never read
   const auto& tasks = set_->tasks();
   const std::uint64_t releases = tasks[kPlant.index].profile.cycles;
   EXPECT_EQ(tasks[kOne.index].profile.cycles + tasks[kTwo.index].profile.cycles, releases);
@@ -246,7 +246,7 @@ TEST_P(Switches, AnOnThatFailsUndoesEverything) {
   EXPECT_EQ(losses(), 0u);
 }
 
-TEST_P(Switches, WhatOnSendsGoesOutAtTheChangeAndIsForgottenWithoutOne) {
+TEST_P(Switches, ASignalFromOnIsSentAtTheChangeOnly) {
   scene.two_sends = true;
   scene.on_takes = microseconds(600);
   go(milliseconds(20), {to(kObserved, microseconds(5600))});
@@ -269,7 +269,7 @@ TEST_P(Switches, AStepOfOnBeyondTheLimitUndoesEverything) {
   EXPECT_EQ(state(kTwo), chimera::State::kOff);
 }
 
-TEST_P(Switches, AStepOfTheFirstCycleBeyondTheLimitIsTold) {
+TEST_P(Switches, ReportsAStepOfTheFirstCycleBeyondTheLimit) {
   limit_ = 0.5;
   scene.first_cycle_of_two = 0.6;
   const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600))});
@@ -285,7 +285,7 @@ TEST_P(Switches, AStepOfTheFirstCycleBeyondTheLimitIsTold) {
   EXPECT_EQ(u->step_of_cycle.limit, 0.5);
 }
 
-// One cycle of the beacon takes 1.4 ms within the switch: whoever else is ON starts late, and the receipt says so.
+// One cycle of the beacon takes 1.4 ms within the switch: other tasks start late, and the receipt has their delay.
 TEST_P(Switches, TheReceiptHasTheLongestDelayOfAStart) {
   scene.long_beacon_at = microseconds(5700);
   scene.long_beacon = microseconds(1400);
@@ -300,7 +300,7 @@ TEST_P(Switches, TheReceiptHasTheLongestDelayOfAStart) {
   EXPECT_LE(before, microseconds(200));
 }
 
-TEST_P(Switches, OneAtATimeAndWhatIsInForceIsNothingToDo) {
+TEST_P(Switches, OneSwitchAtATimeAndNoneToTheSetInForce) {
   scene.on_takes = microseconds(600);
   const auto receipts = go(milliseconds(20), {to(kDirect, milliseconds(2)), to(kObserved, microseconds(5600)),
                                               to(kDirect, microseconds(5610)), to(kDirect, milliseconds(9))});
@@ -314,8 +314,8 @@ TEST_P(Switches, OneAtATimeAndWhatIsInForceIsNothingToDo) {
   EXPECT_EQ(state(kOne), chimera::State::kOn);
 }
 
-// `on` of two takes longer than was to be expected: jobs that were released meanwhile end as they would have without.
-TEST_P(Switches, AnOnThatOverrunsItsGapLeavesTheJobsReleasedMeanwhileAsTheyWere) {
+// `on` of two takes longer than expected: jobs that were released during it publish the values of a run without it.
+TEST_P(Switches, AnOnThatOverrunsItsGapDoesNotChangeReleasedJobs) {
   go(milliseconds(20), {});
   const Log u = scene.u;
   scene = {};
@@ -324,7 +324,7 @@ TEST_P(Switches, AnOnThatOverrunsItsGapLeavesTheJobsReleasedMeanwhileAsTheyWere)
   const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600))});
   ASSERT_EQ(receipts[0].end, SwitchEnd::kDone);
   EXPECT_TRUE(std::equal(u.begin(), u.begin() + 7, scene.u.begin()));  // released at 0 to 6 ms: the predecessor's
-  EXPECT_NE(u[7], scene.u[7]);                                         // what `on` wrote
+  EXPECT_NE(u[7], scene.u[7]);                                         // value of `on`
   EXPECT_EQ(receipts[0].armed, milliseconds(6) + microseconds(200));
   // Plant, beacon and one were released at 6 ms: the change comes after the first of them, and waits for none.
   EXPECT_GE(receipts[0].at, receipts[0].armed);
@@ -342,12 +342,12 @@ TEST_P(Switches, AReleaseBeforeTheChangeIsMadeBeforeTheChange) {
   deadline_of_one_ = microseconds(900);
   const auto receipts = go(milliseconds(20), {to(kBare, microseconds(6200))});
   ASSERT_EQ(receipts[0].end, SwitchEnd::kDone);
-  // Preempting, beacon is late and goes on: the release at 6 ms waits for it until that at 7 ms takes its place.
+  // With preemption beacon is late and goes on: its release at 6 ms waits until the release at 7 ms replaces it.
   EXPECT_EQ(set_->tasks()[kOne.index].profile.cycles, GetParam() == Kind::kPreemptive ? 6u : 7u);
   EXPECT_EQ(state(kOne), chimera::State::kOff);
 }
 
-TEST_P(Switches, WhatMovesAMemberMeanwhileUndoesIt) {
+TEST_P(Switches, ASignalToAMemberAbortsTheSwitch) {
   scene.on_takes = microseconds(600);
   const ScriptAct kill{milliseconds(6), ScriptAct::Kind::kSignal, Signal::kKill, kObserver};
   const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600)), kill});
@@ -390,7 +390,7 @@ TEST_P(Switches, TheEndOfTheRunTakesAnUnfinishedOneBack) {
   EXPECT_EQ(std::ranges::count(scene.story, "on two"), std::ranges::count(scene.story, "off two"));
 }
 
-TEST_P(Switches, ARaisedFlagUndoesWhatIsNotCommitted) {
+TEST_P(Switches, ARaisedFlagUndoesAnUncommittedSwitch) {
   scene.on_takes = microseconds(600);
   const ScriptAct up{milliseconds(6), ScriptAct::Kind::kRaiseFlag, Signal::kOn, TaskId()};
   const auto receipts = go(milliseconds(20), {to(kObserved, microseconds(5600)), up});
@@ -398,8 +398,8 @@ TEST_P(Switches, ARaisedFlagUndoesWhatIsNotCommitted) {
   EXPECT_EQ(receipts[0].why, NoSwitch::kFlagRaised);
 }
 
-// What would break a promise if both were there goes the slow way: who leaves is OFF before who arrives is ON.
-TEST_P(Switches, OverWhichATaskMightMissItsDeadlineGoesTheSlowWay) {
+// A switch that would break a guarantee with both sets ON is slow: leaving tasks are OFF before arriving ones are ON.
+TEST_P(Switches, ASwitchThatRisksADeadlineIsSlow) {
   build();
   acts_ = {to(kObserved, milliseconds(5))};
   app_->tasks[kObserver.index].budget = milliseconds(2);
@@ -416,7 +416,7 @@ TEST_P(Switches, OverWhichATaskMightMissItsDeadlineGoesTheSlowWay) {
 }
 
 // Two acts of one instant: the second one finds a plan that is announced and not taken up.
-TEST_P(Switches, OfTwoAtOneInstantTheSecondIsRefused) {
+TEST_P(Switches, RefusesSecondSwitchAtSameInstant) {
   build();
   for (const std::uint32_t second : {kDirect, kObserved}) {
     build();
@@ -432,8 +432,8 @@ TEST_P(Switches, OfTwoAtOneInstantTheSecondIsRefused) {
   }
 }
 
-// `on` is taken to need the budget: more than the shortest period is known before not to fit.
-TEST_P(Switches, AnOnThatFitsNoGapGoesTheSlowWayAtOnce) {
+// `on` is assumed to need the budget. If the budget is above the shortest period, the switch is slow at once.
+TEST_P(Switches, AnOnThatFitsNoGapMakesTheSwitchSlowAtOnce) {
   build();
   acts_ = {to(kObserved, milliseconds(5))};
   app_->tasks[kObserver.index].budget = milliseconds(2);
@@ -467,8 +467,8 @@ TEST_P(Switches, AnOnThatWasHeldUpOnceIsNotSlowForEver) {
   for (const SwitchReceipt& receipt : runner_->receipts()) EXPECT_EQ(receipt.end, SwitchEnd::kDone);
 }
 
-// Without a gap that `on` would fit in, it goes the slow way after 10 s.
-TEST_P(Switches, WithoutAGapItGoesTheSlowWayAfterTenSeconds) {
+// Without a gap that `on` fits in, the switch becomes slow after 10 s.
+TEST_P(Switches, WithoutAGapTheSwitchIsSlowAfterTenSeconds) {
   build();
   acts_ = {to(kObserved, milliseconds(5))};
   app_->tasks[kObserver.index].budget = microseconds(600);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Components made in the test: a task does what its Toy says and writes down every call of a method.
+// Components made in the test: a task follows its Toy and records every call of a method.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@
 
 namespace chimera::toy {
 
-/// One call of a method, as the component saw it.
+/// Arguments of one call of a method.
 struct Call {
   std::string task;
   Method method = Method::kInit;
@@ -29,10 +29,10 @@ struct Call {
   std::uint32_t dropped = 0;
   bool illegal = false;
   double in = 0;
-  std::int64_t inherited = -1;  // ns: the age of what its output held at the last on; -1: nobody had published it
+  std::int64_t inherited = -1;  // ns: age of the output at the last `on`; -1: never published
 };
 
-/// What a task does and what happened to it. Outputs its number of cycles.
+/// Script of a task. The task publishes its number of cycles.
 struct Toy {
   std::string name;
   std::vector<Call>* calls = nullptr;
@@ -41,7 +41,7 @@ struct Toy {
   std::array<std::deque<int>, CHIMERA_METHODS> answers;  // of the next calls; CHIMERA_OK when none is left
   std::deque<std::pair<Signal, std::string>> sends;      // one a cycle; an empty name: none
   std::function<int(const chimera_call&)> during;        // by cycle; its answer when it is not CHIMERA_OK
-  int descriptor = -1;                                   // where its events come from
+  int descriptor = -1;                                   // source of its events
   double value = 0;
 };
 

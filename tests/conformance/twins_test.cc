@@ -72,7 +72,7 @@ std::vector<std::string> with_seed(std::uint64_t seed, Kind kind) {
   return all;
 }
 
-TEST(Twins, TheSeedDecidesExecutionTimesAndNothingElseDoes) {
+TEST(Twins, OnlyTheSeedDecidesExecutionTimes) {
   for (const Kind kind : {Kind::kVirtual, Kind::kPreemptive}) {
     EXPECT_EQ(with_seed(1, kind), with_seed(1, kind));
     EXPECT_NE(with_seed(1, kind), with_seed(2, kind));
@@ -105,7 +105,7 @@ TEST(Twins, APreemptiveProcessorRunsOneJobAtATimeAndMissesNothingUnderLightLoad)
     }
     std::int64_t used = 0;
     for (int i = 0; i < 4; ++i) used += app.task("t" + std::to_string(i)).profile.execution[CHIMERA_CYCLE].sum.count;
-    EXPECT_LE(ran - used, 500'000) << "all of it belongs to cycles, but for one that the end cut";
+    EXPECT_LE(ran - used, 500'000) << "all time belongs to cycles, but for one that the end cut";
     EXPECT_GE(ran, used);
   }
 }

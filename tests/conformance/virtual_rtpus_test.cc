@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several rtpus in virtual time: who sees what of whom at which instant, and what follows when an rtpu dies.
+// Several rtpus in virtual time: the instants at which tasks see values of other rtpus, and the effects of a death.
 #include <gtest/gtest.h>
 
 #include "tests/conformance/rtpus_run.h"
@@ -51,7 +51,7 @@ struct VirtualRtpusTest : ::testing::Test {
     return *run;
   }
   chimera::State state(const std::string& name) { return peers->state(app.id(name)); }
-  /// What the task read in the cycle that was released then.
+  /// Value that the task read in the cycle of this release.
   double read_at(const std::string& name, Nanoseconds release) {
     for (const Call& call : app.calls_of(name, Method::kCycle))
       if (call.now == release) return call.in;
@@ -78,7 +78,7 @@ struct VirtualRtpusTest : ::testing::Test {
   std::unique_ptr<RtpusRun> run;
 };
 
-TEST_F(VirtualRtpusTest, AJobReadsAtItsStartWhatOthersPublishedByThen) {
+TEST_F(VirtualRtpusTest, AJobReadsAtItsStartTheLatestPublications) {
   for (const bool preemptive : {false, true}) {
     SCOPED_TRACE(preemptive ? "preemptive" : "executive");
     renew(preemptive);
@@ -188,7 +188,7 @@ TEST_F(VirtualRtpusTest, ATaskThatStopsItsRtpuStopsNoOther) {
   EXPECT_EQ(app.task("b").profile.cycles, 10u);
 }
 
-TEST_F(VirtualRtpusTest, OfADeadRtpuTheLastValuesStandAndItsTasksAreInError) {
+TEST_F(VirtualRtpusTest, TheLastValuesOfADeadRtpuStayAndItsTasksAreInError) {
   for (const bool preemptive : {false, true}) {
     SCOPED_TRACE(preemptive ? "preemptive" : "executive");
     renew(preemptive);
@@ -207,7 +207,7 @@ TEST_F(VirtualRtpusTest, OfADeadRtpuTheLastValuesStandAndItsTasksAreInError) {
     const auto states = records_of(TapKind::kState);
     EXPECT_EQ(states.back(), "rtpu 0 at 4500000 " + std::to_string(static_cast<int>(chimera::State::kError)));
     run->shut_down();
-    EXPECT_TRUE(app.calls_of("producer", Method::kOff).empty()) << "nobody is there to call it";
+    EXPECT_TRUE(app.calls_of("producer", Method::kOff).empty()) << "its rtpu is dead";
     EXPECT_EQ(app.calls_of("consumer", Method::kOff).size(), 1u);
   }
 }
@@ -232,7 +232,7 @@ TEST_F(VirtualRtpusTest, AProducerThatIsSpawnedAnewIsReadAgain) {
   EXPECT_EQ(read_at("consumer", milliseconds(7)), 5) << "two more by 6 ms";
 }
 
-TEST_F(VirtualRtpusTest, WhatComesOfAJobThatCannotStartIsSeenElsewhereAtThatInstant) {
+TEST_F(VirtualRtpusTest, OtherRtpusSeeAJobThatCannotStartAtItsInstant) {
   add("consumer", kFirst, milliseconds(1), {}, "late");
   add("blocker", kSecond, milliseconds(5), milliseconds(3));
   TaskSpec& late = add("late", kSecond, milliseconds(5));

@@ -112,7 +112,7 @@ class Devices(unittest.TestCase):
             system.call("set", values={"command": [0.25]})
             system.await_value("state", [0.25])
 
-    def test_a_serial_device_that_falls_silent_is_told_to_idle(self):
+    def test_a_silent_serial_device_gets_the_idle_frame(self):
         self.line.plug()
         text = APPLICATION.replace("COMPONENT", "serial_frame").replace(
             "MORE", f"constants: {{timeout: 2 s}}, resources: {{device: {self.name}}}")

@@ -34,21 +34,21 @@ configurations: {all: [steady]}
 start: all
 """
 
-# What is right, before it is mutated. None of it, nor a mixture of it, changes what the tasks do.
+# Correct requests, before mutation. Neither they nor mixtures of them change the tasks.
 RIGHT = [("hello", {}), ("status", {}), ("describe", {}), ("get", {"variables": ["count"]}), ("profile", {}),
          ("events", {"since": 0, "limit": 10}), ("why", {"variable": "count"}), ("unsubscribe", {"subscription": 1}),
          ("subscribe", {"to": "values", "period_ms": 20, "variables": ["count"], "since": 0}),
          ("check", {"text": "subsystem: a", "file": "a.yaml"}), ("schedule", {"text": "subsystem: a"}),
-         ("signal", {"signal": "on", "tasks": ["nobody"]}), ("ring", {"tasks": ["nobody"]}),
+         ("signal", {"signal": "on", "tasks": ["absent"]}), ("ring", {"tasks": ["absent"]}),
          ("set", {"values": {"nothing": 2}}), ("flag", {"up": False}), ("save", {})]
-ODD = [None, True, False, "", "count", "nobody", [], {}, [[]], {"a": {}}, 0, -1, 1, 2 ** 31, 2 ** 63, 2 ** 64, -2 ** 63,
+ODD = [None, True, False, "", "count", "absent", [], {}, [[]], {"a": {}}, 0, -1, 1, 2 ** 31, 2 ** 63, 2 ** 64, -2 ** 63,
        1e308, 1.5, "\ud800", "\u0000", "\u202e", "é" * 50, "x" * 5000, ["count"] * 300]
 SIGNS = [b"\x00", b"\xff", b"\xc0\x80", b"\xed\xa0\x80", b"\xf4\x90\x80\x80", b"{", b"}", b"[", b"]", b'"', b"\\", b",",
          b":", b"\\ud800", b"1e400", b"NaN", b"-", b"\r", b"\xef\xbb\xbf", b"\n"]
 
 
 def mutated(dice):
-    """One line with its end, of which most are almost right."""
+    """One line with its end. Most lines are almost right."""
     kind = dice.random()
     if kind < 0.05:
         return bytes(dice.randrange(256) for _ in range(dice.randrange(80))).replace(b"\n", b" ") + b"\n"
@@ -88,7 +88,7 @@ class Mutator:
         self.socket, self.rest = None, b""
 
     def answers(self, until):
-        """Whole lines until the one with that id, or until the door closes."""
+        """Whole lines until the one with that id, or until the server closes the connection."""
         while True:
             *lines, self.rest = self.rest.split(b"\n") if b"\n" in self.rest else [self.rest]
             for line in lines:

@@ -46,7 +46,7 @@ def is_closed(one):
 
 
 class ControlServer(unittest.TestCase):
-    """One subsystem for all tests: what they do to it must not change it."""
+    """One subsystem for all tests: their attacks must not change it."""
 
     @classmethod
     def setUpClass(cls):
@@ -64,7 +64,7 @@ class ControlServer(unittest.TestCase):
                                 env=self.system.environment, cwd=self.system.place)
 
     def says(self, *words):
-        """(exit code, what it said)"""
+        """(exit code, output)"""
         done = self.system.chimera(*words, code=None)
         return done.returncode, done.stdout + done.stderr
 

@@ -66,14 +66,14 @@ class Listener(threading.Thread):
 
 class Ends(unittest.TestCase):
     def ended(self, system, how):
-        """Its exit code and what it said, after what ends it."""
+        """Its exit code and output, after the action that ends it."""
         how()
         return system.wait(), system.said()
 
     def failures(self, said):
         return sorted(line.removeprefix("FAILED: ") for line in said.splitlines() if line.startswith("FAILED: "))
 
-    def test_off_and_kill_that_fail_at_ctrl_c_are_told_by_task_method_and_cause(self):
+    def test_failed_off_and_kill_at_ctrl_c_are_reported_by_task_method_and_cause(self):
         ends = {("executive", "off", "throw"): "off failed: thrown on demand",
                 ("executive", "off", "sleep"): "t1.off did not return within 2 s",
                 ("preemptive", "kill", "segv"): "u2 ended by signal 11 (SIGSEGV) in t2.kill",
@@ -106,7 +106,7 @@ class Ends(unittest.TestCase):
         with System(text) as system:
             system.signal("off", "asleep")
             listener = Listener(system)
-            system.arm()  # the loop of t0, to be told of while the rest goes on
+            system.arm()  # the loop of t0 must be reported while the rest goes on
             before, steady = system.rtpu("u1"), system.task("steady")
             self.assertTrue(system.kill(before["pid"], signal.SIGTERM))
             system.await_restart("u1", before)
@@ -127,7 +127,7 @@ class Ends(unittest.TestCase):
             system.disarm()
             self.assertEqual(self.ended(system, lambda: system.process.send_signal(signal.SIGTERM))[0], 1)  # given up
 
-    def test_no_event_says_what_does_not_happen_when_all_processes_end_at_once(self):
+    def test_no_event_is_false_when_all_processes_end_at_once(self):
         slow = recorder("a", "u0", "x0", "x1", "1000 ms")
         text = application([("executive", "none", "none")], a=slow, b=recorder("b", "good", "x1", "x2"))
         with System(text + "operator: {x0: 0}\n") as system:

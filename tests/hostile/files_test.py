@@ -50,7 +50,7 @@ class Files(unittest.TestCase):
         shutil.copy(COMPONENTS / f"{like}.so", self.path / f"{name}.so")
         return descriptor
 
-    def test_what_a_component_says_does_not_steer_the_terminal(self):
+    def test_text_of_a_component_does_not_steer_the_terminal(self):
         was = self.stranger(doc=ESCAPES, source=ESCAPES)
         was["ports"][0]["doc"] = ESCAPES
         self.stranger(doc=ESCAPES, source=ESCAPES, ports=was["ports"])
@@ -97,7 +97,7 @@ class Files(unittest.TestCase):
             large.truncate(300 << 20)
         self.assertIn("has 314572800 bytes; at most 268435456 are read", self.chimera("check", "FILE")[2])
 
-    def test_so_are_the_files_that_a_command_names(self):
+    def test_only_ordinary_files_that_a_command_names_are_read(self):
         pipe = self.folder / "pipe.yaml"
         os.mkfifo(pipe)
         os.mkfifo(self.folder / "subject.cases.yaml")
@@ -110,7 +110,7 @@ class Files(unittest.TestCase):
             self.assertEqual(code, 1, (words, out, err))
             self.assertIn("is no ordinary file but a ", out + err, words)
 
-    def test_so_are_the_files_of_a_component(self):
+    def test_only_ordinary_files_of_a_component_are_read(self):
         os.mkfifo(self.folder / "pipe")
         text = ONE.replace("NAME", "csv_player").replace(
             "rate: 100 Hz", f"rate: 100 Hz, resources: {{file: {self.folder}/pipe}}, alias: {{out: [y]}}")
@@ -119,7 +119,7 @@ class Files(unittest.TestCase):
         self.assertEqual(code, 1, out + err)
         self.assertIn(f"{self.folder}/pipe: is no ordinary file but a pipe", err)
 
-    def test_what_ends_the_process_while_it_is_loaded_is_named(self):
+    def test_a_component_that_ends_the_process_while_it_loads_is_named(self):
         text = ONE.replace("NAME", "t_load") + "operator: {unused: 1 V}\n"
         so = re.escape(str(COMPONENTS / "t_load.so"))
         ends = {"segv": r"ended by signal 11 \(SIGSEGV\)", "abort": r"ended by signal 6 \(SIGABRT\)",
@@ -165,7 +165,7 @@ class Files(unittest.TestCase):
             self.assertEqual(run.returncode, 0, (out, err))
             self.assertIn(b"ended by the operator", out)
 
-    def test_a_component_that_hides_one_of_the_library_is_told(self):
+    def test_a_component_that_hides_one_of_the_library_is_reported(self):
         self.stranger(name="t_source")
         text = ONE.replace("NAME", "t_source")
         for words in (("check", "FILE"), ("run", "FILE", "--virtual", "--for", "10 ms")):

@@ -43,7 +43,7 @@ def rt_rights():
 def descriptors(pid):
     found = {}
     for fd in os.listdir(f"/proc/{pid}/fd"):
-        with contextlib.suppress(FileNotFoundError):  # closed meanwhile
+        with contextlib.suppress(FileNotFoundError):  # closed since the listing
             found[int(fd)] = os.readlink(f"/proc/{pid}/fd/{fd}")
     return found
 
@@ -53,7 +53,7 @@ class Rig(System):
         super().__init__(text, arguments=("--priority", str(priority if rt_rights() else 0)))
 
     def children(self):
-        """Of components: neither of the project's own processes."""
+        """Children that components started: no processes of the project."""
         own = set(self.pids().values()) | {self.process.pid}
         ours = ("memory-holder", "chimera", "chimera-guard", "")
         return [p for p in self.left_over() if p not in own and name_of(p) not in ours]
@@ -74,11 +74,11 @@ def gone(pids, marker):
 class Orphans(unittest.TestCase):
     WAYS = ("child", "daemon", "chain", "exec", "stays")
 
-    def test_children_are_never_real_time_and_end_with_their_unit(self):
+    def test_children_are_never_real_time_and_end_with_their_rtpu(self):
         with Rig(tasks(*self.WAYS)) as system:
             missed = system.task("steady")["cycles"]
             system.arm()
-            # The chain has another number each time one looks, the one that stays does not live on: three are sure.
+            # The number of the chain changes at each reading; three of its processes are sure.
             children = await_that(lambda: len(c := system.children()) >= 3 and "sleep" in map(name_of, c) and c,
                                   "children")
             for pid in children:
@@ -89,7 +89,7 @@ class Orphans(unittest.TestCase):
                 self.assertEqual(policy, os.SCHED_OTHER, f"{name} {pid} is a real-time process")
             sleeper = [p for p in children if name_of(p) == "sleep"]
             self.assertEqual(len(sleeper), 1)
-            # What its loader opens, it closes before it sleeps.
+            # The child closes the files of its loader before it sleeps.
             await_that(lambda: sorted(descriptors(sleeper[0])) == [0, 1, 2], "no descriptor but its own three")
             # Its rtpu ends: so do they, while the others go on; a stopped memory holder does not keep its memory.
             system.disarm()
@@ -98,7 +98,7 @@ class Orphans(unittest.TestCase):
             if memory_holder:
                 system.kill(memory_holder, signal.SIGSTOP)
             system.kill(second)
-            await_that(lambda: not system.children(), "the end of the children of a unit that died")
+            await_that(lambda: not system.children(), "the end of the children of a dead rtpu")
             if memory_holder:
                 await_that(lambda: gone([memory_holder], system.marker), "the end of a stopped memory holder")
             self.assertGreater(system.task("steady")["cycles"], missed)
@@ -123,7 +123,7 @@ class Orphans(unittest.TestCase):
 
 
 class Watched(unittest.TestCase):
-    def test_memory_that_grows_and_rights_that_are_given_up_are_told(self):
+    def test_growing_memory_and_lost_rights_are_reported(self):
         with Rig(tasks("leak", "ordinary", "unlocked", rate="1 kHz")) as system:
             before = system.rtpu("second")["resident_bytes"]
             self.assertGreater(before, 1 << 20)

@@ -182,7 +182,7 @@ class ThePrintingProcessDies(unittest.TestCase):
     def test_one_that_is_stopped_ends_the_run_all_the_same(self):
         with System(TWO_RTPUS, ("--for", "3 s", "--expect", "count >= 1")) as system:
             started, stopped = system.call("status")["started_ns"], self.printing(system)
-            # It is stopped at the end, and no other takes its place before: that comes after 2 s.
+            # The manager is stopped at the end. No other takes its place before: a new one comes after 2 s.
             await_that(lambda: system.call("status")["now_ns"] > started + 1.5e9, "1.5 s")
             self.assertTrue(system.kill(stopped, signal.SIGSTOP))
             code, said = system.wait(), system.said()
@@ -192,7 +192,7 @@ class ThePrintingProcessDies(unittest.TestCase):
 
 
 class TheStartHangs(unittest.TestCase):
-    def test_it_ends_and_names_what_was_not_ready(self):
+    def test_it_ends_and_names_tasks_that_are_not_ready(self):
         with tempfile.TemporaryDirectory() as folder:
             os.mkfifo(folder + "/pipe")  # for whose reader the logger waits
             words = ("--for", "0.2 s", "--start-limit", "4 s")
@@ -215,14 +215,14 @@ class Limits(unittest.TestCase):
                 text = said.read()
                 return system.wait(), text
 
-    def test_a_limit_of_files_is_told(self):
+    def test_a_low_limit_of_files_is_reported(self):
         for most in (0, 64 << 10):
             with self.subTest(most):
                 code, said = self.run_limited((resource.RLIMIT_FSIZE, most))
                 self.assertEqual(code, 1, said)
                 self.assertIn(f"is limited to {most >> 10} KiB, expected at least 4096 KiB: ulimit -f", said)
 
-    def test_a_low_stack_is_told(self):
+    def test_a_low_stack_is_reported(self):
         for most in (64 << 10, 128 << 10) if is_sanitized() else (16 << 10, 32 << 10, 64 << 10):
             with self.subTest(most):
                 code, said = self.run_limited((resource.RLIMIT_STACK, most))
@@ -230,7 +230,7 @@ class Limits(unittest.TestCase):
                 self.assertIn(f"the stack is limited to {most >> 10} KiB", said)
 
     @unittest.skipIf(is_sanitized(), "the sanitizers reserve terabytes of addresses")
-    def test_little_memory_is_told(self):
+    def test_little_memory_is_reported(self):
         for megabytes in (11, 12, 14, 16, 18):
             with self.subTest(megabytes):
                 code, said = self.run_limited((resource.RLIMIT_AS, megabytes << 20))

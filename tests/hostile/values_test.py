@@ -37,7 +37,7 @@ class Values(unittest.TestCase):
                               stdin=subprocess.DEVNULL)
         return done.returncode, done.stdout, done.stderr
 
-    def test_what_is_not_finite_in_the_unit_of_the_port_is_refused(self):
+    def test_a_value_that_is_not_finite_in_the_unit_of_the_port_is_refused(self):
         for value in ("inf V", "-inf V", "inf"):
             code, _, said = self.chimera("check", "FILE", text=GAIN.replace("VALUE", f"wanted: {value}"))
             self.assertEqual(code, 1, value + said)
@@ -47,7 +47,7 @@ class Values(unittest.TestCase):
         text = ("subsystem: subject\noperator: {x: 1 V}\ntasks:\n  a: {component: limit, rate: 10 Hz, alias: {y: z}, "
                 "constants: {low: -1 V, high: inf V}}\n")
         self.assertEqual(self.chimera("check", "FILE", text=text), (0, ANY, ""), "declared: no limit there")
-        # What the port has as its unit settles where a number ends: 1e308 m is a length, 1e308 km is none.
+        # The unit of the port limits a number: 1e308 m is a length, 1e308 km is none.
         code, _, said = self.chimera("check", "FILE", text=WITHIN.replace("scale: 1 m", "scale: 1e308 km"))
         self.assertEqual(code, 1, said)
         self.assertIn("subject.yaml:6:52: error: constant 'scale' of task 'rod': found '1e308 km', which is not "

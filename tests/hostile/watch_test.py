@@ -111,7 +111,7 @@ def let_go(threads):
 
 
 def send_into_a_loop(pid):
-    """The main thread goes on with a jump to itself, where such bytes stand in its code. False: not possible."""
+    """Makes the main thread jump to itself, if its code has the bytes of such a jump. False: not possible."""
     if os.uname().machine != "x86_64" or libc.ptrace(PTRACE_SEIZE, pid, None, None) != 0:
         return False
     libc.ptrace(PTRACE_INTERRUPT, pid, None, None)
@@ -298,7 +298,7 @@ class Watch(unittest.TestCase):
             self.assertRegex(event["text"], rf"^{task}\.{word} for \d+(\.\d)? s$")
         error = waiting["kill"].answer()  # while the method goes on
         self.assertEqual(error.code, -32006)
-        # Whether the watch knows by then that the method does not end depends on when it began.
+        # The answer names the hang only if the watch has already seen it.
         self.assertRegex(str(error), r"^no answer from rtpu kills(: a_kill\.kill for \d\.\d s; it goes on: |$)")
         system.disarm()
         for rtpu, method in (("ons", "a_on.on"), ("offs", "an_off.off")):

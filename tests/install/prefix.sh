@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# What tools/dev/install.sh does to a prefix: installs, upgrades, removes; refuses without leaving a trace. With small
-# staged trees, so that nothing is built.
+# tools/dev/install.sh installs into a prefix, upgrades, removes, and refuses without leaving a trace. The staged trees
+# are small, so that nothing is built.
 set -euo pipefail
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 place=$(mktemp -d)
@@ -37,7 +37,7 @@ holds [ "$(cd "$place/p" && sha256sum --quiet -c share/chimera/manifest && find 
 holds act remove "$place/p"
 holds [ ! -e "$place/p" ]
 
-# What was there before stays, also an empty folder.
+# Files and folders from before stay, also an empty folder.
 mkdir -p "$place/p/lib" "$place/p/mine"
 echo mine >"$place/p/mine/notes"
 before=$(picture "$place/p")
@@ -45,7 +45,7 @@ holds act put "$place/p" "$place/one"
 holds act remove "$place/p"
 holds [ "$before" = "$(picture "$place/p")" ]
 
-# An upgrade: what is gone is removed with its folder, what somebody changed is kept.
+# An upgrade removes files that the new version lacks, with their folder, and keeps files that the user changed.
 holds act put "$place/p" "$place/one"
 echo changed >"$place/p/share/chimera/e.yaml"
 echo new >"$place/p/lib/chimera/mine.so"

@@ -18,7 +18,7 @@ def help_of(program, words):
 
 
 def said_by_help(program, words=()):
-    """Maps "" and every command ("new component") to its options and subcommands, as `--help` tells them."""
+    """Maps "" and every command ("new component") to its options and subcommands in `--help`."""
     text = help_of(program, words)
     options = set(re.findall(r"^\s+(?:-\w,\s*)?(--[a-z-]+)", text, re.MULTILINE))
     heading = re.search(r"^Commands:\n", text, re.MULTILINE)
@@ -54,7 +54,7 @@ def said_by_completion(path, commands):
 
 
 def complete(path, program, words):
-    """What bash would offer for the last of `words`."""
+    """Completions of bash for the last of `words`."""
     script = ('source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _chimera; '
               'printf "%s\\n" "${COMPREPLY[@]}"')
     run = subprocess.run(["bash", "-c", script, "bash", str(path), program, *words], capture_output=True, text=True,

@@ -19,13 +19,13 @@ TEST(KilledWriter, LeavesNeitherATornNorAnUnreadableGroup) {
   EXPECT_EQ(report.refused_dead, 0u);
 }
 
-TEST(KilledWriter, ThatFillsThePublishedSlotIsNoticed) {
+TEST(KilledWriter, AWriterThatFillsThePublishedSlotIsDetected) {
   const KillReport report = run_kill_trial({.kills = 20, .seconds = 60, .planted_defect = true});
   EXPECT_EQ(report.failure, "");
   EXPECT_GT(report.torn, 0u);
 }
 
-TEST(StoppedWriter, ThatWasReplacedAndGoesOnReachesNoReader) {
+TEST(StoppedWriter, AReplacedWriterReachesNoReader) {
   const StopReport report = run_stop_trial({.stops = 200});
   EXPECT_EQ(report.failure, "");
   EXPECT_EQ(report.stops, 200u);
@@ -36,7 +36,7 @@ TEST(StoppedWriter, ThatWasReplacedAndGoesOnReachesNoReader) {
   EXPECT_EQ(report.backwards, 0u);
 }
 
-TEST(StoppedWriter, ThatSharesTheGroupOfItsSuccessorIsNoticed) {
+TEST(StoppedWriter, AWriterThatSharesTheGroupOfItsSuccessorIsDetected) {
   const StopReport report = run_stop_trial({.stops = 20, .seconds = 60, .planted_defect = true});
   EXPECT_EQ(report.failure, "");
   EXPECT_GT(report.torn, 0u);

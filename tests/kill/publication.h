@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the trials of this folder write into a group, and how a reader knows that it came whole: each word says of which
-// writer and of which publication it is.
+// Publications of the trials of this folder. Each word depends on its writer and its publication, so that a reader sees
+// whether a publication is whole.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ inline void fill(std::byte* place, std::uint64_t writer, std::uint64_t publicati
   for (std::size_t i = 0; i < kTrialWords; ++i) words[i] = word_of(writer, publication, i);
 }
 
-/// Of a group that was never written the words are zero.
+/// True if one publication wrote header and words. A group that was never written has zero words.
 inline bool is_whole(const chimera_slot& header, const TrialWords& words, std::uint64_t writer) {
   if (header.published_ns != static_cast<std::int64_t>(header.sequence)) return false;
   for (std::size_t i = 0; i < kTrialWords; ++i)

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kWriters = 2;
 constexpr std::size_t kReaders = 2;
-constexpr int kLateWrites = 3;  // of a writer that nobody reads any more
+constexpr int kLateWrites = 3;  // of a writer without readers
 
 struct alignas(64) WriterScore {
   std::atomic<std::uint64_t> begun, finished;
@@ -33,8 +33,8 @@ struct alignas(64) ReaderScore {
   std::atomic<std::uint64_t> phase_seen;  // latest phase in which a whole read was made
 };
 
-// Beside the groups, writable by all: what the processes tell each other about the trial. Phase 2k + 1: the writer that
-// was read is stopped and the other one is read; 2k + 2: it goes on.
+// Shared by all processes of the trial, beside the groups. Phase 2k + 1: the writer that was read is stopped and the
+// other one is read. Phase 2k + 2: the stopped writer goes on.
 struct Score {
   std::atomic<std::uint64_t> phase;
   std::atomic<bool> stop;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Tells the model of a switch which event comes next in the recorded run whose file RECORDED_RUN names: a line
- * "NAME WHO" each, in the order of the events of switch.pml. */
+/* Gives the model of a switch the next event of a recorded run. RECORDED_RUN names its file: a line "NAME WHO" for each
+ * event, with the names of switch.pml. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Checks the models exhaustively with SPIN: the correct ones must have no error, every mutant must be caught. With
---recorder the model of a switch must be able to make what real units have done (tests/switching), and must not be able
-to make the same with a change that breaks a rule. Prints states and seconds of each; exit 0 all as expected, 1 not, 77
+--recorder the model of a switch must be able to make each recorded run of real rtpus (tests/switching), and none of
+them with a change that breaks a rule. Prints states and seconds of each; exit 0 all as expected, 1 not, 77
 when spin or a C compiler is missing.
 
 usage: run.py [--recorder PROGRAM] [--only-recorded]"""
@@ -58,7 +58,7 @@ CASES = [
     ("slow_switch", "BACK_EARLY"),
 ]
 
-# Of real units: runs of so many switches, which together have all these events.
+# Number of recorded runs of real rtpus, switches in each run, and the events that all runs together must have.
 RECORDED, PLANS = 40, 3
 SEEN = {"prepared by the manager", "armed", "proposed", "agreed", "committed", "adopted", "over", "aborted",
         "aborted by the manager", "died", "died by the manager", "filed by the manager"}
@@ -108,7 +108,7 @@ def moved(events, what, before):
     return events[:to] + [events[at]] + events[to:at] + events[at + 1:]
 
 
-# Runs that break a rule, made from one in which nobody died and a switch was committed.
+# Runs that break a rule, made from a run without a death in which a switch was committed.
 BROKEN = {
     "committed before the last has agreed": lambda events: moved(events, "committed", "agreed"),
     "proposed before all are armed": lambda events: moved(events, "proposed", "armed"),
@@ -149,7 +149,7 @@ def judge_recorded(recorder):
             if sound is None or can_make(broken(sound), folder):
                 wrong += 1
                 print(f"recorded run with '{what}': NOT REJECTED")
-    print(f"{RECORDED} runs of real units, {len(BROKEN)} of them broken: {wrong} judged wrongly "
+    print(f"{RECORDED} runs of real rtpus, {len(BROKEN)} of them broken: {wrong} judged wrongly "
           f"{time.monotonic() - before:5.1f} s")
     return wrong
 

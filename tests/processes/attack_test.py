@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A second user without rights tries everything it can reach: nothing succeeds and no task loses anything. And the
-roles of those who were given one. Needs root, to become somebody else."""
+roles of those who were given one. Needs root, to become another user."""
 import grp
 import json
 import os
@@ -116,7 +116,7 @@ PARAMETERS = {**GOOD, "set": {"values": {}}, "unsubscribe": {"subscription": 1}}
 
 
 def roles():
-    """Of each method: under which heading docs/formats/control.md has it."""
+    """Role of each method: the heading under which docs/formats/control.md has it."""
     found, role = {}, None
     for line in (FORMATS / "control.md").read_text().splitlines():
         if heading := re.match(r"### (\w+)", line):
@@ -128,7 +128,7 @@ def roles():
 
 ROLES = roles()
 
-# Calls one method and prints its error, or "good": also when only what it means for this application was refused.
+# Calls one method and prints its error, or "good", also if only its meaning for this application was refused.
 CALL = r'''
 import json, socket, sys
 s = socket.socket(socket.AF_UNIX)
@@ -138,7 +138,7 @@ request = {"jsonrpc": "2.0", "id": 1, "method": sys.argv[2], "params": json.load
 try:
     s.sendall(json.dumps(request).encode() + b"\n")
 except BrokenPipeError:
-    pass  # a stranger is told before it asks
+    pass  # the server refuses a stranger before it asks
 said = b""
 while not said.endswith(b"\n"):
     said += s.recv(65536) or b"\n"
@@ -158,7 +158,7 @@ class Attack(unittest.TestCase):
         return done.stdout.strip()
 
     def open_folders(self, system):
-        """As an administrator would who wants others in: the way to the socket may be passed."""
+        """Opens the folders of the socket to other users, as an administrator may."""
         for folder in (system.place, system.runtime):
             folder.chmod(0o711)
 
@@ -192,7 +192,7 @@ class Attack(unittest.TestCase):
             self.assertEqual(won, [])
 
     def test_a_group_gets_its_role_and_no_more_with_every_method_of_the_protocol(self):
-        """Methods are those of the schema, so a new one is tried too; who may call it is what the document says."""
+        """Tries all methods of the schema, so a new one too, with the roles that the document states."""
         self.assertEqual(sorted(ROLES), sorted(METHODS))
         for has in (None, "observe", "operate", "configure"):
             arguments = (f"--{has}-group", OPERATORS.gr_name) if has else ()

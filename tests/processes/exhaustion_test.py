@@ -26,7 +26,7 @@ class Exhaustion(unittest.TestCase):
         print(f"failed calls: {sum(cls.outcomes.values())} ({dict(cls.outcomes)})", file=sys.stderr)
 
     def attempt(self, program, n, once):
-        """One start in which the n-th call fails; what failed, None when there was none."""
+        """One start in which the n-th call fails. Returns the failed call, or None if there was no n-th."""
         shim = BUILD / "tests/processes/libfailing_calls.so"
         with System(TWO_RTPUS, ("--for", "0.1 s"), wait=False, environment={
                 "LD_PRELOAD": str(shim), "CHIMERA_FAIL": f"{program} {n}{' once' if once else ''}",
@@ -43,7 +43,7 @@ class Exhaustion(unittest.TestCase):
     def judge(self, failed, code, said, system):
         where = f"{failed}: exit {code}:\n{said}"
         self.assertFalse(system.socket.exists(), where)
-        if code == 0:  # it did not need that, or tried again
+        if code == 0:  # it does without the call, or repeats it
             for task in ("steady", "beside"):
                 self.assertRegex(said, rf"(?m)^{task} +ON ", where)
             Exhaustion.outcomes["coped with"] += 1
@@ -57,7 +57,7 @@ class Exhaustion(unittest.TestCase):
             return range(1, MOST)
         return sorted({(1 if once else 2) + i * ABOUT[program] // ROUNDS for i in range(ROUNDS)})
 
-    def test_row_19_the_nth_call_fails_and_is_told(self):
+    def test_row_19_the_nth_failed_call_is_reported(self):
         for program, once in itertools.product(ABOUT, (False, True)):
             for n in self.numbers(program, once):
                 with self.subTest(program=program, n=n, once=once):

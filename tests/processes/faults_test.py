@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a fault of one rtpu does to the others: only what is declared. The manager dies, too. What is decided about
-deaths: tests/stepped/deaths_test.cc."""
+"""A fault of one rtpu has only its declared effects on others. The manager dies, too. Decisions about deaths:
+tests/stepped/deaths_test.cc."""
 import pathlib
 import shutil
 import signal
@@ -47,7 +47,7 @@ class Faults(unittest.TestCase):
         after = system.await_cycles("steady")
         self.assertEqual((after["state"], after["incarnation"], after["faults"]), ("ON", before["incarnation"], 0))
 
-    def test_row_5_an_rtpu_that_dies_is_seen_with_its_cause_and_restarted_with_what_was_on(self):
+    def test_row_5_a_dead_rtpu_is_reported_with_its_cause_and_restarted_with_its_tasks(self):
         with System(one_rtpu_for_each_way()) as system:
             before = system.task("steady")
             for way, words in WAYS.items():
@@ -91,7 +91,7 @@ class Faults(unittest.TestCase):
             self.assertGreater(system.value("count"), count)
             self.assertTrue(system.call("hello")["manager"]["pid"])
 
-    def test_rows_6_and_11_what_was_on_in_an_rtpu_that_scribbled_is_known_to_the_next_manager(self):
+    def test_rows_6_and_11_the_next_manager_knows_the_tasks_of_an_rtpu_that_scribbled(self):
         with System(APPLICATION.replace("HOW", "scribble")) as system:
             before, unit, manager = system.task("steady"), system.rtpu("second"), system.pids()["manager"]
             self.assertTrue(system.kill(manager, signal.SIGSTOP))
@@ -141,7 +141,7 @@ class Faults(unittest.TestCase):
             system.signal("reinit", "beside")
             self.assertEqual([method for _, method, _ in system.lines()].count("reinit"), 1)
 
-    def test_a_scope_keeps_what_it_recorded_when_the_manager_dies_and_says_that_it_ended(self):
+    def test_a_scope_keeps_its_rows_when_the_manager_dies_and_reports_its_end(self):
         with System(APPLICATION.replace("HOW", "segv")) as system:
             system.await_cycles("steady", 20)
             words = ("scope", "count", "--trigger", "cycles < 10", "--pre", "10 ms", "--for", "600 s")

@@ -67,7 +67,7 @@ class Drive:
             self.take()
 
     def take(self):
-        """As a device takes a stream: a start byte that begins no frame is passed over."""
+        """Reads a stream as a device does: skips a start byte that begins no frame."""
         self.fills += self.held.count(bytes(FILL))
         end = self.payload + 4
         while len(self.held) >= end:
@@ -175,7 +175,7 @@ class Frames(unittest.TestCase):
             await_that(self.drive.stands, "the safe frame")
 
     @unittest.skipUnless((BUILD / "components/modbus_io.so").exists(), "modbus_io is not built")
-    def test_a_modbus_device_is_told_over_a_connection_of_its_own(self):
+    def test_the_safe_frame_of_a_modbus_device_has_its_own_connection(self):
         device = ModbusDevice()
         self.addCleanup(device.listening.close)
         text = TEXT.replace("serial_frame", "modbus_io").replace(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Preloaded into the processes of a subsystem: the wall clock shows what the file CHIMERA_WALL says more than it is, in
-// nanoseconds, as if somebody set it. CLOCK_MONOTONIC, which is not set by anybody, is as it is.
+// Preloaded into the processes of a subsystem: adds the nanoseconds in the file CHIMERA_WALL to the wall clock, as if a
+// user had set it. CLOCK_MONOTONIC, which cannot be set, stays as it is.
 #define _GNU_SOURCE
 #include <fcntl.h>
 #include <stdint.h>

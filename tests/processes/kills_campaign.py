@@ -12,7 +12,7 @@ import unittest
 from campaign import ROUNDS, begin, counted
 from system import CHAIN, RTPUS, System, await_that, processes_of
 
-# The producer is in the middle of what it writes for half of the time.
+# The producer spends half of its time in the middle of a publication.
 WHOLE = RTPUS + """
 tasks:
   whole: {component: t_whole, rtpu: second, rate: 1 kHz, constants: {spend: 500000 ns}}
@@ -64,7 +64,7 @@ class Kills(unittest.TestCase):
                 self.judge_end(system)
         self.assertEqual({name for name in set(os.listdir("/dev/shm")) - shared if "chimera" in name}, set())
 
-    def test_row_8_a_reader_of_a_producer_that_is_killed_sees_only_what_is_whole_and_never_older(self):
+    def test_row_8_a_reader_of_a_killed_producer_sees_only_whole_values_and_never_older_ones(self):
         for _ in range(ROUNDS):
             with System(WHOLE) as system:
                 before = system.task("judge")

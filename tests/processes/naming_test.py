@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which subsystem a command reaches: one that was started in this terminal or folder, or one that is named."""
+"""A command reaches the subsystem that was started in its terminal or folder, or a subsystem by name."""
 import subprocess
 import unittest
 
@@ -26,7 +26,7 @@ class Naming(unittest.TestCase):
             self.assertEqual(self.chimera(system, "off", "beside", elsewhere=False)[0], 0)
             self.assertEqual(self.chimera(system, "get", "x")[2], "[subject]\n", "a question says what it found")
 
-    def test_of_several_the_one_of_this_folder_is_meant(self):
+    def test_the_subsystem_of_this_folder_is_meant(self):
         with System(TWO_RTPUS) as system:
             folder = system.place / "other"
             folder.mkdir()

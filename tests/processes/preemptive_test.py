@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A job that never ends in a preemptive rtpu costs its own rtpu a restart; the tasks of the others stay ON. What they
-lost meanwhile is printed; the campaign `process_preemptive` repeats this in a release build."""
+"""A job that never ends in a preemptive rtpu costs its own rtpu a restart; the tasks of the others stay ON. The test
+prints the cycles that they lost; the campaign `process_preemptive` repeats this in a release build."""
 import sys
 import unittest
 
@@ -8,7 +8,7 @@ from system import System, await_that, duration
 
 REAL_TIME = ("--priority", "40")
 
-# `watch` stands above everything on its CPU: what it misses the machine took. `below` gives way to the jobs that hang.
+# `watch` has the highest priority on its CPU: only the host can make it miss. `below` gives way to the jobs that hang.
 APPLICATION = """
 subsystem: subject
 rtpus:

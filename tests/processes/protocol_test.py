@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a running subsystem says and takes is what docs/formats/control.schema.json says, in real exchanges of every
+"""A running subsystem sends and accepts messages as docs/formats/control.schema.json says, in real exchanges of every
 kind: all methods, all notifications, refusals, and requests that are almost right."""
 import copy
 import json
@@ -57,7 +57,7 @@ JUDGES = {name: judge(name) for name in SCHEMA["definitions"]}
 
 
 class Judged(Client):
-    """A connection on which every line is held against the schema; faults are collected, not raised."""
+    """A connection that checks every line against the schema. It collects faults and does not raise them."""
 
     def __init__(self, path):
         super().__init__(path)
@@ -99,7 +99,7 @@ class Judged(Client):
             time.sleep(answer["error"]["data"]["retry_ms"] / 1e3)
 
     def exchange(self, method, **parameters):
-        """A request within the schema; its result, or None when it was refused for what it means."""
+        """A request within the schema. Returns its result, or None if it was refused for its meaning."""
         self.number += 1
         request = {"jsonrpc": "2.0", "id": self.number, "method": method, "params": parameters}
         self.hold("request", request, method)
@@ -127,7 +127,7 @@ VALUES = [None, True, "", "nothing", [], ["count", 1], {}, -1, 0, 1, 1.5, 19, 20
 
 
 def almost_right():
-    """Requests one step away from one that is right."""
+    """Requests that are one step away from a correct one."""
     for method, parameters in GOOD.items():
         request = {"jsonrpc": "2.0", "id": 1, "method": method, "params": parameters}
         yield {**request, "more": 1}
@@ -172,7 +172,7 @@ class Protocol(unittest.TestCase):
             self.assertIsNotNone(self.client.exchange("check", text=text, file="a.yaml"))
             self.assertIsNotNone(self.client.exchange("schedule", text=text, file="a.yaml"))
 
-    def test_what_it_says_is_within_the_schema_before_and_after_faults(self):
+    def test_answers_fit_the_schema_before_and_after_faults(self):
         self.read_all()
         self.system.arm()
         self.system.await_state("victim", "ERROR")
@@ -245,7 +245,7 @@ class Protocol(unittest.TestCase):
             answer = self.client.ask(request)
             code = answer.get("error", {}).get("code")
             is_form = code in (BAD_REQUEST, NO_METHOD, BAD_PARAMETERS)
-            # What a value means for this application is no matter of form.
+            # The meaning of a value for this application is not in the schema.
             by_meaning = code == BAD_PARAMETERS and request["method"] == "set"
             if is_form == is_within and not by_meaning:
                 self.client.faults.append(f"{'within' if is_within else 'outside'}: {request}: {answer}")
@@ -264,7 +264,7 @@ class Schema(unittest.TestCase):
             used = f'"#/definitions/{name}"' in text
             self.assertTrue(used, name)
 
-    def test_the_methods_are_those_of_the_text_with_the_same_parameters(self):
+    def test_methods_and_parameters_agree_with_the_document(self):
         rows = re.findall(r"^\| `([a-z]+)` \|(.*?)(?<!\\)\|", (FORMATS / "control.md").read_text(), re.M)
         told = {name: row for name, row in rows if name in METHODS or f"{name}_result" in SCHEMA["definitions"]}
         self.assertEqual(sorted(told), sorted(METHODS))

@@ -19,7 +19,7 @@ class Standby(unittest.TestCase):
     def states(self, system):
         return {task["task"]: task["state"] for task in system.call("status")["tasks"]}
 
-    def test_one_of_them_is_on_after_kills(self):
+    def test_primary_or_standby_is_on_after_kills(self):
         last = {}
         with System(STANDBY) as system:
             for _ in range(ROUNDS):

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each picture response.svg or frequency.svg of a component is what it answers today. UPDATE=1 draws them anew: look
-// at them before they are committed.
+// Each picture response.svg or frequency.svg shows the present response of its component. UPDATE=1 draws all again:
+// view them before a commit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -39,7 +39,7 @@ Plot titled(const std::string& title, const std::string& note) {
   return plot;
 }
 
-/// What `signal(t)` is and what becomes of it, every `ms` milliseconds until so many seconds.
+/// Input `signal(t)` and output of the filter, every `ms` milliseconds until `until` seconds.
 template <class Signal>
 std::vector<Curve> in_and_out(SignalRig& rig, double until, std::int64_t ms, Signal signal) {
   rig.set("x", 0.0);
@@ -166,7 +166,7 @@ TEST(Responses, SignalGeneratorInItsSevenWaves) {
     rig.set("amplitude", 1.0), rig.set("delay", 0.25), rig.set("end_frequency", 5.0), rig.set("duration", 3.0);
     ASSERT_TRUE(rig.init());
     ASSERT_TRUE(rig.on());
-    // Two and two to a panel: seven over each other could not be told apart.
+    // Two curves in each panel: seven in one could not be distinguished.
     Curve curve{kWaves[i], "1", {}, i / 2};
     for (double t = 0; t < 3; t += 5e-3) {
       curve.points.push_back({t, rig.get<double>("y")});

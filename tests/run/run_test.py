@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What `chimera run` prints and answers when it runs an application by processes."""
+"""Output and exit codes of `chimera run` when it runs an application in processes."""
 import json
 import pathlib
 import re
@@ -26,7 +26,7 @@ TWO = ("subsystem: subject\nrtpus: {first: {cpu: 0}, second: {cpu: 0}}\ntasks:\n
 
 
 def run(text, *arguments):
-    """The exit code of a run that ends by itself, and its output."""
+    """Exit code and output of a run that ends by itself."""
     with System(text, arguments, wait=False) as system:
         code = system.wait()
         said = system.said()
@@ -36,7 +36,7 @@ def run(text, *arguments):
 
 
 class Run(unittest.TestCase):
-    def test_says_what_was_granted_what_it_sees_and_how_it_went(self):
+    def test_prints_rights_watched_values_and_the_verdict(self):
         code, said = run(TWO, "--for", "2 s", "--watch", "one_count", "--every", "1 s",
                          "--expect", "two_count >= 1")
         self.assertEqual(code, 0, said)
@@ -48,7 +48,7 @@ class Run(unittest.TestCase):
         self.assertRegex(said, r"\none   ON  +\d+ .*\ntwo   ON  +\d+ .*\n"
                                r"holds: two_count >= 1 \(two_count is \d+\)\n(not )?clean: .*\n$")
 
-    def test_an_rtpu_that_is_given_up_comes_back_by_what_status_says(self):
+    def test_an_rtpu_that_is_given_up_comes_back_by_the_remedy_of_status(self):
         with System(ONE) as system:
             self.assertEqual(system.call("status")["flag"], {"up": False, "by": []})
             for death in range(4):
@@ -69,7 +69,7 @@ class Run(unittest.TestCase):
             self.assertEqual(system.chimera("on", "one").stdout, "[subject] one: ON already\n")
             self.assertEqual(system.call("status")["flag"], {"up": False, "by": []})
 
-    def test_a_profile_that_was_saved_is_what_schedule_reads(self):
+    def test_schedule_reads_a_saved_profile(self):
         with tempfile.TemporaryDirectory() as folder:
             file, saved, late = (pathlib.Path(folder) / name for name in ("two.yaml", "p.json", "late.json"))
             file.write_text(TWO)
@@ -99,7 +99,7 @@ class Run(unittest.TestCase):
             self.assertEqual(chimera(*words, "/nowhere/p.json", code=1).stderr,
                              "/nowhere/p.json: cannot be written: No such file or directory\n")
 
-    def test_values_beside_those_of_the_file(self):
+    def test_values_are_set_beside_the_file(self):
         """From the start, and at a stated time; the manager knows them, too."""
         text = ("subsystem: subject\nconstants: {k: 2 N.m/rad}\ntasks:\n  gain: {rate: 100 Hz}\n"
                 "operator: {x: 1 rad}\n")
@@ -123,7 +123,7 @@ class Run(unittest.TestCase):
         self.assertRegex(said, r"\nrefused at 1\.\d+ s: switch --off fast: no task would be ON\n")
         self.assertRegex(said, r"\nslow  OFF .*\nfast  ON ")
 
-    def test_records_what_every_rtpu_does(self):
+    def test_records_every_rtpu(self):
         words = ("--for", "1 s", "--trace", "trace.json", "--timeline", "10 ms")
         with System(TWO, words, wait=False) as system:
             self.assertEqual(system.wait(), 0, system.said())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A processor, played tick by tick: what the analysis is held against. It shares with it the specs and nothing else:
-// here is no bound, no busy period, no level, only who runs in this tick.
+// Simulates a processor tick by tick, as a reference for the analysis. Both share only the specs: the simulation has no
+// bound, no busy period and no level, only the task that runs in each tick.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace chimera::brute {
 using Tick = std::int64_t;
 inline constexpr Tick kFar = INT64_MAX / 4;
 
-/// What the world does to one set.
+/// Releases, demands and server events of one simulation of a set.
 struct Scenario {
   std::vector<Tick> first;     ///< first release of each task; server: its first event
   std::vector<Tick> until;     ///< of each task: no release, or event, from here on; empty: all go on
@@ -115,7 +115,7 @@ class Processor {
   }
 
   void serve(std::size_t i) {
-    if (is_under_way(i)) return;  // what began runs to its end
+    if (is_under_way(i)) return;  // a job that began runs to its end
     draw_events(i);
     if (works_[i].server == ServerKind::kDeferrable) serve_deferrable(i);
     else serve_sporadic(i);
@@ -149,13 +149,13 @@ class Processor {
       t.is_active = true;
       t.release = now_;
       t.deadline = now_ + works_[i].period.count;
-      t.pending_release = t.left;  // what was taken
+      t.pending_release = t.left;  // capacity of the chunk
       event_[works_[i].rtpu] = true;
       return;
     }
   }
 
-  // What was used comes back a period after the server became active, what was not at once.
+  // Used capacity comes back a period after the server became active; the rest comes back at once.
   void give_back(std::size_t i) {
     Task& t = tasks_[i];
     const Tick used = t.pending_release - t.left;
@@ -185,7 +185,7 @@ class Processor {
     start_job(i, t.pending_release);
   }
 
-  // 1: a goes first; -1: b does; 0: a tie that leaves who runs alone.
+  // 1: a goes first; -1: b goes first; 0: a tie, in which the running task continues.
   int compare(std::size_t a, std::size_t b) const {
     const auto order = [](auto x, auto y) { return x < y ? 1 : x > y ? -1 : 0; };
     const Work &wa = works_[a], &wb = works_[b];

@@ -10,7 +10,7 @@ using brute::Scenario;
 using brute::Seen;
 using brute::Tick;
 
-/// The worlds that one set is played in. The first releases everything at once and asks for all of every time.
+/// Scenarios for one set. In the first, all tasks are released together and use all of their times.
 class Worlds {
  public:
   Worlds(const TaskSet& set, std::uint32_t seed) : set_(set), random_(seed ^ 0x9e3779b9u) {
@@ -52,7 +52,7 @@ class Worlds {
     world.horizon += longest_;
     return world;
   }
-  /// One begins a tick before all others.
+  /// One task begins a tick before all others.
   Scenario behind(std::size_t blocker) {
     Scenario world = together();
     for (std::size_t i = 0; i < set_.works.size(); ++i) {
@@ -115,7 +115,7 @@ class Trial {
   bool is_promised(std::size_t i) const { return verdicts_[i].guarantee == Guarantee::kYes; }
   std::string name(std::size_t i) const { return "seed " + std::to_string(seed_) + ": task " + std::to_string(i); }
 
-  /// Nobody who was promised its deadline misses it, and every bound holds.
+  /// Each guaranteed task meets its deadline, and every bound holds.
   std::string promises(const std::vector<Seen>& seen) {
     for (std::size_t i = 0; i < seen.size(); ++i) {
       misses_ |= !is_promised(i) && seen[i].missed;
@@ -135,7 +135,7 @@ class Trial {
     return true;
   }
 
-  /// What is called exact is reached when all is released together; a failing demand misses there.
+  /// An exact response is reached if all tasks are released together; a failing demand misses its deadline then.
   std::string precision(const std::vector<Seen>& seen, Tick horizon) {
     for (std::size_t i = 0; i < seen.size(); ++i) {
       const WorkVerdict& verdict = verdicts_[i];

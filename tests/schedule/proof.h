@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The proof of the analysis: random task sets, each played in several worlds (brute_force.h) and held against what
-// analyse() said of it.
+// The proof of the analysis: random task sets, each simulated in several scenarios (brute_force.h) and compared with
+// the verdict of analyse().
 #pragma once
 
 #include <array>
@@ -20,12 +20,12 @@ struct TaskSet {
   std::vector<ProcessorUse> uses;
 };
 
-/// The same set for the same seed.
+/// A random set; equal seeds give equal sets.
 TaskSet random_set(std::uint32_t seed);
 /// The set in words, for a failure.
 std::string text(const TaskSet& set);
 
-/// What a set needs for its proof: the more mechanisms, the less an adversary knows how to reach the bound.
+/// Mechanism of a set. With more mechanisms, a simulation reaches the bound less often.
 enum class Kind : std::uint8_t { kFixed, kDeadline, kLaxity, kExecutive, kServers };
 inline constexpr std::array kKindNames = {"fixed priorities", "earliest deadline", "least laxity", "executive",
                                           "servers"};

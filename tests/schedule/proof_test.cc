@@ -6,7 +6,7 @@
 namespace chimera::proof {
 namespace {
 
-TEST(ScheduleProof, WhatIsPromisedOfRandomSetsHoldsTickByTick) {
+TEST(ScheduleProof, GuaranteesOfRandomSetsHoldTickByTick) {
   Tallies tallies{};
   for (std::uint32_t seed = 1; seed <= 1500; ++seed) {
     const std::string wrong = judge(seed, tallies);

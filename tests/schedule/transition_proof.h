@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The proof of the analysis of transitions: two random sets with tasks in common, played on their grids with the change
-// at every instant that makes a difference, and held against what analyse_transition() said of them.
+// The proof of the analysis of transitions: two random sets with common tasks, simulated on their grids with the change
+// at every instant that makes a difference, and compared with the verdict of analyse_transition().
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@
 
 namespace chimera::proof {
 
-/// `parts[i]` is what becomes of set.works[i]. Of each task set.works[i].offset is the phase of its grid.
+/// `parts[i]` is the change of set.works[i], and set.works[i].offset is the phase of its grid.
 struct Transition {
   TaskSet set;
   std::vector<TransitionPart> parts;
   bool is_like_for_like = false;  ///< only replaces tasks by such with no longer times
 };
 
-/// The same transition for the same seed.
+/// A random transition; equal seeds give equal transitions.
 Transition random_transition(std::uint32_t seed);
 std::string text(const Transition& transition);
 

@@ -6,14 +6,14 @@
 namespace chimera::proof {
 namespace {
 
-TEST(TransitionProof, WhatIsPromisedOfRandomTransitionsHoldsAtEveryInstantOfTheChange) {
+TEST(TransitionProof, GuaranteesOfRandomTransitionsHoldAtEveryInstant) {
   TransitionTallies tallies{};
   for (std::uint32_t seed = 1; seed <= 1000; ++seed) {
     const std::string wrong = judge_transition(seed, tallies);
     ASSERT_EQ(wrong, "");
   }
   std::printf("%s", table(tallies).c_str());
-  // Of the transitions between two promised sets in which nobody misses, so many percent are promised at least.
+  // Least percentage of guaranteed transitions among those between two guaranteed sets.
   constexpr std::uint64_t kLeastShares[] = {80, 85, 65, 75, 40};
   for (std::size_t kind = 0; kind < tallies.size(); ++kind) {
     const TransitionTally& tally = tallies[kind];

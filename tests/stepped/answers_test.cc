@@ -16,7 +16,7 @@ configurations: {all: [steady, slow]}
 start: all
 )";
 
-TEST(SteppedAnswers, NameTheRtpuThatDoesNotAnswerAndWhatItDoes) {
+TEST(SteppedAnswers, NameTheRtpuThatDoesNotAnswerAndItsMethod) {
   SteppedSubsystem system(kTwo);
   ASSERT_TRUE(system.until_started());
   system.stop("second", true);

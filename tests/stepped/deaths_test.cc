@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the death of an rtpu or of the manager, and a method that fails, do to the tasks: nothing but what is declared.
+// The death of an rtpu or of the manager, and a method that fails, have only their declared effects on the tasks.
 #include <gtest/gtest.h>
 
 #include "tests/stepped/stepped_subsystem.h"
@@ -29,7 +29,7 @@ struct Deaths : ::testing::Test {
   }
 };
 
-TEST_F(Deaths, AnRtpuThatDiesIsNamedWithItsCauseAndComesBackWithWhatWasOn) {
+TEST_F(Deaths, ADeadRtpuIsNamedWithItsCauseAndComesBackWithItsTasks) {
   const std::pair<int, const char*> ways[] = {{SIGSEGV, "signal 11 (SIGSEGV)"}, {SIGABRT, "signal 6 (SIGABRT)"},
                                               {SIGBUS, "signal 7 (SIGBUS)"},    {SIGFPE, "signal 8 (SIGFPE)"},
                                               {SIGILL, "signal 4 (SIGILL)"},    {SIGKILL, "signal 9 (SIGKILL)"}};
@@ -44,7 +44,7 @@ TEST_F(Deaths, AnRtpuThatDiesIsNamedWithItsCauseAndComesBackWithWhatWasOn) {
   }
 }
 
-TEST_F(Deaths, AnRtpuThatDiesFourTimesIsGivenUpUntilAPersonSaysClear) {
+TEST_F(Deaths, AnRtpuThatDiesFourTimesIsGivenUpUntilClear) {
   SteppedSubsystem system(kTwoRtpus);
   ASSERT_TRUE(system.until_started());
   for (int n = 0; n < 4; ++n) {

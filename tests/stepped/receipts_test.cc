@@ -42,7 +42,7 @@ TEST(SteppedReceipts, DoneAbortedAndRefusedSwitchesAreFiledAlike) {
   EXPECT_EQ(system.ends(), "quick done\nwild aborted\ngentle done\nquick refused\n");
   const Json filed = system.receipts();
   ASSERT_EQ(filed.size(), 4u);
-  EXPECT_EQ(filed[std::size_t{0}], done) << "the answer is what is filed";
+  EXPECT_EQ(filed[std::size_t{0}], done) << "the filed receipt equals the answer";
   EXPECT_EQ(filed[std::size_t{1}], aborted);
   EXPECT_EQ(filed[std::size_t{2}], back);
   EXPECT_EQ(filed[std::size_t{3}]["why"], "task 'fast' is not there: spawn it first");
@@ -53,7 +53,7 @@ TEST(SteppedReceipts, DoneAbortedAndRefusedSwitchesAreFiledAlike) {
   }
   EXPECT_EQ(done["from"], "gentle");
   EXPECT_EQ(aborted["from"], "quick");
-  EXPECT_EQ(done["variables"][std::size_t{0}]["rtpu"], "m/s");
+  EXPECT_EQ(done["variables"][std::size_t{0}]["unit"], "m/s");
   EXPECT_EQ(system.result("receipts", {{"last", 2}})["receipts"].size(), 2u);
 }
 
@@ -80,7 +80,7 @@ TEST(SteppedReceipts, ASecondRequestIsRefusedByNameAndTheFirstOneCanBeCancelled)
   EXPECT_EQ(system.on(), kQuick);
 }
 
-TEST(SteppedReceipts, ADryRunSaysWhatWouldBeDoneAndChangesNothing) {
+TEST(SteppedReceipts, ADryRunForeseesTheSwitchAndChangesNothing) {
   SteppedSubsystem system(kReceipts);
   ASSERT_TRUE(system.until_started());
   const Json plan = system.result("plan", to("quick"));
@@ -149,7 +149,7 @@ std::vector<std::pair<Nanoseconds, std::string>> history_of(const Json& receipts
   return history;
 }
 
-TEST(SteppedReceipts, OfFourOperatorsWhoAskAtRandomExplainEachAnswer) {
+TEST(SteppedReceipts, ReceiptsExplainEachAnswerToFourOperators) {
   const unsigned seed = std::random_device()();
   SCOPED_TRACE("seed " + std::to_string(seed));
   SteppedSubsystem system(kReceipts);

@@ -7,7 +7,7 @@
 namespace chimera::manager::requests_test {
 namespace {
 
-// `asker` asks for what the operator variable `wish` says: 1 for `first`, 2 for `second`.
+// `asker` requests a configuration by the operator variable `wish`: 1 for `first`, 2 for `second`.
 const std::string kTasksAsk = R"(subsystem: subject
 rtpus: {first: {cpu: 0, policy: edf}, second: {cpu: 1, policy: edf}}
 tasks:
@@ -24,7 +24,7 @@ start: low
 )";
 const std::string kLow = "steady asker one reader ", kHigh = "steady asker two reader ";
 
-TEST(SteppedRequests, CarryOutWhatATaskAsksForAndNameTheTask) {
+TEST(SteppedRequests, CarryOutRequestsOfATaskAndNameTheTask) {
   for (const std::string& lists : {std::string("{first: low, second: high}"),
                                    std::string("{first: --on one, second: --on two --off one}")}) {
     SteppedSubsystem system(replaced(kTasksAsk, "{first: low, second: high}", lists));
@@ -58,7 +58,7 @@ TEST(SteppedRequests, RefuseTasksThatAreNoLegalSetByName) {
   EXPECT_EQ(system.receipts(), Json::array());
 }
 
-TEST(SteppedRequests, WaitWithASwitchForItsSafeWhenAndNameWhatHoldsItUp) {
+TEST(SteppedRequests, WaitForSafeWhenAndNameTheVariableThatDelays) {
   SteppedSubsystem system(kTasksAsk);
   ASSERT_TRUE(system.until_started());
   system.set("given", 9);
@@ -141,8 +141,8 @@ TEST(SteppedReactions, LeadToAnotherConfigurationAfterAMissAndAfterAnOverrun) {
   }
 }
 
-/// The first fault was dealt with by the manager that dies; the second one comes before its successor.
-TEST(SteppedReactions, AskAgainForTheSameWhileTheManagerIsDead) {
+/// The manager that dies has handled the first fault; the second fault comes before its successor.
+TEST(SteppedReactions, RepeatTheirRequestWhileTheManagerIsDead) {
   SteppedSubsystem system(replaced(kFails, "REACTION", "{switch: less}"));
   ASSERT_TRUE(system.until([&] { return system.manager().is_ready() && system.ends() == "less done\n"; }));
   EXPECT_EQ(system.signal("kill", "thrower"), "");

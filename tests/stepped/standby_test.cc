@@ -166,7 +166,7 @@ TEST_F(SteppedStandby, AnInputThatIsTooOldIsNotValidUntilItsProducerGoesOnOrCome
 }
 
 /// One or two of rtpus and manager die, the second one at each step of the takeover from the first.
-TEST_F(SteppedStandby, ExactlyOneIsOnWhicheverTwoProcessesDie) {
+TEST_F(SteppedStandby, ExactlyOneTaskIsOnAfterAnyTwoDeaths) {
   const std::string names[] = {"first", "second", "manager"};
   for (const std::string& one : names) {
     for (const std::string& other : names) {

@@ -92,7 +92,7 @@ TEST(SteppedSwitch, TurnsTasksOnAndOffByNameAndNamesTheConfigurationThatTheyMake
   EXPECT_EQ(system.on(), kGentle);
 }
 
-TEST(SteppedSwitch, ThatStepsTooFarChangesNothing) {
+TEST(SteppedSwitch, ASwitchWithTooLargeAStepChangesNothing) {
   SteppedSubsystem system(kSwitch);
   ASSERT_TRUE(system.until_started());
   EXPECT_EQ(switched(system, "quick")["end"], "done");
@@ -119,7 +119,7 @@ TEST(SteppedSwitch, IsRefusedWithTheNearestNameAndWithTheCommandThatHelps) {
   EXPECT_EQ(switched(system, "quick")["end"], "done");
 }
 
-TEST(SteppedSwitch, OverWhichATaskMightMissItsDeadlineGoesTheSlowWayUnderTheFlag) {
+TEST(SteppedSwitch, ASwitchThatRisksADeadlineIsSlowUnderTheFlag) {
   std::string text = kSwitch;
   const auto replace = [&](const std::string& what, const std::string& with) {
     for (std::size_t at = 0; (at = text.find(what, at)) != text.npos; at += with.size())

@@ -10,7 +10,7 @@
 
 namespace chimera::simulated {
 
-/// What is to happen when, in virtual time. At one instant in the order in which it was entered.
+/// Events in virtual time. Events of one instant happen in the order in which they were entered.
 class Agenda {
  public:
   Nanoseconds now() const noexcept { return now_; }

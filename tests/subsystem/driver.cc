@@ -269,7 +269,7 @@ void ManagerLoop::answer(const subsystem::CommandAnswer& answer) {
                     answer.refusal.text());
   const auto is_it = [&](const auto& one) { return one.first == answer.id; };
   const auto asked = std::find_if(asked_.begin(), asked_.end(), is_it);
-  if (asked == asked_.end()) return world_.fail("a command was answered that nobody asked, or twice");
+  if (asked == asked_.end()) return world_.fail("a command was answered twice, or without a face that asked");
   Face& face = *world_.faces[asked->second];
   asked_.erase(asked);
   face.answered(answer);

@@ -71,7 +71,7 @@ void Judge::count_revivals(const Event& event, std::span<const Action> actions) 
   }
 }
 
-// A goal goes when it is reached, when somebody takes it back, or with a word about it.
+// A goal ends when the task reaches it, when a face takes it back, or with an event or answer about it.
 void Judge::stepped(const Event& event, std::span<const Action> actions) {
   count_revivals(event, actions);
   bool says_something = std::holds_alternative<RtpuDown>(event);
@@ -93,7 +93,7 @@ void Judge::stepped(const Event& event, std::span<const Action> actions) {
   }
 }
 
-// Somebody wants it OFF anyway.
+// True if a face wants the task OFF.
 bool Judge::is_excused(TaskId task) const {
   return std::any_of(world_.faces.begin(), world_.faces.end(),
                      [task](const auto& face) { return face->wants_down(task); });
@@ -146,7 +146,7 @@ bool Judge::is_awaited(TaskId task, Signal signal) const {
   });
 }
 
-// Whoever was told that a task is OFF or gone, or that its init ended the process, must not find it up again by itself.
+// After an answer that a task is OFF or gone, or that its init ended the process, it must not come back by itself.
 void Judge::promise(const subsystem::CommandAnswer& answer, const Face& face) {
   const bool met_death = answer.refusal.kind == RefusalKind::kEnded;
   const bool was_deadly = met_death && face.signal() == Signal::kSpawn;
@@ -206,7 +206,7 @@ void Judge::manager_dies() {
   turning_.assign(turning_.size(), false);
   ended_.assign(ended_.size(), false);
   is_rolling_back_ = false;
-  for (TaskId task : world_.plan.spec.init_order) asked_up(task);  // what it was about to do, the next one may finish
+  for (TaskId task : world_.plan.spec.init_order) asked_up(task);  // the next manager may finish its last step
 }
 
 void Judge::wanted_down(TaskId task) {
@@ -251,7 +251,7 @@ void Judge::look_at_the_end() {
     if (face->is_waiting()) world_.fail("a command is never answered");
   for (std::size_t r = 0; r < Plan::kRtpus; ++r)
     if (!world_.processes[r]->is_alive() && given_up_[r] != world_.processes[r]->incarnation())
-      world_.fail("an rtpu is dead and nobody was told that it is given up");
+      world_.fail("an rtpu is dead and no event says that it is given up");
   for (std::size_t t = 0; t < world_.n_tasks(); ++t) {
     const TaskId task(t);
     if (debts_[t].there && world_.process_of(task).state(task) == State::kNotCreated)
@@ -264,7 +264,7 @@ void Judge::look_at_the_end() {
     const State last = process.word(task).state;
     const bool is_lost = !process.is_alive() && last != State::kNotCreated && goal == 0;
     const State truth = is_lost ? State::kError : process.state(task);
-    // One that died again before it was brought back is missed too, though the last words do not know it.
+    // A task that died again before it came back is missing too, though its last status does not show it.
     const bool is_missed = !process.is_alive() && subsystem.state(task) == State::kError && goal == 0;
     if (subsystem.state(task) != truth && !is_missed)
       world_.fail(name(task) + " is said to be " + state_name(subsystem.state(task)) + " and is " + state_name(truth));

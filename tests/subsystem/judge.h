@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What must always hold in the simulation, checked at every event.
+// Invariants of the simulation, checked at every event.
 #pragma once
 
 #include <span>
@@ -18,11 +18,11 @@ class Judge {
         debts_(world.n_tasks()),
         given_up_(Plan::kRtpus) {}
 
-  /// A status word or somebody's life changed: two producers?
+  /// A status word or a life of a process changed. Checks that no variable has two producers.
   void changed();
   /// After every event: the flag.
   void look();
-  /// Nothing goes on any more: nothing may be lost.
+  /// After the last event: nothing may be lost.
   void look_at_the_end();
   /// The ON set by the words, of processes that live by the keeper's page.
   std::vector<bool> on_as_seen() const;
@@ -32,7 +32,7 @@ class Judge {
   void step_ended() { ended_.assign(ended_.size(), false); }
   void goal(const subsystem::RememberGoal& goal);
   void answered(const subsystem::CommandAnswer& answer, const Face& face);
-  /// Somebody wants it up: promises to the contrary are over.
+  /// A face or a task wants the task created or ON: earlier promises that it stays down end.
   void asked_up(TaskId task) {
     debts_[task.index].no_on = debts_[task.index].no_spawn = false;
     debts_[task.index].asked_up = world_.now();
@@ -55,7 +55,7 @@ class Judge {
   void process_dies(RtpuId rtpu);
   void process_hangs();
   bool is_turning() const noexcept;
-  /// Those that are ON and produce what the task produces.
+  /// Tasks that are ON and produce a variable of the task.
   std::vector<TaskId> rivals(TaskId task) const;
 
  private:
@@ -69,19 +69,19 @@ class Judge {
 
   ManagerState& world_;
   std::vector<bool> turning_;  // `on` was sent, its transaction is not over
-  std::vector<bool> ended_;    // its transaction is over, how will be told
+  std::vector<bool> ended_;    // its transaction is over, its result is not reported yet
   bool is_rolling_back_ = false;
-  /// What is owed to a task since its process died: to be there again, or ON again, or a word why not.
+  /// Debt to a task since its process died: it must be created or ON again, or an event must say why not.
   struct Debt {
     bool there = false;
     bool on = false;
     bool is_down = false;   ///< `off` or `kill` was sent since it went ON
     bool is_gone = false;   ///< `kill` was sent since it was created
-    bool no_on = false;     ///< somebody was promised that it is not turned ON
+    bool no_on = false;     ///< an answer promised that it is not turned ON
     bool no_spawn = false;  ///< nor spawned
     State last = State::kNotCreated;
     Signal sent = Signal::kSpawn;  ///< last by the manager
-    Nanoseconds asked_up;   ///< when somebody wanted it up last
+    Nanoseconds asked_up;   ///< last time at which a face or a task wanted it up
     Nanoseconds requested;  ///< when a task asked for it last
   };
   void promise(const subsystem::CommandAnswer& answer, const Face& face);

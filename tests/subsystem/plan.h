@@ -21,7 +21,7 @@ class Plan {
   Plan& operator=(const Plan&) = delete;
 
   ApplicationSpec spec;
-  /// The same without state variables: whoever judges by it finds every set legal.
+  /// `spec` without state variables, so that every set of tasks is legal.
   ApplicationSpec blind;
 
  private:

@@ -62,7 +62,7 @@ void Process::meet(std::uint32_t manager) {
   if (is_alive_ && !is_hung_) later(microseconds(100), milliseconds(3), [this] { try_attach(); });
 }
 
-// Between two edges only: what the old manager sent and nobody took yet is not taken any more.
+// Between two edges only: drops the posts of the old manager that are not handled yet.
 void Process::try_attach() {
   if (!is_serving_ || is_busy_ || next_manager_ == manager_) return;
   const auto old = [this](const Letter& letter) { return letter.manager != 0 && letter.manager != next_manager_; };
@@ -135,7 +135,7 @@ void Process::request(TaskId from, TaskId target) {
   world_.driver->poke();
 }
 
-// A signal that meets a method under way is taken after it; of one task all are taken in their order.
+// A signal waits until the running method of its task ends. Signals of one task keep their order.
 bool Process::is_blocked(const Letter& letter, std::size_t before) const {
   return std::any_of(letter.tasks.begin(), letter.tasks.end(), [&](TaskId task) {
     if (word(task).in_service) return true;

@@ -15,12 +15,12 @@ namespace chimera::simulated {
 /// Signals that belong to one transaction.
 struct Letter {
   std::uint64_t command = 0;  ///< 0: none
-  std::uint32_t manager = 0;  ///< which one sent it; 0: a task
+  std::uint32_t manager = 0;  ///< the manager that sent it; 0: a task
   Signal signal = Signal::kOn;
   std::vector<TaskId> tasks;
 };
 
-/// Where death may be waiting.
+/// Points at which the process may die.
 enum class Point { kNone, kStarting, kBeforeStep, kAfterStep, kInsideList, kBeforeReport, kAfterReport, kInService };
 
 class Process {
@@ -33,7 +33,7 @@ class Process {
   void receive(Letter letter);
   /// A task of this process sends `on`: only the manager may.
   void request(TaskId from, TaskId target);
-  /// A new manager's segment is there to be mapped.
+  /// Announces the segment of a new manager.
   void meet(std::uint32_t manager);
   void look_soon();
 
@@ -42,17 +42,17 @@ class Process {
   void doom(Point point, bool hangs) noexcept { doom_ = point, doom_hangs_ = hangs; }
   void hang(const char* point);
   bool is_doomed() const noexcept { return doom_ != Point::kNone; }
-  /// Stands still for a time longer than an answer may take, then goes on where it was.
+  /// Stops for longer than an answer may take, and then continues.
   void stall();
   void wake() noexcept { stalled_until_ = {}; }
 
   bool is_alive() const noexcept { return is_alive_; }
   bool is_hung() const noexcept { return is_hung_ || world_.now() < stalled_until_; }
   bool is_busy() const noexcept { return is_busy_ || !service_.empty(); }
-  /// That signal of the present manager to the task waits to be taken, or is being carried out.
+  /// True if `signal` of the present manager to the task waits or is being carried out.
   bool is_sent(Signal signal, TaskId task) const noexcept;
   std::uint32_t incarnation() const noexcept { return incarnation_; }
-  /// As its segment says, also after its death.
+  /// Status in its segment, also after its death.
   TaskStatus word(TaskId task) const { return words_[task.index]; }
   bool is_half_on(TaskId task) const { return half_on_[task.index] && word(task).state == State::kOff; }
   State state(TaskId task) const { return is_alive_ ? word(task).state : State::kNotCreated; }

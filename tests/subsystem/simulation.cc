@@ -14,7 +14,7 @@ constexpr std::size_t kFaces = 4;
 constexpr Nanoseconds kChaos = seconds(16);
 constexpr std::size_t kMostEvents = 400'000;
 
-/// What goes wrong, and when.
+/// Failures at random instants.
 class Chaos {
  public:
   explicit Chaos(ManagerState& world) : world_(world) {}
@@ -32,7 +32,7 @@ class Chaos {
   }
 
  private:
-  // Who was to die and did not pass the point, dies now.
+  // A process that did not pass its point of death dies now.
   void end() {
     if (world_.signals < 200) return world_.agenda.after(seconds(1), [this] { end(); });
     for (auto& process : world_.processes)

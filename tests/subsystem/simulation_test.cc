@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Planted{Defect::kJudgesNothing, "produces the same and is ON"},
                       Planted{Defect::kForgetsGoals, "is lost: its process died and it did not come back"},
                       Planted{Defect::kBelievesOffEarly, "produces the same and is ON"},
-                      Planted{Defect::kIgnoresAbsentDeaths, "is dead and nobody was told that it is given up"},
+                      Planted{Defect::kIgnoresAbsentDeaths, "is dead and no event says that it is given up"},
                       Planted{Defect::kLeavesOn, "a transaction failed and"},
                       Planted{Defect::kHasNoClock, "no answer from rtpu"}));
 

@@ -54,7 +54,7 @@ std::vector<std::string> Tally::missing() const {
         need(answer_key(static_cast<Step>(s), static_cast<Answer>(a)));
   for (int state = 0; state < kStates; ++state)
     for (std::uint32_t signal = 0; signal < CHIMERA_SIGNAL_WAKEUP; ++signal)
-      if (signal != CHIMERA_SIGNAL_ON || static_cast<State>(state) == State::kOff)  // nobody else is ever sent `on`
+      if (signal != CHIMERA_SIGNAL_ON || static_cast<State>(state) == State::kOff)  // other states never receive `on`
         need(signal_key(static_cast<State>(state), static_cast<Signal>(signal), false));
   need(signal_key(State::kOn, Signal::kWakeup, false));
   need(signal_key(State::kOn, Signal::kWakeup, true));

@@ -24,7 +24,7 @@ class Tally {
     return found == counts_.end() ? 0 : found->second;
   }
   const std::map<std::string, std::uint64_t>& all() const noexcept { return counts_; }
-  /// What must have happened at least once over many seeds, and did not.
+  /// Names of the transitions and events that must happen over many seeds and did not.
   std::vector<std::string> missing() const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the parts of the simulation share.
+// State that the parts of the simulation share.
 #pragma once
 
 #include <memory>
@@ -28,8 +28,8 @@ enum class Defect {
   kJudgesNothing,        ///< every ON set counts as legal
   kForgetsGoals,         ///< RememberGoal is not carried out
   kBelievesOffEarly,     ///< an `off` counts as reported when it is sent
-  kIgnoresAbsentDeaths,  ///< whoever died while no manager lived counts as dealt with
-  kLeavesOn,             ///< a failed transaction turns nobody OFF
+  kIgnoresAbsentDeaths,  ///< deaths while no manager lived count as handled
+  kLeavesOn,             ///< a failed transaction turns no task OFF
   kHasNoClock,           ///< never a Tick
 };
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`chimera test DIR`: what it finds, how it judges, what a build machine reads, and what it refuses."""
+"""`chimera test DIR`: its files, its verdicts, its report for a build machine, and its refusals."""
 import json
 import unittest
 import xml.etree.ElementTree
@@ -39,7 +39,7 @@ class Cases(Place):
                                  (0, f"{prefix}deep/down/any.cases.yaml\n  ok     doubles\n  ok     follows\n"
                                      "2 cases in 1 file: 2 passed, 0 failed\n", ""))
 
-    def test_says_what_does_not_hold(self):
+    def test_names_the_expectation_that_fails(self):
         self.write("small.cases.yaml", BAD)
         code, out, err = self.chimera("test", ".", "--junit", "report.xml")
         self.assertEqual((code, err), (1, ""))
@@ -80,7 +80,7 @@ class Cases(Place):
         (self.path / "a/here").unlink()
         self.assertEqual(self.chimera("test", "a")[0], 0)
 
-    def test_refuses_what_is_no_test(self):
+    def test_refuses_a_file_that_is_no_test(self):
         none = ("error: there are no tests: no file NAME.cases.yaml here or below; docs/formats/cases.md says what one "
                 "says\n")
         self.assertEqual(self.chimera("test", "."), (1, "", ".: " + none))

@@ -9,7 +9,7 @@ import unittest
 BUILD = pathlib.Path(os.environ["CHIMERA_BUILD"]).resolve()
 CHIMERA = BUILD / "bin" / "chimera"
 
-# y = k x, and something that dies when it is told to.
+# y = k x, and a task that can be made to die.
 TEXT = """subsystem: small
 constants: {k: 2 N.m/rad}
 tasks:

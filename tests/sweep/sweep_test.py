@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`chimera sweep`: its table, its files, and what it refuses."""
+"""`chimera sweep`: its table, its files, and its refusals."""
 import csv
 import json
 import os
@@ -14,7 +14,7 @@ class Sweep(Place):
     def sweep(self, *words):
         return self.chimera("sweep", "small.yaml", "--for", "50 ms", *words)
 
-    def test_all_combinations_in_one_table_whatever_the_number_of_jobs(self):
+    def test_all_combinations_are_in_one_table_for_any_number_of_jobs(self):
         words = ("--over", "k = 1, 2 N.m/rad", "--over", "x = [1:1:3] rad", "--measure", "y", "--measure", "max |y|",
                  "--expect", "y <= 5 m2.kg/s2", "--csv", "t.csv", "--svg", "t.svg")
         code, out, err = self.sweep(*words, "--jobs", "1")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The links of an rtpu in a switch that end in the middle of an edge, as by SIGKILL: from then on nothing that the rtpu
-// does reaches anybody. A trial is told before and after each call in which the rtpu tells others something.
+// The links of an rtpu in a switch that end in the middle of an edge, as by SIGKILL: from then on no call of the rtpu
+// reaches a peer. A callback runs before and after each call of the rtpu to its peers.
 #pragma once
 
 #include <functional>

@@ -19,18 +19,18 @@ class Readers {
     last_.fill(kNever);
     is_strict_ = true;
   }
-  /// What a reader sees while the flag is up is not judged, until begin(); what it sees while it is down must still be
-  /// of a life that is not for nothing.
+  /// Until begin(), values read under the flag are not judged. Values read without the flag must still come from a life
+  /// whose switch was committed.
   void let_loose() { is_strict_ = false; }
   bool is_strict() const { return is_strict_; }
   /// Jobs released at `at` or later see that life.
   void change(Nanoseconds at, std::uint32_t life) { changes_.push_back({at, life}); }
   /// Releases of this reader up to `until` may be lost.
   void excuse(TaskId reader, Nanoseconds until) { excused_[reader.index] = until; }
-  /// It was not ON.
+  /// The reader was not ON.
   void forget(TaskId reader) { last_[reader.index] = kNever; }
 
-  /// What is wrong with it; "": nothing. `outcome_of(plan)`: 1 committed, 0 open, -1 aborted.
+  /// Error in a cycle of a reader; "": none. `outcome_of(plan)`: 1 committed, 0 open, -1 aborted.
   template <class OutcomeOf>
   std::string judge(const Look& look, Nanoseconds period, OutcomeOf outcome_of) {
     const std::string who = "reader " + std::to_string(look.reader.index) + " of release " +

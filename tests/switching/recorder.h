@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happens in a switch, as events of the model tests/models/switch.pml, read from the words that the rtpus share:
-// from the page and from the blocks, not from what the code of an rtpu believes. Looked at between any two calls in
-// which an rtpu tells others something.
+// Records a switch as events of the model tests/models/switch.pml. It reads the page and the blocks that the rtpus
+// share, and not the private state of an rtpu, before and after each call of an rtpu to its peers.
 #pragma once
 
 #include <string>
@@ -18,7 +17,7 @@ class Recorder {
   /// "NAME WHO" each; who: the rtpu, or the number of rtpus for the manager.
   const std::vector<std::string>& events() const noexcept { return events_; }
   void add(const char* what, std::uint32_t who) { events_.push_back(std::string(what) + " " + std::to_string(who)); }
-  /// What the words say that they did not say before; `who` has changed them.
+  /// Records the changes of the shared words since the last call; `who` has changed them.
   void look(std::uint32_t who) {
     const SwitchPage& page = rtpus_.decision.switching;
     const PlanWord plan = PlanWord::of(page.plan.load());
@@ -44,7 +43,7 @@ class Recorder {
   struct Progress {
     std::uint32_t adopted = 0, over = 0;
   };
-  // Who finds a plan aborted adopts nothing.
+  // An rtpu that finds the plan aborted adopts nothing.
   void look_at(std::uint32_t rtpu) {
     const SwitchProgress& words = rtpus_.rtpus[rtpu]->segment.block.head().switching;
     const Progress now{words.adopted.load(), words.over.load()};

@@ -6,7 +6,7 @@
 namespace chimera::switching_trial {
 namespace {
 
-TEST(SwitchingTrial, WhateverHappensReadersSeeOneProducerAndNobodyIsLeftArmed) {
+TEST(SwitchingTrial, ReadersSeeOneProducerAndNoTaskStaysArmedAfterAnyMishap) {
   Tally all;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     const Tally one = run_trial(seed, 40);

@@ -12,7 +12,7 @@ namespace chimera::switching_trial {
 
 enum class By : std::uint8_t { kOn, kCycle, kOff };
 
-/// What is in the variable. Life 0: nobody has written.
+/// Content of the variable. Life 0: it was never written.
 struct Mark {
   std::uint32_t life = 0;
   By by = By::kCycle;
@@ -38,7 +38,7 @@ struct Life {
   Nanoseconds at;          ///< when `on` was called
 };
 
-/// What the tasks do, and what they did. One run at a time.
+/// Script and records of the tasks. One run at a time.
 struct Stage {
   std::vector<Life> lives{1};
   std::vector<Look> looks;     // since they were judged
@@ -50,7 +50,7 @@ inline Stage stage;
 
 inline constexpr TaskId kWatch0{0u}, kWatch1{1u}, kNear{2u}, kExtra{3u}, kShape{4u}, kFar{5u}, kWatch2{6u}, kThird{7u};
 
-/// What all producers have.
+/// Common part of all producers.
 template <unsigned kTask>
 struct Living {
   std::uint32_t life = 0;

@@ -14,7 +14,7 @@ constexpr int kTurnsOff = 3;  // of heal()
 enum class Mishap : std::uint8_t { kNone, kRtpuDies, kRtpuDiesTelling, kManagerDies, kHoldUp, kCancel, kFlag, kSignal,
                                    kOnFails };
 
-/// What goes wrong in a switch, and when.
+/// Failure in a switch, and its instant.
 struct Plan {
   Mishap what = Mishap::kNone;
   std::uint32_t rtpu = 0;
@@ -23,7 +23,7 @@ struct Plan {
   bool is_over = false;
 };
 
-/// What the manager must not forget: it outlives it.
+/// Journal of the manager, which survives its death.
 struct Journal {
   std::uint16_t number = 0;
   bool is_open = false;
@@ -88,7 +88,7 @@ class Run {
     return now.is_open() ? 0 : now.phase == SwitchPhase::kCommitted ? 1 : -1;
   }
 
-  // An rtpu, in the middle of an edge, before and after it tells others something.
+  // Runs in the middle of an edge, before and after each call of rtpu `me` to its peers.
   void told(std::uint32_t me) {
     look(me);
     if (mishap_.what != Mishap::kRtpuDiesTelling || mishap_.is_over || mishap_.rtpu != me) return;
@@ -186,10 +186,10 @@ class Run {
     if (!is_changing && n_producers != 1) fail(std::to_string(n_producers) + " producers are ON");
   }
 
-  // What the manager does when an rtpu has come back, or a signal or an error has changed the set: the first set again.
+  // Acts as the manager after a restart of an rtpu, a signal or an error: orders the first set again.
   void heal() {
     readers_.let_loose();
-    rest(milliseconds(2));  // who came last has met the others
+    rest(milliseconds(2));  // the last rtpu has attached to the others
     for (int turn = 0; turn < 40 && is_well(); ++turn) {
       bool is_whole = true;
       for (std::size_t t = 0; t < n_tasks(); ++t) {
@@ -289,7 +289,7 @@ class Run {
   void signal() {
     const TaskId members[] = {kNear, kExtra, kShape, kFar};
     const TaskId id = members[draw(4)];
-    if (!all_live() || !readers_.is_strict()) return;  // they may not have met yet
+    if (!all_live() || !readers_.is_strict()) return;  // they may not be attached yet
     ++tally_.signals;
     readers_.let_loose();
     rtpus_.send(one_in(3) ? Signal::kKill : Signal::kOff, {id});
@@ -303,7 +303,7 @@ class Run {
   // The manager, or its successor, which knows the journal.
   void manage() {
     if (!journal_.is_open) return;
-    if (plan().number != journal_.number) {  // never announced: nobody was told
+    if (plan().number != journal_.number) {  // the manager died before the announcement
       journal_.is_open = false;
       return;
     }
@@ -328,7 +328,7 @@ class Run {
       const SwitchPart& part = rtpus_.part(u);
       if (part.number != journal_.number) fail("an rtpu has no part in the receipt");
       const bool was_there = incarnation_[u] == 1 || part.n_tasks > 0;
-      if (was_there && (part.end == SwitchEnd::kDone) != is_done) fail("a part tells of another end");
+      if (was_there && (part.end == SwitchEnd::kDone) != is_done) fail("the end in a part differs from the plan");
       if (is_done && readers_.is_strict() && held_until_[u] + milliseconds(4) < began_) judge_losses(part);
     }
     for (std::size_t t = 0; t < n_tasks(); ++t) {

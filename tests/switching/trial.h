@@ -17,10 +17,10 @@
 
 namespace chimera::switching_trial {
 
-/// Of the model: two rtpus, who dies stays dead, nothing but deaths, hold-ups and cancels.
+/// kOfModel: two rtpus, no restarts, and only deaths, hold-ups and cancels.
 enum class Kind : std::uint8_t { kAll, kOfModel };
 
-/// What a trial did. `failure` "": everything held.
+/// Result of a trial. `failure` "": everything held.
 struct Tally {
   std::string failure;
   std::uint64_t switches = 0, done = 0, aborted = 0, rtpu_deaths = 0, manager_deaths = 0, hold_ups = 0, signals = 0,

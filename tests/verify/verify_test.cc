@@ -48,7 +48,7 @@ std::vector<fs::path> descriptions(const char* kind) {
 
 std::string name_of(const testing::TestParamInfo<fs::path>& info) { return info.param.stem().string(); }
 
-/// What `check` prints, and below "run:" what `run` would refuse.
+/// Output of `check`, and below "run:" the refusals of `run`.
 std::string judged(const fs::path& path) {
   ReadDescription reading = read_description(contents(path), path.filename().string());
   const Verdict verdict = verify(reading, library());

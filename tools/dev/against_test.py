@@ -52,7 +52,7 @@ class OtherCommit(unittest.TestCase):
             self.refused(lambda: against.Other("--all", root))
             self.assertFalse((root / "build").exists())
 
-    def test_a_folder_without_git_is_told(self):
+    def test_a_folder_without_git_is_refused(self):
         with tempfile.TemporaryDirectory() as folder:
             self.assertIn("no git checkout", self.refused(lambda: against.Other("HEAD", pathlib.Path(folder)))[0])
 
@@ -103,7 +103,7 @@ class OtherCommit(unittest.TestCase):
 
 
 class Rows(unittest.TestCase):
-    def test_what_must_be_built_is_the_program_and_what_it_needs(self):
+    def test_the_program_and_its_needs_are_built(self):
         with checkout(("row_07_a.cc", "row_07_b.py", "row_07_c_peer.cc")) as root:
             paths = rows.programs(rows.sources(root), [7])
             self.assertEqual([path.name for path in paths], ["row_07_a.cc", "row_07_b.py"])
@@ -185,7 +185,7 @@ class Lines(unittest.TestCase):
         self.assertEqual((code, found["figures"][0]["ratio"], found["only_here"]), (0, 1.5, [[7, "new"]]))
         self.assertIn("commit", found["machine"])
 
-    def test_the_table_says_what_is_not_in_it(self):
+    def test_the_table_names_missing_figures(self):
         said = self.said()[1]
         self.assertIn("7    a     3 ns  2 ns  1.500  1.500 to 1.500  1 of 1", said)
         self.assertIn("only here: row 7, new\n", said)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the commands of ./dev share: lines for people, the build trees, the machine-wide real-time lock."""
+"""Common parts of the commands of ./dev: output, build trees, the machine-wide real-time lock."""
 import contextlib
 import csv
 import fcntl
@@ -121,7 +121,7 @@ def _open_lock_file():
 
 @contextlib.contextmanager
 def realtime_lock():
-    """Held by whoever measures time on this machine: one at a time, whichever user or checkout."""
+    """Lock for measurements of time: one process of the machine holds it, of any user and checkout."""
     descriptor = _open_lock_file()
     try:
         try:

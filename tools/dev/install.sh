@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Puts a staged tree into a prefix, and takes it out again. PREFIX/share/chimera/manifest says what is ours there: lines
-# of sha256sum, and `#dir FOLDER` for each folder that did not exist before.
-#   install.sh look PREFIX [BYTES]     refuses a prefix that cannot be installed into, or has no room for so many
+# Puts a staged tree into a prefix, and takes it out again. PREFIX/share/chimera/manifest lists our files: lines of
+# sha256sum, and `#dir FOLDER` for each folder that did not exist before.
+#   install.sh look PREFIX [BYTES]     refuses a prefix that cannot be installed into, or has no room for BYTES
 #   install.sh put PREFIX STAGE        installs, or upgrades: all of it or nothing
 #   install.sh remove PREFIX
 set -euo pipefail
@@ -37,7 +37,7 @@ look() {  # [bytes]
 named() { [ ! -e "$prefix/$manifest" ] || grep -v '^#' "$prefix/$manifest" | cut -c 67- | sort -u; }
 folders_named() { [ ! -e "$prefix/$manifest" ] || sed -n 's/^#dir //p' "$prefix/$manifest"; }
 
-# Sorts what the manifest names into `same` (as it was installed) and `changed` (by somebody since).
+# Sorts the files of the manifest into `same` (as installed) and `changed` (since then).
 sort_ours() {
   local path sum
   declare -A known=()
@@ -51,7 +51,7 @@ sort_ours() {
            xargs -0r sha256sum --)
 }
 
-# What stands in the way of the new files.
+# Refuses files that are not ours in the places of the new files.
 refuse_strangers() {
   local path at strangers=()
   while IFS= read -r path; do

@@ -119,7 +119,7 @@ class Again(unittest.TestCase):
     """Tests that touch real scheduling run again; the others never."""
 
     def again(self, *tries, labels="process"):
-        """What is left of these tries of the program p, each a list of cases; how often it ran."""
+        """Result of these tries of the program p, each a list of cases, and the number of its runs."""
         for cases in tries:
             for case in cases:
                 case.program = "p"
@@ -129,7 +129,7 @@ class Again(unittest.TestCase):
             cases = frame.ctest_again("debug", labels, tries[0])
         return sorted((case.name, case.outcome, case.flaky) for case in cases), len(tries) - len(left)
 
-    def test_what_passes_later_is_flaky_with_its_first_words(self):
+    def test_a_test_that_passes_later_is_flaky_with_its_first_words(self):
         found = self.again([Case("a", PASSED), Case("b", FAILED, "late")], [Case("a", PASSED), Case("b", PASSED)])
         self.assertEqual(found, ([("a", PASSED, ""), ("b", PASSED, "late")], 2))
 
@@ -166,7 +166,7 @@ class Shares(unittest.TestCase):
         self.assertEqual(self.unlabelled("release", "unit"), [FAILED])
         self.assertEqual(self.unlabelled("release", "symbol"), [])
 
-    def test_quick_says_what_it_leaves_out(self):
+    def test_quick_names_the_parts_that_it_leaves_out(self):
         said = frame.left_out()
         self.assertIn("process (debug)", said)
         self.assertNotIn("unit (debug)", said)

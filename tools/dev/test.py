@@ -34,7 +34,7 @@ SHARES = (
 )
 QUICK = Share("quick", (("debug", "unit"),))
 TREES = ("debug", "tsan", "release")
-# What these tests judge can depend on when the system runs a thread: one that fails runs again, at most twice.
+# The result of these tests can depend on the scheduling of threads: a test that fails runs again, at most twice.
 SCHEDULED = {"threads", "process", "hostile", "realtime"}
 MOST_TRIES = 3
 DURATIONS = common.BUILD / "durations.jsonl"
@@ -128,7 +128,7 @@ def tests_of(tree):
 
 
 def state_of(paths):
-    """What changes when one of these files does."""
+    """Hash of the times and sizes of these files: it changes when one of them does."""
     found = {}
     for path in paths:
         try:
@@ -195,7 +195,7 @@ def allowed_skips():
 
 
 def judge_skips(cases):
-    """On the build machine a skip that nobody foresaw is a failure."""
+    """On the build machine a skip that tests/may_skip.txt does not list is a failure."""
     if not on_build_machine():
         return
     allowed = allowed_skips()
@@ -266,7 +266,7 @@ def run_tests(shares, quick=False):
 
 
 def left_out():
-    """What --quick does not run, as the shares have it."""
+    """Tests that --quick leaves out, by share."""
     runs = [(tree, label) for share in SHARES for tree, labels in share.runs for label in labels.split("|")]
     return ", ".join(f"{label} ({tree})" for tree, label in runs if (tree, label) not in QUICK.runs)
 

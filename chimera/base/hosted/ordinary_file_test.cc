@@ -35,7 +35,7 @@ TEST_F(OrdinaryFile, IsReadUpToTheLimit) {
   EXPECT_EQ(*read_ordinary(at("file"), 100), "123456789012345");
 }
 
-TEST_F(OrdinaryFile, IsNothingElse) {
+TEST_F(OrdinaryFile, IsNoPipeFolderDeviceOrSocket) {
   ASSERT_EQ(::mkfifo(at("pipe").c_str(), 0600), 0);
   EXPECT_EQ(said(at("pipe")), "is no ordinary file but a pipe");
   EXPECT_EQ(said(folder_), "is no ordinary file but a folder");

@@ -9,7 +9,7 @@ namespace {
 TEST(TerminalText, ALineHasNoControlCharacters) {
   EXPECT_EQ(plain_line("a\x1b[2Jb\nc\x7f" "d"), "a [2Jb c d");
   EXPECT_EQ(plain_line("a\xc2\x9b" "2Jb"), "a 2Jb") << "CSI in one character";
-  EXPECT_EQ(plain_line("a\x9b" "2Jb"), "a 2Jb") << "the same as a byte that is no UTF-8";
+  EXPECT_EQ(plain_line("a\x9b" "2Jb"), "a 2Jb") << "as a byte that is no UTF-8";
   EXPECT_EQ(plain_line("\xc2\xb5m \xe2\x82\xac \xf0\x9f\x98\x80"), "\xc2\xb5m \xe2\x82\xac \xf0\x9f\x98\x80");
 }
 
@@ -21,7 +21,7 @@ TEST(TerminalText, ALineHasNoMarksOfDirectionAndNothingUnseen) {
   EXPECT_EQ(plain_line("\xe2\x80"), "  ") << "cut short";
 }
 
-TEST(TerminalText, WhatACommandPrintsKeepsItsLines) {
+TEST(TerminalText, OutputOfACommandKeepsItsLines) {
   EXPECT_EQ(for_terminal("a\tb\n\x1b[2Jc\r\n"), "a\tb\n [2Jc \n");
 }
 

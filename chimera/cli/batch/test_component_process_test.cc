@@ -92,12 +92,12 @@ TEST_F(TestComponent, FindsSystemCalls) {
             "and the component has no resource port");
 }
 
-TEST_F(TestComponent, FindsWhatDoesNotRepeat) {
+TEST_F(TestComponent, FindsAComponentThatDoesNotRepeat) {
   EXPECT_EQ(misdeed(7, "repeatable"),
             "  fails       repeatable    the same inputs gave other outputs the second time, in cycle 0");
 }
 
-TEST_F(TestComponent, FindsWhatDoesNotComeBackFromAFault) {
+TEST_F(TestComponent, FindsAComponentThatDoesNotRecoverFromAFault) {
   EXPECT_EQ(misdeed(8, "faults"),
             "  fails       faults        after a fault in on it does not come back: \"does not forgive\"");
   EXPECT_EQ(misdeed(9, "faults"),
@@ -125,7 +125,7 @@ TEST_F(TestComponent, FindsASafeStateThatIsNotReachedOrNotLeft) {
             "  fails       safe state    still told 5 s of cycles after the flag went down");
 }
 
-TEST_F(TestComponent, FindsWhatKillLeaves) {
+TEST_F(TestComponent, FindsDescriptorsAndMemoryThatKillLeaves) {
   const std::string open = misdeed(13, "leftovers");
   const std::string head = "  fails       leftovers     every two rounds of spawn and kill leave 2 open descriptors, ";
   EXPECT_TRUE(open.starts_with(head + "such as ")) << open;
@@ -134,14 +134,14 @@ TEST_F(TestComponent, FindsWhatKillLeaves) {
             "  fails       leftovers     every two rounds of spawn and kill leave 2 blocks of memory");
 }
 
-TEST_F(TestComponent, FindsOneThatCompletesNothingOrDoesNotStart) {
+TEST_F(TestComponent, FindsAComponentThatCompletesNoCycleOrDoesNotStart) {
   EXPECT_EQ(misdeed(15, "cycles"),
             "  fails       cycles        none of 200 was completed, the first with \"thrown on purpose\" in cycle 0; "
             "NAME.test.yaml and --inputs give it something to work on");
   EXPECT_EQ(misdeed(16, "start"), "  fails       start         refuses on purpose");
 }
 
-TEST_F(TestComponent, FindsAnObjectThatIsNotWhatItsDescriptorSays) {
+TEST_F(TestComponent, FindsAnObjectThatContradictsItsDescriptor) {
   fs::copy(build_path("components/t_misfit.so"), folder_ / "t_misfit.so");
   std::ifstream stream(build_path("components/t_misfit.component.json"));
   std::string text{std::istreambuf_iterator<char>(stream), {}};
@@ -188,7 +188,7 @@ TEST_F(TestComponent, PlaysARecording) {
   EXPECT_EQ(run().err, options_.inputs + ":1:3: error: no in-var of the component is called 'v'\n");
 }
 
-TEST_F(TestComponent, NamesTheNearestWhenThereIsNone) {
+TEST_F(TestComponent, NamesTheNearestComponentForAnUnknownOne) {
   options_.components = {"t_misfitt"};
   const CommandResult output = run();
   EXPECT_EQ(output.code, kRefused);

@@ -41,10 +41,10 @@ TEST(ValueList, ListsTextsAndUnitsOfTheirOwnStayWhole) {
   ASSERT_TRUE(mixed);
   EXPECT_EQ(mixed->shown, (Texts{"500 mm", "1 m"}));
   EXPECT_EQ(mixed->unit, "");
-  EXPECT_TRUE(mixed->numbers.empty()) << "half a metre is not 500 of what the other is 1 of";
+  EXPECT_TRUE(mixed->numbers.empty()) << "the values have different units";
 }
 
-TEST(ValueList, RefusesWhatIsNoList) {
+TEST(ValueList, RefusesAMalformedList) {
   const std::string form = "write 'NAME = VALUE, VALUE UNIT' or 'NAME = [FIRST:STEP:LAST] UNIT'";
   EXPECT_EQ(values("kp"), Texts{"--over 'kp': " + form});
   EXPECT_EQ(values("= 1"), Texts{"--over '= 1': " + form});

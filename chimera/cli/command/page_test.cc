@@ -39,7 +39,7 @@ TEST(Page, RefusesAnUnknownPart) {
   EXPECT_EQ(refused.error().where.view(), "@word@");
 }
 
-TEST(Page, SynopsisHasOperandsAndWhatIsRequired) {
+TEST(Page, SynopsisHasOperandsAndRequiredOptions) {
   EXPECT_EQ(
       made("@synopsis@"),
       ".br\n.B chimera new app\n\\fINAME\\fR\n"
@@ -67,7 +67,7 @@ TEST(Page, WordsOfEveryCommandButHiddenOnes) {
             "    'draw') echo '--help --as --fast --to --json --subsystem' ;;\n");
 }
 
-TEST(Page, EveryOperandAndOptionSaysWhatItTakes) {
+TEST(Page, EveryOperandAndOptionNamesItsKindOfValue) {
   EXPECT_EQ(made("@takes@"),
             "    ' --subsystem') echo 'text' ;;\n"
             "    'new') echo 'command' ;;\n"

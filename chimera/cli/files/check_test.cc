@@ -26,7 +26,7 @@ TEST(Check, ALegalDescriptionEarnsItsVerdict) {
             "  rtpu main on cpu 0: no budgets stated, so the load is not judged\n");
 }
 
-TEST(Check, TellsTheLoadOfStatedBudgets) {
+TEST(Check, PrintsTheLoadOfStatedBudgets) {
   const CommandResult output = checked("subsystem: s\ntasks:\n  a: {component: t_counter, budget: 250 us}\n");
   EXPECT_NE(output.out.find("rtpu main on cpu 0: budgets take 0.250 of at most 0.93\n"), std::string::npos)
       << output.out << output.err;
@@ -82,7 +82,7 @@ CommandResult modes_of(std::string text, const std::string& instead = "", const 
   return output;
 }
 
-TEST(CheckModes, JudgesEachSwitchAndSaysWhoAsks) {
+TEST(CheckModes, JudgesEachSwitchAndNamesItsRequesters) {
   const CommandResult output = modes_of(kModes);
   EXPECT_EQ(output.code, kOk);
   EXPECT_EQ(output.err, "");
@@ -102,7 +102,7 @@ TEST(CheckModes, JudgesEachSwitchAndSaysWhoAsks) {
             "unreachable except by an operator: late\n");
 }
 
-TEST(CheckModes, AReactionWhoseSwitchWouldBeSlowIsAFault) {
+TEST(CheckModes, AReactionWithASlowSwitchIsAFault) {
   const CommandResult output = modes_of(kModes, "{switch: late}", "{switch: light}");
   EXPECT_EQ(output.code, kRefused);
   EXPECT_EQ(output.out.rfind("heavy -> late: slow; asked for by on_miss of a, an operator\n", 0), 0u) << output.out;
@@ -126,7 +126,7 @@ start: alone
   EXPECT_EQ(output.out.rfind("alone -> both: fast; asked for by on_miss of a, on_fault of a, an operator\n", 0), 0u);
 }
 
-TEST(CheckModes, NamesWhoAsksForTasksThatLeadToAConfiguration) {
+TEST(CheckModes, NamesTheRequesterOfTasksThatLeadToAConfiguration) {
   const CommandResult output = modes_of(R"(subsystem: modes
 tasks:
   asker: {component: t_asker, rate: 100 Hz, budget: 1 ms, constants: {first: --on two, second: --off one}}
@@ -145,7 +145,7 @@ start: low
   EXPECT_EQ(output.err, "") << output.err;
 }
 
-TEST(CheckModes, TellsWhatHasNoBudgetAndWhatHasNothingToSwitchTo) {
+TEST(CheckModes, NamesTasksWithoutABudgetAndReactionsWithoutATarget) {
   const CommandResult output = modes_of(kModes, "c: {component: t_counter, rate: 100 Hz}",
                                         "c: {component: t_counter, rate: 100 Hz, budget: 1 ms}");
   EXPECT_NE(output.out.find("heavy -> light: fast; asked for by on_miss of a, an operator\n"

@@ -10,7 +10,7 @@ TEST(List, NamesEveryComponentOfTheFolders) {
   const CommandResult output = list(test_place(), false);
   EXPECT_EQ(output.code, kOk) << output.err;
   EXPECT_NE(output.out.find("t_counter "), std::string::npos);
-  EXPECT_NE(output.out.find("  Shows what a cycle is told.\n"), std::string::npos) << output.out;
+  EXPECT_NE(output.out.find("  Publishes the arguments of its cycle.\n"), std::string::npos) << output.out;
 }
 
 TEST(List, SaysWhereToLookWhenThereIsNothing) {
@@ -25,7 +25,7 @@ TEST(List, SaysWhereToLookWhenThereIsNothing) {
 TEST(Describe, ShowsPurposeRateMethodsAndPorts) {
   const CommandResult output = describe_component("t_counter", test_place(), false);
   EXPECT_EQ(output.code, kOk);
-  EXPECT_EQ(output.out.rfind("t_counter: Shows what a cycle is told.\n", 0), 0u) << output.out;
+  EXPECT_EQ(output.out.rfind("t_counter: Publishes the arguments of its cycle.\n", 0), 0u) << output.out;
   EXPECT_NE(output.out.find("rate     1000 Hz by default\nreleased by the timer\nmethods  cycle\nports\n"),
             std::string::npos) << output.out;
   EXPECT_NE(output.out.find("one more in every cycle, going on from where it stood; initially 0\n"),
@@ -48,7 +48,7 @@ TEST(Output, AnErrorNamesItsPlace) {
             "{\"error\": {\"where\": \"arm.yaml:3:4\", \"message\": \"wrong \\\"word\\\"\"}}\n");
 }
 
-TEST(JsonString, EscapesWhatJsonCannotHold) {
+TEST(JsonString, EscapesCharactersThatJsonCannotHold) {
   EXPECT_EQ(json_string("a\"\\\n\x01"), "\"a\\\"\\\\\\n\\u0001\"");
   EXPECT_EQ(json_string("\xff"), "\"\xef\xbf\xbd\"");  // no UTF-8: the replacement character
 }

@@ -27,7 +27,7 @@ CommandResult scheduled(const std::string& text, const std::string& dispatch, co
   return schedule({file.path(), profile, "", dispatch, false}, test_place());
 }
 
-TEST(Schedule, TellsThatEverythingFits) {
+TEST(Schedule, SaysThatAllTasksFit) {
   const CommandResult output = scheduled(kTwo, "preemptive");
   EXPECT_EQ(output.code, kOk) << output.err;
   EXPECT_EQ(output.out,
@@ -45,7 +45,7 @@ TEST(Schedule, TellsThatEverythingFits) {
             "          . = idle\n");
 }
 
-TEST(Schedule, TellsWhoMissesInAnExecutiveAndWhatWouldHelp) {
+TEST(Schedule, NamesTheTaskThatMissesInAnExecutiveAndTheRemedies) {
   const CommandResult output = scheduled(kTwo, "executive");
   EXPECT_EQ(output.code, kRefused);
   EXPECT_NE(output.out.find("  a     fast  low    2 ms budget  10 ms   10 ms     at most 11 ms  9 ms     -       "
@@ -60,7 +60,7 @@ TEST(Schedule, TellsWhoMissesInAnExecutiveAndWhatWouldHelp) {
       << output.out;
 }
 
-TEST(Schedule, ASetThatTakesMoreThanThereIsIsAnalysedAndToldWhatFits) {
+TEST(Schedule, AnOverloadedSetIsAnalysedWithARemedyThatFits) {
   std::string text = kTwo;
   text.replace(text.find("budget: 9 ms"), 12, "budget: 45 ms");
   const CommandResult output = scheduled(text, "preemptive");
@@ -148,7 +148,7 @@ std::vector<Line> random_lines(std::mt19937& random) {
   return lines;
 }
 
-// What is said to fit is tried: the changed description is analysed again.
+// Applies each remedy: the changed description is analysed again and must fit.
 TEST(Schedule, ItsAdviceIsTrue) {
   std::mt19937 random(3);
   std::map<std::string, int> tried;
@@ -197,7 +197,7 @@ TEST(Schedule, AMoreCriticalTaskIsNeverSaidToGiveWayToALessCriticalOne) {
 }
 
 // `b`, the most critical, lifts its rtpu above the other one: once it has moved, `a` would come second and miss.
-TEST(Schedule, WhoMovesTakesTheBandOfItsRtpuAlong) {
+TEST(Schedule, ATaskThatMovesTakesAlongTheBandOfItsRtpu) {
   const std::vector<Line> lines = {{"a", "second", "low", "200", 1500}, {"b", "second", "high", "20", 6000},
                                    {"c", "first", "low", "20", 4000}};
   const Json said = analysed(description("first: {policy: rm}, second: {policy: rm}", lines));
@@ -205,7 +205,7 @@ TEST(Schedule, WhoMovesTakesTheBandOfItsRtpuAlong) {
   EXPECT_EQ(remedies[remedies.size() - 1], Json({{"task", "a"}, {"rtpu", nullptr}})) << remedies;
 }
 
-TEST(Schedule, JudgesEachUnitAsTheDescriptionHasIt) {
+TEST(Schedule, JudgesEachRtpuAsTheDescriptionHasIt) {
   std::string text = kTwo;
   text.replace(text.find("policy: rm"), 10, "policy: rm, executor: preemptive");
   const CommandResult mixed = scheduled(text, "");
@@ -229,7 +229,7 @@ TEST(Schedule, TakesTimesFromAProfileAndSaysWhich) {
       << output.err;
 }
 
-TEST(Schedule, TellsWhatAProfileSaysOfTheBudgets) {
+TEST(Schedule, ComparesTheBudgetsWithAProfile) {
   RecordedProfile profile{"other", {{"a", 1000, milliseconds(3), milliseconds(1), milliseconds(1), {}}}};
   const TestFile file(to_json(profile));
   const std::string said = scheduled(kTwo, "preemptive", file.path()).err;
@@ -239,7 +239,7 @@ TEST(Schedule, TellsWhatAProfileSaysOfTheBudgets) {
       << said;
 }
 
-TEST(Schedule, SaysWhatToDoAboutATaskWithoutATime) {
+TEST(Schedule, NamesARemedyForATaskWithoutATime) {
   const CommandResult output = scheduled("subsystem: s\ntasks:\n  a: {component: t_counter}\n", "");
   EXPECT_EQ(output.code, kOk);
   EXPECT_NE(output.out.find("  no budget given for a: ignored in this proof; write 'budget:', or record one: "
@@ -250,7 +250,7 @@ TEST(Schedule, SaysWhatToDoAboutATaskWithoutATime) {
       << output.out;
 }
 
-TEST(Schedule, TheLegendOfTheWindowNamesWhoIsSeen) {
+TEST(Schedule, TheLegendOfTheWindowNamesTheTasksInIt) {
   const std::string text = description("r: {policy: rm, executor: preemptive}",
                                        {{"a", "r", "low", "1000", 10}, {"b", "r", "low", "1", 300000}});
   const CommandResult output = scheduled(text, "");
@@ -259,14 +259,14 @@ TEST(Schedule, TheLegendOfTheWindowNamesWhoIsSeen) {
       << output.out;
 }
 
-TEST(Schedule, RefusesWhatIsNotLegalAsCheckDoes) {
+TEST(Schedule, RefusesAnIllegalDescriptionAsCheckDoes) {
   const CommandResult output = scheduled("subsystem: s\ntasks:\n  a: {component: nothing}\n", "");
   EXPECT_EQ(output.code, kRefused);
   EXPECT_EQ(output.out, "");
   EXPECT_NE(output.err.find("nothing"), std::string::npos);
 }
 
-TEST(Schedule, RefusesAProfileThatIsNone) {
+TEST(Schedule, RefusesAFileThatIsNoProfile) {
   const TestFile file("{}");
   const CommandResult output = scheduled(kTwo, "", file.path());
   EXPECT_EQ(output.code, kRefused);

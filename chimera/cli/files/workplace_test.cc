@@ -8,7 +8,7 @@
 namespace chimera::cli {
 namespace {
 
-TEST(Workplace, LooksAlongThePathBeforeWhatBelongsToTheProgram) {
+TEST(Workplace, SearchesThePathBeforeTheFoldersOfTheProgram) {
   ::setenv("CHIMERA_PATH", "/mine:/ours", 1);
   const Workplace place = Workplace::around("/opt/chimera/bin/chimera");
   ::unsetenv("CHIMERA_PATH");

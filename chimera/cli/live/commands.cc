@@ -414,7 +414,7 @@ std::span<const RunningCommand> running_commands() {
 
 const Command& help_words() {
   static const Command kWords{.name = "help",
-                              .help = "List the commands, or tell more about one",
+                              .help = "List the commands, or describe one",
                               .operands = "[COMMAND]",
                               .most = 1,
                               .operand_kind = WordKind::kCommand,

@@ -52,11 +52,11 @@ TEST(Command, IsTypedAgainAsItWasGiven) {
   EXPECT_EQ(cli::command_line(read_call({"set", "kp", "it's"})), "chimera set kp 'it'\\''s'");
 }
 
-TEST(Command, WhatChangesSomethingIsAnAct) {
+TEST(Command, ACommandWithAnEffectIsAnAct) {
   EXPECT_TRUE(read_call({"off", "pid"}).is_act());
   EXPECT_TRUE(read_call({"end"}).is_act());
   EXPECT_TRUE(read_call({"save", "--write"}).is_act());
-  EXPECT_TRUE(read_call({"status", "--pid", "servo"}).is_act()) << "whoever asks for it means to signal it";
+  EXPECT_TRUE(read_call({"status", "--pid", "servo"}).is_act()) << "its user signals the process";
   EXPECT_FALSE(read_call({"save"}).is_act());
   EXPECT_FALSE(read_call({"status"}).is_act());
   EXPECT_FALSE(read_call({"get", "q"}).is_act());
@@ -108,7 +108,7 @@ TEST(Command, ControlMdNamesEveryMethodAndEveryAct) {
   EXPECT_NE(text.str().find("Which words act: `" + acts + "`"), std::string::npos) << acts;
 }
 
-TEST(Command, HelpTellsUsageOptionsAndAnExample) {
+TEST(Command, HelpPrintsUsageOptionsAndAnExample) {
   EXPECT_EQ(help_text("events"),
             "Print the events of the subsystem, numbered without a gap\n"
             "Usage: events [OPTIONS]\n\n"

@@ -23,7 +23,7 @@ constexpr const char* kText =
     "  pose: {x: 1 m, y: 2 m}\n"
     "configurations:\n  run: [a]";
 
-TEST(OperatorText, OnlyTheValuesThatDifferChangeAndNothingElse) {
+TEST(OperatorText, OnlyTheValuesThatDifferChange) {
   EXPECT_EQ(edited(kText, {{"goal", "1.5 rad"}, {"name", "\"new\""}, {"pose", "{x: 1 m, y: 3 m}"},
                            {"kp", "[100 N.m/rad, 80 N.m/rad]"}}),
             "# the arm\nsubsystem: s\ntasks:\n  a:   {component: c}   # kp: 3\n\n"
@@ -35,7 +35,7 @@ TEST(OperatorText, OnlyTheValuesThatDifferChangeAndNothingElse) {
             "configurations:\n  run: [a]");
 }
 
-TEST(OperatorText, AValueThatSaysTheSameStaysAsItIsWritten) {
+TEST(OperatorText, AnEqualValueStaysAsItIsWritten) {
   EXPECT_EQ(edited(kText, {{"goal", "3.141592653589793 rad"}, {"kp", "[100 N.m/rad, 90 N.m/rad]"},
                            {"name", "\"it's # here\""}, {"pose", "{y: 2 m, x: 1 m}"}}),
             kText);
@@ -56,7 +56,7 @@ TEST(OperatorText, ReplacesValuesThatHaveLinesOfTheirOwnOneByOne) {
             head + "  pose:\n    x: 1 m\n    y: 3 m\n");
 }
 
-TEST(OperatorText, RefusesWhatItCannotPlace) {
+TEST(OperatorText, RefusesAValueWithoutAPlace) {
   EXPECT_EQ(edited(kText, {{"kd", "1"}}), "kd: is not under `operator:`");
   EXPECT_EQ(edited("subsystem: s\ntasks: {a: }\noperator:\n  kp:\n    - 1\n    - 2\n", {{"kp", "[1, 3, 4]"}}),
             "kp: is written over several lines, and its number of elements has changed: edit the file by hand");

@@ -81,7 +81,7 @@ TEST_F(ReceiptsCommandTest, AreATableWithUnitsAndAReasonForEachThatWasNotDone) {
             "switch 2: task 'fast' is in ERROR: clear it first\n");
 }
 
-TEST_F(ReceiptsCommandTest, SayWhoAskedAndWhatIsNotFiled) {
+TEST_F(ReceiptsCommandTest, NameTheRequesterAndUnfiledReceipts) {
   Json task = receipt(1, "done"), reaction = task, nobody = task;
   task["asked_by"] = {{"task", "watch"}};
   reaction["asked_by"] = {{"reaction", "on_miss"}, {"task", "pid"}};

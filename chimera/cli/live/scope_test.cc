@@ -42,7 +42,7 @@ Json arm(std::uint64_t first, std::int64_t at_ms, double value) {
           {"rows", Json::array({Json::array({at_ms * 1'000'000, first + 1, {value, value}})})}};
 }
 
-TEST(Scope, KeepsWhatWasBeforeTheTriggerAndEndsAfterIt) {
+TEST(Scope, KeepsRowsFromBeforeTheTriggerAndEndsAfterIt) {
   Scope scope(request("error > 2 mrad", 2, 1));
   scope.add(pid(0, {{1000, 1, 0}, {1001, 2, 0}, {1002, 3, 0.001}, {1003, 4, 0.002}}));
   scope.add(arm(0, 1002, 7));
@@ -76,13 +76,13 @@ TEST(Scope, IsNotArmedBeforeThePreTriggerIsFull) {
       << scope.summary();
 }
 
-TEST(Scope, WaitsForEveryTaskButNotForOneThatIsOff) {
+TEST(Scope, WaitsForEveryTaskThatIsOn) {
   Scope slow(request("error > 2 mrad", 2, 1));
   slow.add(pid(0, {{1, 1, 0}, {9, 2, 0.003}, {10, 3, 0}}));
-  EXPECT_FALSE(slow.is_triggered()) << "arm has told nothing so far";
+  EXPECT_FALSE(slow.is_triggered()) << "no record of arm has arrived";
   slow.add(arm(0, 10, 7));
   slow.add(pid(3, {{11, 4, 0.003}, {11.5, 5, 0}}));
-  EXPECT_FALSE(slow.is_triggered()) << "arm has told of 1 ms only";
+  EXPECT_FALSE(slow.is_triggered()) << "arm has records up to 1 ms only";
   slow.add(pid(5, {{12, 6, 0.003}}));
   EXPECT_TRUE(slow.is_triggered());
   Scope alone(request("error > 2 mrad", 2, 1));
@@ -105,16 +105,16 @@ TEST(Scope, AValueHoldsUntilTheNextOneAndToTheEdgesOfThePicture) {
   EXPECT_EQ(q.name, "q[0]");
   EXPECT_TRUE(q.is_held);
   ASSERT_EQ(q.points.size(), 4u);
-  EXPECT_DOUBLE_EQ(q.points[0].at, -0.004) << "what was published at 1 ms holds at the left edge, 3 ms";
+  EXPECT_DOUBLE_EQ(q.points[0].at, -0.004) << "the value of 1 ms holds at the left edge, 3 ms";
   EXPECT_DOUBLE_EQ(q.points[0].value, 7);
   EXPECT_DOUBLE_EQ(q.points[1].at, -0.003);
   EXPECT_DOUBLE_EQ(q.points[2].at, 0.002);
   EXPECT_DOUBLE_EQ(q.points[3].at, 0.004) << "and the last one at the right edge";
   EXPECT_DOUBLE_EQ(q.points[3].value, 9);
-  EXPECT_EQ(scope.rows(), 4u) << "what only holds is no row of the window";
+  EXPECT_EQ(scope.rows(), 4u) << "a value that only holds is no row of the window";
 }
 
-TEST(Scope, WhatWasPublishedBeforeTheWindowHoldsIntoIt) {
+TEST(Scope, AValueFromBeforeTheWindowHoldsIntoIt) {
   Scope scope(request("error > 2 mrad", 1, 1));
   scope.add(arm(0, 1000, 7));
   scope.add(arm(1, 1001, 9));

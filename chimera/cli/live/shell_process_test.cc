@@ -281,7 +281,7 @@ TEST_F(ShellTest, AScopeRecordsRoundItsTriggerAndCountsItsGaps) {
   EXPECT_NE(content(path("a.svg")).find("3 rows of pid lost"), std::string::npos);
 }
 
-TEST_F(ShellTest, AScopeRefusesWhatCannotBe) {
+TEST_F(ShellTest, AScopeRefusesImpossibleArguments) {
   serve();
   EXPECT_EQ(run({"scope", "eror"}), "1||[puma_pid]\nno state variable 'eror'; did you mean 'error'?\n");
   EXPECT_EQ(run({"scope", "ndof"}), "2||[puma_pid]\n'ndof' is a constant: no task publishes it\n");
@@ -311,7 +311,7 @@ TEST_F(ShellTest, WatchGoesOnUntilCtrlC) {
   EXPECT_EQ(said.rfind("0|error = 0.0 rad\nerror = 0.0 rad\n", 0), 0u) << said;
 }
 
-TEST_F(ShellTest, SaveWritesTheFileOnceAndOnlyWhenItIsAsItWas) {
+TEST_F(ShellTest, SaveWritesTheFileOnceAndOnlyIfItIsUnchanged) {
   subject.file = path("arm.yaml");
   const std::string before = "subsystem: puma_pid\ntasks: {a: }\noperator:\n  kp: [3 N.m/rad, 2 N.m/rad]  # gains\n";
   std::ofstream(subject.file) << before;
@@ -443,7 +443,7 @@ TEST_F(ShellTest, TopEndsWithASentenceWhenTheSubsystemDoes) {
   EXPECT_TRUE(terminal.is_sane());
 }
 
-TEST_F(ShellTest, WhatGoesOnOutlivesARestartOfTheManager) {
+TEST_F(ShellTest, TopAndWatchOutliveARestartOfTheManager) {
   OnTerminal top([this] { return carry_out(surroundings(), read_call({"top"}), stdout, stderr); });
   OnTerminal watch([this] { return carry_out(surroundings(), read_call({"watch", "error"}), stdout, stderr); });
   serve();

@@ -60,7 +60,7 @@ TEST(Top, ANarrowScreenKeepsTheMissedDeadlinesWhole) {
   }
 }
 
-TEST(Top, TheHelpSaysWhatEveryColumnMeans) {
+TEST(Top, TheHelpExplainsEveryColumn) {
   std::string text;
   for (const TopLine& line : help_lines({})) text += line.text + "\n";
   for (const char* column : {"RATE", "EXEC", "MAX", "BUDGET", "USED", "JITTER", "MISSED", "INPUT"})
@@ -116,7 +116,7 @@ TEST(Top, EveryKeySortsItsColumn) {
   EXPECT_EQ(order_of_key('x'), std::nullopt);
 }
 
-TEST(Top, WhatDoesNotFitIsCountedAndCanBeReached) {
+TEST(Top, CountsTasksThatDoNotFitAndScrollsToThem) {
   const TopView view{.height = 8, .skipped = 99};
   const std::vector<TopLine> lines = top_lines(status(), nullptr, view);
   ASSERT_EQ(lines.size(), 8u);
@@ -144,7 +144,7 @@ Json served(std::int64_t on, std::int64_t busy) {
   return json;
 }
 
-TEST(Top, OfATaskBehindAServerTheCapacityCountsAndWhatWasUsedOfItSinceTheLastLook) {
+TEST(Top, ShowsTheCapacityOfAServerAndItsUseSinceTheLastPoll) {
   const Json first = served(1'000'000'000, 10'000'000);
   EXPECT_EQ(top_lines(first, nullptr, {})[6].text.substr(43, 12), "2.00 ms   5%") << "of 200 ms since it is ON";
   Json then = served(2'000'000'000, 110'000'000);
@@ -152,7 +152,7 @@ TEST(Top, OfATaskBehindAServerTheCapacityCountsAndWhatWasUsedOfItSinceTheLastLoo
   EXPECT_EQ(top_lines(then, first, {})[6].text.substr(43, 12), "2.00 ms  50%");
 }
 
-TEST(Top, AWideScreenTellsWhatSeldomHappens) {
+TEST(Top, AWideScreenShowsRareCounters) {
   Json json = status();
   json["tasks"][1]["demoted"] = 2;
   json["tasks"][1]["preempted"] = 1'200'000;

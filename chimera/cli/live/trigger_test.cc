@@ -24,7 +24,7 @@ std::string refusal(const std::string& text, const std::string& unit = "rad") {
   return level ? "none" : std::string(level.error().message.view());
 }
 
-/// Where it fires, as a word of 0 and 1.
+/// Firings of the trigger, as a text of 0 and 1.
 std::string edges(Trigger trigger, std::initializer_list<double> values) {
   std::string word;
   for (const double value : values) word += trigger.fires(value) ? '1' : '0';
@@ -40,19 +40,19 @@ TEST(Trigger, TheLevelIsConvertedToTheUnitOfTheVariable) {
 
 TEST(Trigger, FiresAtTheEdgeOnly) {
   EXPECT_EQ(edges(settled("e > 1", "1"), {0, 1, 2, 3, 0, 2}), "001001");
-  EXPECT_EQ(edges(settled("e > 1", "1"), {2, 3, 0, 2}), "0001") << "what holds from the first is no edge";
+  EXPECT_EQ(edges(settled("e > 1", "1"), {2, 3, 0, 2}), "0001") << "a comparison that is true at first is no edge";
   EXPECT_EQ(edges(settled("e <= -1", "1"), {0, -1, -2}), "010");
   EXPECT_EQ(edges(settled("|e| > 1", "1"), {0, -2, 2}), "010");
   EXPECT_EQ(edges(settled("e != 0", "1"), {0, 1, 2}), "010");
   EXPECT_EQ(edges(settled("ready == true", "1"), {0, 1, 1}), "010");
 }
 
-TEST(Trigger, ANumberThatIsNoneHoldsNoComparison) {
+TEST(Trigger, NotANumberHoldsNoComparison) {
   EXPECT_EQ(edges(settled("e != 0", "1"), {0, NAN, 1}), "001");
   EXPECT_EQ(edges(settled("e > 1", "1"), {NAN, 2}), "01");
 }
 
-TEST(Trigger, RefusesWithTheWordsOfWhatIsWrong) {
+TEST(Trigger, RefusesWithTheReason) {
   EXPECT_EQ(refusal("error"), "trigger 'error': expected VARIABLE, one of > >= < <= == !=, QUANTITY");
   EXPECT_EQ(refusal("> 2 rad"),
             "trigger '> 2 rad': '' is not the name of a variable; expected a name such as q, q[2] or pose.x");

@@ -37,7 +37,7 @@ Words offered(const std::string& before) {
   return completions(shell_words(), before, names_of(Json::parse(test::kDescribed)));
 }
 
-TEST(Words, CommandsAreCompletedFirstThenWhatTheyTake) {
+TEST(Words, CommandsAreCompletedBeforeTheirOperands) {
   EXPECT_EQ(offered("sta"), Words{"status"});
   EXPECT_EQ(offered("s"), (Words{"save", "scope", "set", "spawn", "status", "switch"}));
   EXPECT_EQ(offered("off "), (Words{"trajectory", "pid", "arm"}));
@@ -54,7 +54,7 @@ TEST(Words, CommandsAreCompletedFirstThenWhatTheyTake) {
   EXPECT_EQ(offered("nonsense "), Words{});
 }
 
-TEST(Words, TheSharedBeginningIsWhatATabCanAdd) {
+TEST(Words, ATabAddsTheSharedBeginning) {
   EXPECT_EQ(shared_beginning({"q", "q_ref"}), "q");
   EXPECT_EQ(shared_beginning({"status"}), "status");
   EXPECT_EQ(shared_beginning({"a", "b"}), "");

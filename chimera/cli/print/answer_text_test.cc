@@ -7,7 +7,7 @@
 namespace chimera::cli {
 namespace {
 
-TEST(AnswerText, JsonIsWrittenWhateverBytesANameHas) {
+TEST(AnswerText, JsonIsWrittenForANameOfAnyBytes) {
   EXPECT_EQ(json_line({{"file", "a\xff"}}), "{\"file\":\"a\xef\xbf\xbd\"}\n");
 }
 
@@ -23,7 +23,7 @@ TEST(AnswerText, ReadingsSayTheirProducerAndTheirAge) {
             "x = never written  (no producer is NOT-CREATED)\n");
 }
 
-TEST(AnswerText, SignalsTellWhatBecameOfEachTask) {
+TEST(AnswerText, SignalsPrintTheStateOfEachTask) {
   EXPECT_EQ(signal_text(Json::parse(R"({"tasks": [{"task": "pid", "before": "ON", "after": "OFF"},
                                                   {"task": "arm", "before": "OFF", "after": "OFF"}]})")),
             "pid: ON -> OFF\narm: OFF\n");
@@ -31,12 +31,12 @@ TEST(AnswerText, SignalsTellWhatBecameOfEachTask) {
             "arm: ON already\n");
 }
 
-TEST(AnswerText, TheFlagSaysWhoKeepsItUp) {
+TEST(AnswerText, TheFlagNamesTheProcessesThatKeepItUp) {
   EXPECT_EQ(flag_text(Json::parse(R"({"up": true, "by": ["servo", "operator"]})")), "flag UP by servo, operator\n");
   EXPECT_EQ(flag_text(Json::parse(R"({"up": false, "by": []})")), "flag down\n");
 }
 
-TEST(AnswerText, ADrillTellsOfEachTaskWhetherItIsSafe) {
+TEST(AnswerText, ADrillPrintsWhetherEachTaskIsSafe) {
   EXPECT_EQ(drill_text(Json::parse(R"({"safe": false, "flag_ns": 31000000, "tasks": [
               {"task": "arm", "verdict": "safe", "after_ns": 28400000},
               {"task": "winch", "verdict": "cannot-tell", "after_ns": null},
@@ -69,7 +69,7 @@ Json link(int depth, const std::string& variable, const std::string& verdict) {
           {"valid", true}, {"value", "1 rad"}, {"verdict", verdict}, {"inputs", {"q", "q_ref"}}};
 }
 
-TEST(AnswerText, WhyTellsWhoWhenFromWhatAndTheFirstInTrouble) {
+TEST(AnswerText, WhyPrintsProducerAgeInputsAndTheFirstTrouble) {
   const Json answer = {{"variable", "tau"},
                        {"chain", {link(0, "tau", "ok"), link(1, "q", "ok"), link(2, "q_ref", "stale")}},
                        {"verdict", "tau depends on q_ref: stale"}};
@@ -95,7 +95,7 @@ TEST(AnswerText, WhyStaysOnOneScreen) {
   EXPECT_NE(text.find("... and 84 more\n"), std::string::npos) << text;
 }
 
-TEST(AnswerText, WhyTellsWhatFailedInTimeAndStillStaysOnOneScreen) {
+TEST(AnswerText, WhyPrintsFailuresOfTimeAndFitsOneScreen) {
   Json chain = Json::array();
   for (int i = 0; i < 100; ++i) chain.push_back(link(i, "v" + std::to_string(i), "ok"));
   chain[0]["timing"] = "3 missed, 1 demoted";

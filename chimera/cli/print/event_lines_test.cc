@@ -14,7 +14,7 @@
 namespace chimera::cli {
 namespace {
 
-TEST(EventLines, AreNumberedAndTimedAndSayWhatIsGone) {
+TEST(EventLines, AreNumberedAndTimedAndCountLostEvents) {
   setenv("TZ", "UTC", 1);
   tzset();
   EXPECT_EQ(events_text(Json::parse(R"({"first": 17, "last": 18, "events": [
@@ -47,7 +47,7 @@ const Json kBurst = {
       event(4, 13, "set", "", "kp 0.4 V.s/rad"), event(5, 14, "miss", "pi", "1 deadline missed (2 in all)"),
       event(6, 300, "miss", "pi", "1 deadline missed (3 in all)")}}};
 
-TEST(EventLines, MissesOneBehindTheOtherAreOneLineAndWhatSomebodyDidIsSeen) {
+TEST(EventLines, PrintMissesInARowAsOneLineAndKeepOperatorEventsApart) {
   setenv("TZ", "UTC", 1);
   tzset();
   EXPECT_EQ(
@@ -64,7 +64,7 @@ TEST(EventLines, AreAllTheirOwnWhenThatIsWanted) {
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 6);
 }
 
-TEST(EventLines, OfOneKindLeaveTheOthersOut) {
+TEST(EventLines, AFilterByKindLeavesOutOtherKinds) {
   EXPECT_EQ(events_text(kBurst, 0, EventLines(*read_kinds("set,fault"))),
             "     4  22:13:20.013  set              kp 0.4 V.s/rad\n");
   EXPECT_EQ(read_kinds("mis").error().message.view(), "--kind: no kind 'mis'; did you mean 'miss'?");

@@ -7,7 +7,7 @@
 namespace chimera::cli {
 namespace {
 
-TEST(Fields, WhatIsMissingOrOfAnotherKindIsTheDefault) {
+TEST(Fields, AMissingFieldOrAnotherKindGivesTheDefault) {
   const Json odd = {{"a", nullptr}, {"b", "x"}, {"c", 1.5}, {"d", 18446744073709551615u}, {"e", {1, "y"}}};
   for (const char* key : {"a", "b", "z"}) EXPECT_EQ(whole_of(odd, key), 0) << key;
   EXPECT_EQ(whole_of(odd, "c"), 1);

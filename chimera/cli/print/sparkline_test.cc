@@ -21,14 +21,14 @@ TEST(Sparkline, ShowsTheLastValuesThatFit) {
   EXPECT_EQ(sparkline({}, 5, true), "");
 }
 
-TEST(Sparkline, AConstantIsInTheMiddleAndWhatIsNotFiniteABlank) {
+TEST(Sparkline, AConstantIsInTheMiddleAndANonFiniteNumberIsBlank) {
   EXPECT_EQ(sparkline(std::vector<double>{3, 3}, 5, false), "==");
   EXPECT_EQ(sparkline(std::vector<double>{NAN, 0, INFINITY, 1}, 5, false), " _ #");
   const double most = std::numeric_limits<double>::max();
   EXPECT_EQ(sparkline(std::vector<double>{-most, most}, 5, false), "_#");
 }
 
-TEST(Sparkline, UnicodeIsWhatTheLocaleSays) {
+TEST(Sparkline, TheLocaleDecidesAboutUnicode) {
   setenv("LC_ALL", "C", 1);
   EXPECT_FALSE(writes_unicode());
   setenv("LC_ALL", "en_GB.UTF-8", 1);

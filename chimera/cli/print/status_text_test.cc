@@ -18,7 +18,7 @@ TEST(OldestInput, IsNeverOneOfTheOperatorWhichHoldsUntilItIsSet) {
   EXPECT_EQ(oldest(R"({"inputs": [{"variable": "q", "age_ns": 7}, {"variable": "r", "age_ns": null}]})").age_ns, -1);
 }
 
-TEST(StatusText, OfAnRtpuThatWasGivenUpItSaysWhatToType) {
+TEST(StatusText, NamesTheCommandsThatBringBackAGivenUpRtpu) {
   Json status = chimera::cli::status();
   status["rtpus"][1]["given_up"] = true;
   status["rtpus"][1]["remedy"] = "`chimera clear trajectory`, then `chimera on trajectory`";
@@ -28,7 +28,7 @@ TEST(StatusText, OfAnRtpuThatWasGivenUpItSaysWhatToType) {
   EXPECT_TRUE(rtpu_remarks(status["rtpus"][1]).starts_with("spare GIVEN UP, restarted 2 times"));
 }
 
-TEST(StatusText, TellsWhatAnRtpuTakesAndWhatItGaveUp) {
+TEST(StatusText, PrintsTheLoadOfAnRtpuAndItsLostRights) {
   Json status = chimera::cli::status();
   status["rtpus"][0]["resident_bytes"] = 255'400'000;
   status["rtpus"][0]["lost_rights"] = "thread 7 runs at SCHED_OTHER instead of SCHED_FIFO 80";
@@ -41,7 +41,7 @@ TEST(StatusText, TellsWhatAnRtpuTakesAndWhatItGaveUp) {
             "SCHED_FIFO 80");
 }
 
-TEST(StatusText, TellsTheWholeTheRtpusAndTheTasks) {
+TEST(StatusText, PrintsSubsystemRtpusAndTasks) {
   EXPECT_EQ(status_text(status()),
             "puma_pid: run, up 12.5 min, flag UP by spare, operator\n"
             "\n"

@@ -328,7 +328,7 @@ std::vector<Reading> RemoteTarget::read(const std::vector<std::string>& names) {
   std::vector<Reading> readings;
   for (const std::string& name : names) {
     const Json& reading = std::as_const(values)[name];
-    readings.push_back({seen_of(reading), text_at(reading, "rtpu", "1"), reading["value"].dump()});
+    readings.push_back({seen_of(reading), text_at(reading, "unit", "1"), reading["value"].dump()});
   }
   return readings;
 }

@@ -25,7 +25,7 @@ namespace {
 
 using control::RpcResponse;
 
-/// One task `pid` on two rtpus; what it answers may be changed before it is asked.
+/// A backend with one task `pid` and two rtpus. A test may change its answers before the request.
 class MadeUp final : public control::ControlBackend {
  public:
   void call(const control::MethodRule& method, const Json& parameters, const control::Caller&,
@@ -161,7 +161,7 @@ class Attend : public ::testing::Test {
   AttendRequest request_;
 };
 
-TEST_F(Attend, TellsWhatWasGrantedWhatItSeesAndHowItWent) {
+TEST_F(Attend, PrintsRightsWatchedValuesAndTheVerdict) {
   request_.run.watch = {"q", "x"};
   request_.run.every = milliseconds(25);
   request_.run.expect = {"|q| < 3 rad", "x > 0 m"};
@@ -197,7 +197,7 @@ TEST_F(Attend, IsASuccessWhenEveryExpectationHolds) {
   EXPECT_EQ(told["expectations"][0]["holds"], true);
 }
 
-TEST_F(Attend, HasTheReceiptsOfItsRunWhoeverAsked) {
+TEST_F(Attend, PrintsTheReceiptsOfItsOwnRunForRequestsOfAllClients) {
   const auto receipt = [](int number, int origin) { return Json{{"number", number}, {"origin_ns", origin}}; };
   backend_.receipts = {receipt(8, 4), receipt(3, 5), receipt(4, 5)};  // the first is of the run before
   request_.run.json = true;
@@ -207,7 +207,7 @@ TEST_F(Attend, HasTheReceiptsOfItsRunWhoeverAsked) {
   EXPECT_EQ(told["receipts_left_out"], 2) << "1 and 2 are not given out any more";
 }
 
-TEST_F(Attend, ANumberThatIsNoneSatisfiesNothing) {
+TEST_F(Attend, NotANumberSatisfiesNoExpectation) {
   backend_.values["q"] = reading(Json::array({1.0, nullptr}), "[1 nan] rad");
   request_.run.expect = {"q < 3 rad"};
   request_.bounds = {3};
@@ -215,7 +215,7 @@ TEST_F(Attend, ANumberThatIsNoneSatisfiesNothing) {
   EXPECT_NE(out_.find("FAILS: q < 3 rad (q is [1 nan] rad)\n"), std::string::npos) << out_;
 }
 
-TEST_F(Attend, ActsAtTheirTimeAndTellsWhatWasRefused) {
+TEST_F(Attend, ActsAtTheirTimeAndPrintsRefusals) {
   request_.run.at = {"20 ms: on pid", "10 ms: flag up"};
   const std::int64_t started = backend_.started_ns.as_int64();
   backend_.events = {{{"number", 1}, {"at_ns", started + 30'000'000}, {"kind", "refused"}, {"task", "pid"},
@@ -236,7 +236,7 @@ TEST_F(Attend, AStartThatFailsIsRefusedInTheWordsOfItsTask) {
   EXPECT_EQ(out_, "");
 }
 
-TEST_F(Attend, WhatFailsBehindAStartThatWasNotKnownYetIsNoFailureOfIt) {
+TEST_F(Attend, ARefusalAfterTheStartIsNoFailureOfTheStart) {
   const std::int64_t started = backend_.started_ns.as_int64();
   backend_.starts_at = std::exchange(backend_.started_ns, nullptr);
   backend_.events = {{{"number", 1}, {"at_ns", started + 2'000'000}, {"kind", "refused"}, {"task", "pid"},
@@ -245,7 +245,7 @@ TEST_F(Attend, WhatFailsBehindAStartThatWasNotKnownYetIsNoFailureOfIt) {
   EXPECT_EQ(err_, "");
   const std::string line = "refused at 0.002 s: pid: kill sent by other: not legal in state ON\n";
   ASSERT_NE(out_.find(line), std::string::npos) << out_;
-  EXPECT_EQ(out_.find(line, out_.find(line) + 1), std::string::npos) << "told once";
+  EXPECT_EQ(out_.find(line, out_.find(line) + 1), std::string::npos) << "printed once";
   backend_.started_ns = nullptr;
   backend_.events[0]["at_ns"] = started - 1;
   EXPECT_EQ(attend(), kRefused);
@@ -260,7 +260,7 @@ TEST_F(Attend, TheReactionStopOfATaskIsNoSuccess) {
   EXPECT_NE(out_.find(", ended by the reaction `stop` of task 'pid'\n"), std::string::npos) << out_;
 }
 
-TEST_F(Attend, WhatFailsWhenAllIsTurnedOffIsToldAndIsNoSuccess) {
+TEST_F(Attend, AFaultInKillAtTheEndIsPrintedAndFailsTheRun) {
   backend_.fault_at_end = "884 rows were not written";
   EXPECT_EQ(attend(), kRefused);
   EXPECT_NE(out_.find("\npid: last fault in kill at "), std::string::npos) << out_;
@@ -270,7 +270,7 @@ TEST_F(Attend, WhatFailsWhenAllIsTurnedOffIsToldAndIsNoSuccess) {
       << out_;
 }
 
-TEST_F(Attend, ARestartIsToldAndFailsAStrictRunOnly) {
+TEST_F(Attend, ARestartIsPrintedAndFailsAStrictRunOnly) {
   backend_.servo["restarts"] = 1;
   backend_.events = {{{"number", 1},
                       {"at_ns", backend_.started_ns.as_int64() + 30'000'000},

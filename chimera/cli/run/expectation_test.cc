@@ -23,7 +23,7 @@ TEST_F(ExpectationText, TakesEveryComparisonAndConvertsTheUnit) {
     EXPECT_EQ(refusal(text), "accepted") << text;
 }
 
-TEST_F(ExpectationText, RefusesWhatIsNoComparison) {
+TEST_F(ExpectationText, RefusesTextThatIsNoComparison) {
   const char* form = "write 'VARIABLE <= QUANTITY', with < <= > or >=";
   EXPECT_EQ(refusal(""), std::string("--expect '': ") + form);
   EXPECT_EQ(refusal("dt = 1 s"), std::string("--expect 'dt = 1 s': ") + form);
@@ -39,12 +39,12 @@ TEST_F(ExpectationText, NamesTheNearestVariable) {
   EXPECT_EQ(refusal("cont < 1"), "--expect 'cont < 1': no state variable 'cont'; did you mean 'count'?");
 }
 
-TEST_F(ExpectationText, RefusesBoundsThatAreNone) {
+TEST_F(ExpectationText, RefusesInvalidBounds) {
   for (const char* text : {"dt < ", "dt < nan s", "dt < 1e999 s", "dt < 1 kg", "dt < 1", "dt << 1 s", "dt < 1 s < 2 s"})
     EXPECT_EQ(refusal(text).rfind(std::string("--expect '") + text + "': ", 0), 0u) << refusal(text);
 }
 
-TEST_F(ExpectationText, WhatWasNeverWrittenSatisfiesNothing) {
+TEST_F(ExpectationText, AnUnwrittenVariableSatisfiesNoExpectation) {
   const Application source = test_application(
       "subsystem: s\ntasks:\n  a: {component: t_source, constants: {start: 0 m, slope: 1 m/s}}\n", library_);
   const auto made = Expectation::parse("x >= 0 m", source.configuration(), library_.units());

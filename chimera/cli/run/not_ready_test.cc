@@ -30,7 +30,7 @@ TEST(NotReady, NamesAProcessThatDoesNotComeUp) {
             "the process of rtpu servo is dead");
 }
 
-TEST(NotReady, TellsStatesWhenNobodyStandsOut) {
+TEST(NotReady, NamesATaskThatIsOffWhenNoRtpuIsAtFault) {
   EXPECT_EQ(not_ready({{"tasks", {task("a", "OFF", false), task("b", "ON", false)}}, {"rtpus", {rtpu("serving")}}}),
             "a is OFF");
   EXPECT_EQ(not_ready(Json::object()), "the states of its tasks are not known");

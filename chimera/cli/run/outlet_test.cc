@@ -32,7 +32,7 @@ struct Pipe {
   int ends[2] = {-1, -1};
 };
 
-TEST(Outlet, WhatIsPrintedArrivesInOrder) {
+TEST(Outlet, OutputArrivesInOrder) {
   Pipe pipe;
   Outlet outlet(pipe.ends[1]);
   for (int i = 0; i < 3; ++i) std::fprintf(outlet.stream(), "line %d\n", i);
@@ -41,7 +41,7 @@ TEST(Outlet, WhatIsPrintedArrivesInOrder) {
   EXPECT_EQ(pipe.read(21), "line 0\nline 1\nline 2\n");
 }
 
-TEST(Outlet, NobodyWaitsForAReaderAndTheLossIsKnown) {
+TEST(Outlet, AWriterNeverWaitsForAReaderAndTheLossIsKnown) {
   Pipe pipe;
   const std::string line(999, 'x');
   Outlet outlet(pipe.ends[1]);
@@ -61,7 +61,7 @@ TEST(Outlet, AShortPatienceAtTheEndIsALoss) {
   std::fputs(much.c_str(), outlet.stream());
   outlet.finish(milliseconds(20));
   EXPECT_EQ(outlet.why_lost(), kNobodyReads);
-  EXPECT_EQ(pipe.read(much.size()).size(), much.size()) << "it arrives if somebody reads later";
+  EXPECT_EQ(pipe.read(much.size()).size(), much.size()) << "the text arrives when a reader comes later";
   outlet.finish(seconds(60));
 }
 

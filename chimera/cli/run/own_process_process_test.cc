@@ -35,13 +35,13 @@ UnderWay& known() {
   return place;
 }
 
-TEST(OwnProcess, AnswersWhatItsWorkReturned) {
+TEST(OwnProcess, ReturnsTheAnswerOfItsWork) {
   const pid_t here = ::getpid();
   EXPECT_EQ(end_of([] { return 0; }), "returned 0");
   EXPECT_EQ(end_of([here] { return ::getpid() == here ? 1 : 3; }), "returned 3") << "not in this process";
 }
 
-TEST(OwnProcess, TellsWhatWasUnderWayWhenItDied) {
+TEST(OwnProcess, NamesTheMethodInWhichItDied) {
   EXPECT_EQ(end_of([] { return ::raise(SIGKILL); }), "the run ended by signal 9 (SIGKILL) 7");
   EXPECT_EQ(end_of([] {
               show_making(known().making, 0, Making::kLoads);
@@ -56,7 +56,7 @@ TEST(OwnProcess, TellsWhatWasUnderWayWhenItDied) {
             "amp: the run ended with status 0 in amp.cycle 7");
 }
 
-TEST(OwnProcess, TellsThatAMethodWhichTurnsOffDidNotReturn) {
+TEST(OwnProcess, NamesAnOffOrKillThatDidNotReturn) {
   EXPECT_EQ(end_of([] {
               known().running = 1u << 8 | CHIMERA_OFF;
               return ::raise(SIGKILL);

@@ -6,7 +6,7 @@
 namespace chimera::cli {
 namespace {
 
-TEST(Progress, TellsWhatIsDoneAndWhatIsLeft) {
+TEST(Progress, PrintsDoneAndRemainingRuns) {
   EXPECT_EQ(progress_text(seconds(12), seconds(60), seconds(2)),
             "12.0 of 60.0 s of virtual time (20 %), about 8 s to go");
 }

@@ -45,13 +45,13 @@ TEST(RunPlan, RefusesHardTasksThatAreNotGuaranteedTheirDeadlines) {
   EXPECT_NE(said.find("--may-miss b runs it all the same"), std::string::npos) << said;
 }
 
-TEST(RunPlan, RunsThemWhenToldSoByName) {
+TEST(RunPlan, RunsTasksThatMayMissIfTheOptionNamesThem) {
   EXPECT_EQ(refusal(kTight, missing({"a", "b"})), "");
   EXPECT_EQ(refusal(kTight, missing({"a"})).find("task 'a' is not"), std::string::npos);
   EXPECT_EQ(refusal(kTight, missing({"a", "b", "see"})), "error: --may-miss: no task 'see'\n");
 }
 
-TEST(RunPlan, AWordThatFitsNoDescriptionIsWrongUsage) {
+TEST(RunPlan, AnOptionThatFitsNoDescriptionIsWrongUsage) {
   const TestFile file(kCounterText);
   RunRequest request;
   request.file = file.path();
@@ -67,7 +67,7 @@ TEST(RunPlan, AWordThatFitsNoDescriptionIsWrongUsage) {
   std::fclose(out);
 }
 
-TEST(RunPlan, RunsInVirtualTimeWhateverMayBeMissed) {
+TEST(RunPlan, VirtualTimeRunsAnUnschedulableApplication) {
   RunRequest request;
   request.virtual_time = true;
   EXPECT_EQ(refusal(kTight, request), "");

@@ -92,7 +92,7 @@ TEST(RunSession, ALineThatIsDueAtTheEndIsPrintedOnce) {
   EXPECT_EQ(watched(target), "t 0.010 s  v 10\nt 0.020 s  v 20\n");
 }
 
-TEST(RunSession, DoesNotRepeatWhatWasPrintedBefore) {
+TEST(RunSession, DoesNotPrintALineTwice) {
   FakeTarget target;
   target.printed = milliseconds(15);
   EXPECT_EQ(watched(target), "t 0.020 s  v 20\n");

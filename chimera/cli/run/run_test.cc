@@ -84,7 +84,7 @@ std::string late(const std::string& reaction) {
   return text.replace(text.find("REACTION"), 8, reaction);
 }
 
-TEST(Run, TellsThatTheFlagIsUpAndWhoHadNoTime) {
+TEST(Run, ReportsTheFlagAndTheTaskWithoutTime) {
   RunRequest request = lasting(milliseconds(30));
   const Said said = said_by(request, late("flag"));
   EXPECT_NE(said.out.find("ran 0.030 s\nthe illegal-configuration flag is up\n"), std::string::npos) << said.out;
@@ -185,7 +185,7 @@ TEST(Run, AValueSetAtATimeCountsFromTheNextJobOn) {
                           "t 0.030 s  y 6.28319 m2.kg/s2\nt 0.040 s  y -2 m2.kg/s2\n"),
             std::string::npos)
       << said.out << said.err;
-  EXPECT_EQ(said_by(request, kGain).out, said.out) << "the same bytes every time";
+  EXPECT_EQ(said_by(request, kGain).out, said.out) << "each run gives equal bytes";
   request.preemptive = true;
   EXPECT_NE(said_by(request, kGain).out.find(
                 "t 0.030 s  y 6.28319 m2.kg/s2\nt 0.040 s  y -2 m2.kg/s2\n"), std::string::npos);

@@ -46,7 +46,7 @@ TEST(RunVerdict, ADeathThatWasAskedForIsNotCleanAndFailsOnlyAStrictRun) {
   EXPECT_TRUE(judged({lost}, rtpus).is_failure()) << "another rtpu";
 }
 
-TEST(RunVerdict, CountsAreToldByTaskAndFailOnlyAStrictRun) {
+TEST(RunVerdict, PrintsCountsByTaskAndFailsOnlyAStrictRun) {
   TaskProfile pi = task("pi"), arm = task("arm");
   pi.profile.missed = 12;
   arm.profile.missed = 9;
@@ -80,7 +80,7 @@ TEST(RunVerdict, ARestartSaysFromWhereItCounts) {
   EXPECT_FALSE(verdict.is_failure());
 }
 
-TEST(RunVerdict, WhatIsBrokenAtTheEndIsAFailureAlways) {
+TEST(RunVerdict, ATaskOrRtpuThatIsBrokenAtTheEndFailsEveryRun) {
   EXPECT_EQ(judged({task("pi")}, {{.name = "servo", .is_given_up = true}}).text(),
             "FAILED: servo was given up: its process ended too often, its tasks did not run\n");
   EXPECT_EQ(judged({task("pi")}, {{.name = "servo", .bad_end = "ended by signal 9 (SIGKILL)"}}).text(),
@@ -102,7 +102,7 @@ TEST(RunVerdict, AFaultThatWasGotOverFailsOnlyAStrictRun) {
   EXPECT_TRUE(judged({off}, {}, false, false, {0}).is_failure());
 }
 
-TEST(RunVerdict, WhatMayNotBeOffIsToldOnceWithItsCauseWheneverItHappened) {
+TEST(RunVerdict, PrintsATaskThatMayNotBeOffOnceWithTheCause) {
   TaskProfile pi = with_fault(task("pi"), Method::kOff, "stuck"), arm = task("arm");
   pi.rtpu = arm.rtpu = "servo";
   const NotOff told[] = {{"arm", "servo ended by signal 9 (SIGKILL) in arm.off: its hardware may not be off"}};

@@ -89,7 +89,7 @@ TEST_F(ScriptText, ASwitchNamesTasksInPlaceOfOne) {
             "--at '3 s: switch --on countr': no task 'countr'; did you mean 'counter'?");
 }
 
-TEST_F(ScriptText, RefusesWhatIsNoAct) {
+TEST_F(ScriptText, RefusesTextThatIsNoAct) {
   const char* form = "write 'DURATION: SIGNAL TASK', such as '2 s: off pid'";
   const char* object = "after the time stand a signal and a task, 'flag up', 'set VARIABLE VALUE', "
                        "'switch CONFIGURATION', 'switch --on TASK... --off TASK...', or 'die RTPU'";
@@ -110,7 +110,7 @@ TEST_F(ScriptText, NamesTheNearestSignalAndTask) {
 
 TEST_F(ScriptText, ABlankAfterTheNameIsNoPartOfIt) { EXPECT_EQ(refusal("1 s: off counter  "), "accepted"); }
 
-TEST_F(ScriptText, RefusesTimesThatAreNone) {
+TEST_F(ScriptText, RefusesInvalidTimes) {
   for (const char* time : {"", "2", "-1 s", "nan s", "1e400 s", "2 m", "1 s s"})
     EXPECT_EQ(refusal(std::string(time) + ": off counter").rfind(std::string("--at '") + time, 0), 0u) << time;
 }

@@ -8,7 +8,7 @@
 namespace chimera::cli {
 namespace {
 
-/// Which rtpu each kind of record came from.
+/// The rtpu of each kind of record.
 class Tracks final : public RecordSink {
  public:
   void begin(const ApplicationSpec&, Nanoseconds, Nanoseconds) override {}
@@ -80,7 +80,7 @@ TEST(SeveralRtpus, RunEachOnItsProcessor) {
   EXPECT_TRUE(has(said.out, "clean: no deadline missed")) << said.out;
   const std::set<std::pair<std::uint32_t, std::uint32_t>> each = {{0, 0}, {2, 1}, {2, 2}};
   EXPECT_EQ(tracks.runs, each);
-  EXPECT_EQ(said_by(request).out, said.out) << "the same bytes every time";
+  EXPECT_EQ(said_by(request).out, said.out) << "each run gives equal bytes";
 }
 
 TEST(SeveralRtpus, TheReportNamesTheRtpuOfEachTask) {
@@ -105,7 +105,7 @@ TEST(SeveralRtpus, ActsReachEveryRtpu) {
   EXPECT_TRUE(has(said.out, "source   OFF ")) << said.out;
 }
 
-TEST(SeveralRtpus, OneDiesAndTheOthersGoOn) {
+TEST(SeveralRtpus, TheOthersGoOnWhenOneDies) {
   RunRequest request = with_act("11 ms: die first");  // its second job is under way
   request.at.push_back("20 ms: on source");
   request.expect = {"x <= 0.01", "age >= 36 ms", "illegal >= 1", "count >= 40"};
@@ -139,7 +139,7 @@ TEST(SeveralRtpus, SwitchToAnotherConfigurationTogether) {
   EXPECT_TRUE(has(said.out, ": 0 tasks arrive, 2 leave, 0 cycles lost\n")) << said.out;
 }
 
-TEST(SeveralRtpus, SwitchToWhatTasksByNameLeadTo) {
+TEST(SeveralRtpus, SwitchToTheSetThatNamedTasksLeadTo) {
   RunRequest request = with_act("5 ms: switch --off ages");
   request.at.insert(request.at.end(), {"15 ms: switch --off counter --on source", "20 ms: switch --on ages",
                                        "24 ms: switch --on ages", "25 ms: switch --off source ages",

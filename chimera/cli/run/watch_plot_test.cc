@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(WatchPlot, DrawsWhatIsWatchedInsteadOfPrintingIt) {
+TEST(WatchPlot, DrawsWatchedVariablesInsteadOfPrintingThem) {
   const fs::path folder = fs::temp_directory_path();
   const std::string file = (folder / ("plot_" + std::to_string(::getpid()) + ".yaml")).string();
   const std::string picture = file + ".svg";

@@ -49,14 +49,14 @@ TEST_F(ReceiptFileTest, NumberAndRunTellReceiptsApart) {
 }
 
 // A successor files what its predecessor may have filed, and may collect it with other times.
-TEST_F(ReceiptFileTest, WhatIsThereIsNotFiledAgain) {
+TEST_F(ReceiptFileTest, AReceiptInTheFileIsNotFiledAgain) {
   ASSERT_TRUE(ReceiptFile(folder()).file({receipt(1), receipt(12)}));
   ReceiptFile successor(folder());
   ASSERT_TRUE(successor.file({receipt(1, 7, "gain"), receipt(2), receipt(12), receipt(1, 77)}));
   EXPECT_EQ(successor.last(10), (Lines{receipt(1), receipt(12), receipt(2), receipt(1, 77)}));
 }
 
-TEST_F(ReceiptFileTest, WhatWasCutOffIsFiledWhole) {
+TEST_F(ReceiptFileTest, AReceiptThatWasCutOffIsFiledWhole) {
   ASSERT_TRUE(ReceiptFile(folder()).file({receipt(1)}));
   std::ofstream(ReceiptFile(folder()).path(), std::ios::app) << receipt(2).substr(0, 20);
   EXPECT_EQ(ReceiptFile(folder()).last(10), (Lines{receipt(1)}));
@@ -64,7 +64,7 @@ TEST_F(ReceiptFileTest, WhatWasCutOffIsFiledWhole) {
   EXPECT_EQ(ReceiptFile(folder()).last(10), (Lines{receipt(1), receipt(2)}));
 }
 
-TEST_F(ReceiptFileTest, WhatIsNoReceiptIsNotGivenOut) {
+TEST_F(ReceiptFileTest, LinesThatAreNoReceiptAreSkipped) {
   ASSERT_TRUE(ReceiptFile(folder()).file({receipt(1)}));
   std::ofstream(ReceiptFile(folder()).path(), std::ios::app) << "hello\n{\"number\": 2, \n{}\n";
   EXPECT_EQ(ReceiptFile(folder()).last(10), (Lines{receipt(1)}));
@@ -81,7 +81,7 @@ TEST_F(ReceiptFileTest, AFullFileIsRenamedOnceAndNothingIsFiledTwice) {
   EXPECT_EQ(ReceiptFile(folder()).last(10), (Lines{receipt(3), receipt(4), receipt(5)}));
 }
 
-TEST_F(ReceiptFileTest, WhatCannotBeWrittenIsNamedAndMayBeTriedAgain) {
+TEST_F(ReceiptFileTest, NamesAFileThatCannotBeWrittenAndMayTryAgain) {
   ReceiptFile file(folder());
   ASSERT_TRUE(file.file({receipt(1)}));
   std::filesystem::rename(file.path(), file.path() + ".away");

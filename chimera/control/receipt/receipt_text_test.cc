@@ -56,7 +56,7 @@ struct Told {
   SwitchReceipt receipt;
 };
 
-TEST(ReceiptText, OfADoneSwitchSaysWhoMovedAndHowFar) {
+TEST(ReceiptText, ADoneSwitchNamesTheVariableThatMovedAndItsStep) {
   Told told;
   told.be_done();
   told.moved.step_of_on = {0.25, 5, true, false};
@@ -68,7 +68,7 @@ TEST(ReceiptText, OfADoneSwitchSaysWhoMovedAndHowFar) {
                          "bump: after switch 3 the first cycle of task 'torque' moved 'tau' by 6 N.m, limit 5 N.m\n");
 }
 
-TEST(ReceiptText, OfOneThatIsNotDoneSaysWhy) {
+TEST(ReceiptText, AnAbortedSwitchNamesItsCause) {
   Told told;
   told.receipt.end = SwitchEnd::kAborted;
   told.receipt.why = NoSwitch::kOnFailed;
@@ -114,7 +114,7 @@ TEST(ReceiptText, OfOneThatIsNotDoneSaysWhy) {
   EXPECT_EQ(told.text(), "switch 3 at 2.000 s to 'torque' refused: another switch is under way\n");
 }
 
-TEST(ReceiptText, OfASlowOneSaysWhyHowLongAndWhatWasReinitialised) {
+TEST(ReceiptText, ASlowSwitchNamesCauseTimeUnderTheFlagAndReinitialisedTasks) {
   Told told;
   ConstantSpec mass;
   mass.name = "mass";
@@ -150,7 +150,7 @@ TEST(ReceiptText, OfASlowOneSaysWhyHowLongAndWhatWasReinitialised) {
                                  "extent n = 5 of port q is outside 1 to 4\n");
 }
 
-TEST(ReceiptText, OfOneThatWasNotSafeSaysTheValueAndWhatIsAsked) {
+TEST(ReceiptText, AnUnsafeSwitchNamesTheValueAndTheCondition) {
   Told told;
   const PortOf producers[] = {{kPid, 0}};
   told.variable.producers = producers;
@@ -184,7 +184,7 @@ TEST(ReceiptText, NamesTheTaskThatAsked) {
             std::string::npos);
 }
 
-TEST(ReceiptText, OfATakeoverSaysForWhomAndHowItWasLost) {
+TEST(ReceiptText, ATakeoverNamesThePrimaryAndItsEnd) {
   Told told;
   told.be_done();
   told.receipt.cause = SwitchCause::kStandby;
@@ -218,7 +218,7 @@ TEST(ReceiptText, OfATakeoverSaysForWhomAndHowItWasLost) {
             "voltage\n");
 }
 
-TEST(ReceiptText, OfAManagerHasWhoAskedTheWallClockAndTheTries) {
+TEST(ReceiptText, AReceiptOfAManagerHasRequesterWallClockAndTries) {
   Told told;
   told.be_done();
   told.receipt.tries = 2;
@@ -233,7 +233,7 @@ TEST(ReceiptText, OfAManagerHasWhoAskedTheWallClockAndTheTries) {
   EXPECT_TRUE(told.text().ends_with("to 'torque' aborted: cancelled by operate:ben\n")) << told.text();
 }
 
-TEST(ReceiptText, OfWhatIsInForceThereIsNoReceipt) {
+TEST(ReceiptText, ASwitchToTheSetInForceHasNoReceipt) {
   Told told;
   told.receipt.end = SwitchEnd::kNothingToDo;
   EXPECT_EQ(told.text(), "switch at 2.000 s: 'torque' is in force, nothing to do\n");

@@ -33,7 +33,7 @@ struct DrillTest : ::testing::Test {
   std::optional<DrillOutcome> got;
 };
 
-TEST_F(DrillTest, HardwareIsWhatSaysWhenItIsSafeAndWhatMayMove) {
+TEST_F(DrillTest, HardwareIsATaskWithASafeStateOrAMovingResource) {
   const auto hardware = hardware_of(fake.spec(), fake.loop().state().bundle.library);
   ASSERT_EQ(hardware.size(), 2u);
   EXPECT_EQ(hardware[0].task, fake.task("arm"));
@@ -43,7 +43,7 @@ TEST_F(DrillTest, HardwareIsWhatSaysWhenItIsSafeAndWhatMayMove) {
   EXPECT_EQ(hardware[1].verdict, DrillVerdict::kCannotTell);
 }
 
-TEST_F(DrillTest, RaisesTheFlagUntilTheDeviceIsSafeAndTellsTheTime) {
+TEST_F(DrillTest, RaisesTheFlagUntilTheDeviceIsSafeAndReportsTheTime) {
   begin(kHangLimit);
   EXPECT_EQ(flag(), kDrillFlag);
   EXPECT_EQ(flag_text(), R"({"by":["drill"],"up":true})");
@@ -63,7 +63,7 @@ TEST_F(DrillTest, RaisesTheFlagUntilTheDeviceIsSafeAndTellsTheTime) {
   EXPECT_NE(told.find("the drill lowered the flag after "), std::string::npos) << told;
 }
 
-TEST_F(DrillTest, WhatWasPublishedBeforeTheFlagSaysNothing) {
+TEST_F(DrillTest, IgnoresValuesFromBeforeTheFlag) {
   fake.rtpu(0).filled_with = 1;
   const std::uint64_t cycles = fake.rtpu(0).block().profile(fake.task("arm")).cycles;
   ASSERT_TRUE(fake.until([&] { return fake.rtpu(0).block().profile(fake.task("arm")).cycles > cycles + 1; }));
@@ -106,7 +106,7 @@ TEST_F(DrillTest, AManagerThatDiesEndsItsDrill) {
   EXPECT_EQ(flag(), 0u);
 }
 
-TEST_F(DrillTest, KillsAnRtpuWhenAllAreSafeAndTellsWhatTheGuardWrote) {
+TEST_F(DrillTest, KillsAnRtpuWhenAllAreSafeAndReportsTheFramesOfTheGuard) {
   fake.rtpu(0).filled_with = 1;
   begin(kHangLimit, RtpuId(std::size_t{0}));
   ASSERT_TRUE(fake.until([&] { return fake.killed == 0u; }));
@@ -155,7 +155,7 @@ TEST(Drill, WithoutHardwareNothingIsSafe) {
   EXPECT_FALSE(got->is_safe());
 }
 
-TEST(Drill, WhatCannotTellIsNotWaitedForAndNotSafe) {
+TEST(Drill, HardwareWithoutSafeStateIsNotAwaitedAndNotSafe) {
   std::string text = kHardwareText;
   text.replace(text.find("start: run"), 10, "start: all");
   FakeSubsystem fake(text);

@@ -64,7 +64,9 @@ void RtpuLinks::mapped(const KeeperMessage& message, int descriptor) {
     std::string text = "its memory cannot be read";
     if (why.code == ErrorCode::kBadInput) text += ", something in it has overwritten it";
     text += " (" + std::string(why.message.view()) + ")";
-    if (record(rtpu).is_alive) text += ": it can be told nothing until it is started again, as it is when killed";
+    if (record(rtpu).is_alive)
+      text += ": the manager cannot send commands to it; `kill -KILL " + std::to_string(record(rtpu).pid) +
+              "` restarts it";
     state_.tell("fault", TaskId{}, rtpu, std::move(text), now());
     return;
   }

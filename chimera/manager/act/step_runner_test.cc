@@ -55,7 +55,7 @@ TEST_F(StepRunnerTest, KeepsTheGoalsOfTheFirstStepInTheManagersBlock) {
   EXPECT_FALSE(state().logic.is_settled());
 }
 
-TEST_F(StepRunnerTest, GoesOnWithWhatAPredecessorLeftInTheBlock) {
+TEST_F(StepRunnerTest, ResumesTheGoalsThatAPredecessorLeft) {
   memory().started = 1;
   state().own.block().set_goal(task("law"), kGoalSpawn);
   runner_.begin();
@@ -63,7 +63,7 @@ TEST_F(StepRunnerTest, GoesOnWithWhatAPredecessorLeftInTheBlock) {
   EXPECT_EQ(goal("sensor"), 0u) << "nothing is asked for a second time";
 }
 
-TEST_F(StepRunnerTest, DoesNotDealTwiceWithADeathThatAPredecessorDealtWith) {
+TEST_F(StepRunnerTest, DoesNotRepeatTheReactionOfAPredecessorToADeath) {
   memory().started = 1;
   memory().handled[1] = 4;
   runner_.begin();
@@ -74,11 +74,11 @@ TEST_F(StepRunnerTest, DoesNotDealTwiceWithADeathThatAPredecessorDealtWith) {
   EXPECT_NE(told(last), "");
 }
 
-TEST_F(StepRunnerTest, WhatTasksWereIsForgottenWithTheDeathThatIsDealtWith) {
+TEST_F(StepRunnerTest, ForgetsTheStatesOfTasksWhenADeathIsHandled) {
   runner_.begin();
   for (const char* name : {"law", "sensor"}) state().own.block().set_status(task(name), {State::kOn});
   runner_.step(subsystem::RtpuDown{RtpuId(1u), 3, "ended by signal 9 (SIGKILL)"});
-  EXPECT_EQ(state().own.block().view().status(task("law")).state, State::kNotCreated) << "it is a goal by now";
+  EXPECT_EQ(state().own.block().view().status(task("law")).state, State::kNotCreated) << "it is a goal now";
   EXPECT_EQ(state().own.block().view().status(task("sensor")).state, State::kOn) << "of the other rtpu";
 }
 
@@ -131,7 +131,7 @@ TEST_F(StepRunnerTest, AnswersEachCommandOnceAndLogsItsWords) {
   EXPECT_NE(log.find("command: off law, filter: refused: "), std::string::npos) << log;
   EXPECT_NE(log.find("command: on law: refused: " + refusal), std::string::npos) << log;
   const LoggedEvent& event = state().log.at(state().log.last());
-  EXPECT_EQ(event.task, task("law")) << "the one that was refused";
+  EXPECT_EQ(event.task, task("law")) << "the refused task";
   const std::string both = answers_;
   runner_.step(subsystem::Tick{});
   EXPECT_EQ(answers_, both);

@@ -60,7 +60,7 @@ TEST_F(QuestionsTest, AnswersWithTheReportAndEachConnectionInTurn) {
   EXPECT_EQ(told_, "");
 }
 
-TEST_F(QuestionsTest, RefusesWhatIsTooManyAtOnce) {
+TEST_F(QuestionsTest, RefusesTooManyAnalysesAtOnce) {
   for (const char* name : {"1", "2", "3", "4", "5"}) ask(name, 1);
   ASSERT_EQ(answers_.size(), 1u);
   EXPECT_EQ(answers_["5"].code, control::kTooFast);
@@ -70,7 +70,7 @@ TEST_F(QuestionsTest, RefusesWhatIsTooManyAtOnce) {
   EXPECT_EQ(answers_["last"].message, "64 analyses are under way");
 }
 
-TEST_F(QuestionsTest, RefusesWhatIsTooMuchTextAtOnce) {
+TEST_F(QuestionsTest, RefusesTooMuchTextInAllAnalyses) {
   const std::string text(kMaxQuestionBytes / 16, '#');
   for (std::uint64_t n = 0; n < 16; ++n) ask("n" + std::to_string(n), n, text);
   ask("last", 1000, "#");
@@ -85,13 +85,13 @@ TEST_F(QuestionsTest, RefusesTooMuchText) {
   EXPECT_EQ(answers_["more"].message, "analyses of 16 MiB of text are under way");
 }
 
-TEST_F(QuestionsTest, WhoGoesTakesHisQuestionsAlong) {
+TEST_F(QuestionsTest, QuestionsOfAClosedConnectionAreDropped) {
   ask("gone1", 1);
   ask("gone2", 1);
   ask("stays", 2);
   questions_->forget(1);
   EXPECT_EQ(questions_->waiting(), 1u);
-  EXPECT_EQ(questions_->analyst(), -1) << "it was at a question that nobody wants answered";
+  EXPECT_EQ(questions_->analyst(), -1) << "no client waits for the question that it worked at";
   ASSERT_TRUE(until(1));
   EXPECT_EQ(order_, "stays ");
   EXPECT_EQ(told_, "") << "that was no accident";
@@ -122,7 +122,7 @@ TEST_F(QuestionsTest, ADeathBetweenTwoQuestionsCostsNone) {
   EXPECT_EQ(told_, "the analyst of descriptions ended by signal 9 (SIGKILL)\n");
 }
 
-TEST_F(QuestionsTest, WhatTakesTooLongIsGivenUp) {
+TEST_F(QuestionsTest, EndsAnAnalysisAtItsTimeLimit) {
   ask("slow", 1);
   ::kill(questions_->analyst(), SIGSTOP);  // not reaped yet: still its process id
   const Nanoseconds late = now() + kAnalysisLimit;
@@ -146,7 +146,7 @@ TEST_F(QuestionsTest, AnIdleAnalystIsEnded) {
   EXPECT_EQ(told_, "");
 }
 
-TEST_F(QuestionsTest, WithoutAProgramThereIsAnAnswerAllTheSame) {
+TEST_F(QuestionsTest, WithoutAnAnalystAQuestionIsAnswered) {
   make("/nowhere/chimera-manager");
   ask("one", 1);
   ASSERT_EQ(answers_.size(), 1u);

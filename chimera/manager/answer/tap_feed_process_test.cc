@@ -82,7 +82,7 @@ TEST_F(TapFeedTest, EveryPublicationComesOnceInOrder) {
   EXPECT_GT(next["law"], 0u);
 }
 
-TEST_F(TapFeedTest, ATaskIsTappedAsLongAsSomebodyWantsIt) {
+TEST_F(TapFeedTest, ATaskIsTappedUntilTheLastFeedEnds) {
   auto first = std::make_unique<TapFeed>(state(), std::vector{variable("x")});
   auto second = std::make_unique<TapFeed>(state(), std::vector{variable("x")});
   first.reset();
@@ -103,7 +103,7 @@ TEST_F(TapFeedTest, WithoutVariablesItGivesTheSchedulingRecords) {
   EXPECT_EQ(last["overrun"][4], 5000);
 }
 
-TEST_F(TapFeedTest, WhatWasOverwrittenIsCounted) {
+TEST_F(TapFeedTest, CountsOverwrittenRecords) {
   TapFeed feed(state(), {});
   overwrite_spare();
   pump_a_ring(feed);
@@ -126,7 +126,7 @@ TEST_F(TapFeedTest, FromTheOldestTheFirstRecordsComeToo) {
   EXPECT_GT(message["records"].size(), 20u);
 }
 
-TEST_F(TapFeedTest, FromTheOldestWhatIsGoneByThenCountsAsLost) {
+TEST_F(TapFeedTest, AFeedFromTheOldestCountsOverwrittenRecordsAsLost) {
   overwrite_spare();
   const std::uint64_t written = fake_.rtpu(1).block().tap().head;
   TapFeed feed(state(), {}, true);

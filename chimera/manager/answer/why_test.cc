@@ -92,7 +92,7 @@ TEST_F(WhyTest, EveryTroubleHasItsSentence) {
   EXPECT_EQ(verdict("x"), "x: no task that produces it was created");
 }
 
-TEST_F(WhyTest, WhatFailedInTimeIsToldWithWhatIsLate) {
+TEST_F(WhyTest, PrintsFailuresOfTimeWithALateVariable) {
   VariableFacts& x = facts_["x"];
   x.timing = "3 missed, 1 demoted";
   EXPECT_EQ(ask("x").chain[0].trouble, VariableTrouble::kNone);

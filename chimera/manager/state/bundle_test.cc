@@ -92,7 +92,7 @@ TEST(Bundle, RefusesAnotherVersion) {
   EXPECT_EQ(read.error().message.view(), "version 2, this program reads 1");
 }
 
-TEST(Bundle, RefusesADescriptorThatIsNoneNamingItsFile) {
+TEST(Bundle, RefusesAnInvalidDescriptorAndNamesItsFile) {
   const std::string file = "/x/odd.component.json";
   std::string text = encode(sample());
   const std::string list = "\"components\":[";

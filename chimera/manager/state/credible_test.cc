@@ -6,7 +6,7 @@
 namespace chimera::manager {
 namespace {
 
-TEST(Credible, IsWhatCanHaveBeenCounted) {
+TEST(Credible, ACountIsCredibleUpToTheHighestRate) {
   Profile counted;
   EXPECT_TRUE(is_credible(counted, {}));
   counted.missed = counted.overrun = 900'000;
@@ -36,7 +36,7 @@ TEST(Credible, NothingTookLongerThanTheWholeRunNorBeganBeforeTheClock) {
   EXPECT_TRUE(is_refused([](Profile& p) { p.on_before = {INT64_MAX}; }));
 }
 
-TEST(Credible, ACountWhoseValueIsNotThereYetIsNone) {
+TEST(Credible, ACountWithoutAValueIsNotCredible) {
   Profile counted;
   counted.start_delay.count = 1;
   counted.cycles = 7;

@@ -39,7 +39,7 @@ TEST_F(PostText, AMissNamesItsCauseWithTimeAndBudget) {
             "missed its deadline: log used 40 us (no budget stated)");
 }
 
-TEST_F(PostText, AMissWithoutATaskOfTheRtpuSaysWhoElseHadTheCpu) {
+TEST_F(PostText, AMissWithoutATaskOfTheRtpuNamesOtherUsersOfTheCpu) {
   EXPECT_EQ(text(EventKind::kMissed, kLaw, TaskId{}, microseconds(2270)),
             "missed its deadline: no task of its rtpu ran for 2.27 ms: the CPU was taken by the kernel, RT "
             "throttling or another process");

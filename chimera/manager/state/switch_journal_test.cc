@@ -56,7 +56,7 @@ TEST_F(SwitchJournalTest, ASwitchHasItsNumberUntilItsReceiptIsPut) {
   journal.begin(switch_to(3));
   EXPECT_EQ(journal.begun()->number, 1u);
   EXPECT_EQ(journal.next(), 2u);
-  EXPECT_TRUE(journal.put(2, "refused meanwhile"));
+  EXPECT_TRUE(journal.put(2, "refused during 1"));
   BegunSwitch changed = *journal.begun();
   changed.tries = 2;
   journal.change(changed);
@@ -69,10 +69,10 @@ TEST_F(SwitchJournalTest, ASwitchHasItsNumberUntilItsReceiptIsPut) {
   EXPECT_TRUE(next.put(1, "done"));
   EXPECT_FALSE(next.begun());
   EXPECT_EQ(next.next(), 3u);
-  EXPECT_EQ(numbers(next), "2:refused meanwhile 1:done ");
+  EXPECT_EQ(numbers(next), "2:refused during 1 1:done ");
 }
 
-TEST_F(SwitchJournalTest, WhatIsForgottenLeavesNoGap) {
+TEST_F(SwitchJournalTest, AForgottenSwitchLeavesNoGap) {
   memory->journal().begin(switch_to(1));
   SwitchJournal next = successor();
   next.forget();
@@ -81,18 +81,18 @@ TEST_F(SwitchJournalTest, WhatIsForgottenLeavesNoGap) {
   EXPECT_EQ(successor().next(), 1u);
 }
 
-TEST_F(SwitchJournalTest, WhatIsFiledIsNotHandedOnAndGivesItsRoomBack) {
+TEST_F(SwitchJournalTest, AFiledReceiptFreesItsRoomAndIsNotHandedOn) {
   SwitchJournal journal = memory->journal();
   const std::string half(60 << 10, 'x');
   EXPECT_TRUE(journal.put(1, half));
   EXPECT_TRUE(journal.put(2, half));
   EXPECT_FALSE(journal.put(3, half)) << "there is no room";
-  EXPECT_EQ(journal.next(), 4u) << "its number is given out all the same";
+  EXPECT_EQ(journal.next(), 4u) << "its number is used nevertheless";
   journal.filed(1);
   SwitchJournal next = successor();
   ASSERT_EQ(next.unfiled().size(), 1u);
   EXPECT_EQ(next.unfiled()[0].number, 2u);
-  EXPECT_TRUE(next.put(4, half)) << "a successor takes over what is not filed";
+  EXPECT_TRUE(next.put(4, half)) << "a successor takes over unfiled receipts";
   next.filed(2);
   next.filed(4);
   EXPECT_EQ(memory->pages().end, 0u);
@@ -101,7 +101,7 @@ TEST_F(SwitchJournalTest, WhatIsFiledIsNotHandedOnAndGivesItsRoomBack) {
 }
 
 // The stores of an act one by one. After each of them its owner may be killed.
-TEST_F(SwitchJournalTest, WhoIsKilledBetweenTwoStoresHasDoneItOrNot) {
+TEST_F(SwitchJournalTest, AKillBetweenTwoStoresLeavesAnActDoneOrNot) {
   SwitchJournal journal = memory->journal();
   journal.begin(switch_to(1));
   memory->pages().last = 0;  // begin(): the number is not in use yet
@@ -123,7 +123,7 @@ TEST_F(SwitchJournalTest, WhoIsKilledBetweenTwoStoresHasDoneItOrNot) {
 }
 
 // The manager is killed at any time in a random life with a slow disk. At the end each number has one receipt.
-TEST_F(SwitchJournalTest, EachNumberHasOneReceiptWhoeverIsKilled) {
+TEST_F(SwitchJournalTest, EachNumberHasOneReceiptThoughManagersAreKilled) {
   const auto seed = std::random_device{}();
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
@@ -145,7 +145,7 @@ TEST_F(SwitchJournalTest, EachNumberHasOneReceiptWhoeverIsKilled) {
         break;
       case 4:
         for (const auto& [number, text] : journal.unfiled()) {
-          if (filed.count(number) == 0) filed.insert(number);  // as the file does: it knows its receipts
+          if (filed.count(number) == 0) filed.insert(number);  // as the file, which knows its receipts, does
           if (random() % 8 == 0) break;  // killed between the file and the journal
           journal.filed(number);
         }

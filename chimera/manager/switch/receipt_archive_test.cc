@@ -81,11 +81,11 @@ TEST_F(ReceiptArchiveTest, AStalledDiskIsWaitedForATenthOfASecond) {
   EXPECT_EQ(filed().size(), 1u);
 }
 
-TEST_F(ReceiptArchiveTest, WhatCannotBeFiledIsToldKeptAndTriedAgain) {
+TEST_F(ReceiptArchiveTest, KeepsAReceiptThatCannotBeFiledAndTriesAgain) {
   std::filesystem::create_directories(control::ReceiptFile(folder()).path());  // a folder in the place of the file
   add(1);
   ASSERT_TRUE(until([this] { return archive->fault() != ""; }));
-  EXPECT_EQ(answered, "1 ") << "nobody waits for a disk that says no";
+  EXPECT_EQ(answered, "1 ") << "a switch does not wait for a failing disk";
   EXPECT_EQ(archive->fault(), archive->path() + ": cannot be opened: Is a directory");
   EXPECT_EQ(archive->unfiled(), 1u);
   EXPECT_EQ(journal().unfiled().size(), 1u);
@@ -93,7 +93,7 @@ TEST_F(ReceiptArchiveTest, WhatCannotBeFiledIsToldKeptAndTriedAgain) {
   ASSERT_TRUE(until([this] { return answered == "1 2 "; }));
   EXPECT_EQ(lone.told(), "note: receipts are not filed: " + archive->path() +
                              ": cannot be opened: Is a directory; they are kept and tried again\n")
-      << "told once";
+      << "reported once";
   std::filesystem::remove(archive->path());
   ASSERT_TRUE(until([this] {
     archive->look(now() + ReceiptArchive::kTryAgain + seconds(1));
@@ -106,7 +106,7 @@ TEST_F(ReceiptArchiveTest, WhatCannotBeFiledIsToldKeptAndTriedAgain) {
 
 // The manager was killed between the file and the journal: the successor has both in its journal, and one of them in
 // the file.
-TEST_F(ReceiptArchiveTest, WhatAPredecessorDidNotFileIsFiledOnce) {
+TEST_F(ReceiptArchiveTest, FilesReceiptsOfAPredecessorOnce) {
   archive.reset();
   ASSERT_TRUE(journal().put(1, receipt(1)));
   ASSERT_TRUE(journal().put(2, receipt(2)));
@@ -118,7 +118,7 @@ TEST_F(ReceiptArchiveTest, WhatAPredecessorDidNotFileIsFiledOnce) {
   EXPECT_EQ(archive->kept(), (std::deque<std::string>{receipt(1), receipt(2)}));
 }
 
-TEST_F(ReceiptArchiveTest, BeyondItsRoomTheOldestIsLostAndTold) {
+TEST_F(ReceiptArchiveTest, WithoutRoomTheOldestReceiptIsLostAndReported) {
   std::filesystem::create_directories(control::ReceiptFile(folder()).path());
   add(1);
   ASSERT_TRUE(until([&] { return archive->fault() != ""; }));
@@ -128,7 +128,7 @@ TEST_F(ReceiptArchiveTest, BeyondItsRoomTheOldestIsLostAndTold) {
   EXPECT_NE(lone.told().find(" is lost: "), std::string::npos) << lone.told();
 }
 
-TEST_F(ReceiptArchiveTest, FlushFilesWhatIsLeft) {
+TEST_F(ReceiptArchiveTest, FlushFilesTheRemainingReceipts) {
   add(1);
   add(2);
   archive->flush(kHangLimit);

@@ -71,7 +71,7 @@ struct SwitchCoordinatorTest : ::testing::Test {
   std::optional<SwitchOutcome> got;
 };
 
-TEST_F(SwitchCoordinatorTest, OrdersWhatIsAskedForAndPutsThePartsTogether) {
+TEST_F(SwitchCoordinatorTest, OrdersARequestAndCombinesTheParts) {
   ask(kRest);
   ASSERT_FALSE(got);
   const PlanWord plan = agreement().plan();
@@ -107,7 +107,7 @@ TEST_F(SwitchCoordinatorTest, OrdersWhatIsAskedForAndPutsThePartsTogether) {
   EXPECT_NE(fake.told("switch").find("0 tasks arrive, 2 leave, 2 cycles lost\n"), std::string::npos);
 }
 
-TEST_F(SwitchCoordinatorTest, WhatIsInForceIsNothingToDo) {
+TEST_F(SwitchCoordinatorTest, ASwitchToTheSetInForceDoesNothing) {
   ask(kRun);
   ASSERT_TRUE(got);
   EXPECT_EQ(got->receipt.end, SwitchEnd::kNothingToDo);
@@ -153,10 +153,10 @@ TEST_F(SwitchCoordinatorTest, OneAtATimeAndItCanBeCancelled) {
   EXPECT_EQ(got->receipt.end, SwitchEnd::kAborted);
   EXPECT_EQ(got->receipt.why, NoSwitch::kCancelled);
   EXPECT_EQ(got->receipt.said.view(), "configure:4000000002");
-  EXPECT_EQ(third, got->json) << "who cancelled gets the same receipt";
+  EXPECT_EQ(third, got->json) << "the client that cancelled gets this receipt";
 }
 
-TEST_F(SwitchCoordinatorTest, WhatIsCommittedIsNotCancelled) {
+TEST_F(SwitchCoordinatorTest, ACommittedSwitchIsNotCancelled) {
   ask(kRest);
   commit();
   EXPECT_FALSE(coordinator().cancel(kBen, [](const SwitchOutcome&) {}));
@@ -167,7 +167,7 @@ TEST_F(SwitchCoordinatorTest, WhatIsCommittedIsNotCancelled) {
   EXPECT_EQ(got->receipt.end, SwitchEnd::kDone);
 }
 
-TEST_F(SwitchCoordinatorTest, ForeseesWhatWouldBeDoneAndChangesNothing) {
+TEST_F(SwitchCoordinatorTest, ForeseesASwitchAndChangesNothing) {
   ForeseenSwitch foreseen = coordinator().foresee(tasks_of(fake.spec(), kRest));
   EXPECT_EQ(foreseen.receipt.end, SwitchEnd::kDone);
   EXPECT_EQ(foreseen.receipt.before, kRun);
@@ -185,7 +185,7 @@ TEST_F(SwitchCoordinatorTest, ForeseesWhatWouldBeDoneAndChangesNothing) {
   over(0);
   over(1);
   ASSERT_TRUE(until_answered());
-  EXPECT_EQ(got->receipt.number, 1u) << "what was foreseen has no number";
+  EXPECT_EQ(got->receipt.number, 1u) << "a foreseen switch has no number";
   EXPECT_EQ(filed().size(), 1u);
 }
 
@@ -202,7 +202,7 @@ TEST_F(SwitchCoordinatorTest, TheRtpuThatAbortedSaysWhy) {
   EXPECT_EQ(got->receipt.said.view(), "no current");
 }
 
-TEST_F(SwitchCoordinatorTest, OneThatWasOnlyLateIsTriedFourTimes) {
+TEST_F(SwitchCoordinatorTest, ALateSwitchIsTriedFourTimes) {
   ask(kRest);
   Nanoseconds lead;
   for (std::uint16_t number = 1; number <= 4; ++number) {
@@ -222,7 +222,7 @@ TEST_F(SwitchCoordinatorTest, OneThatWasOnlyLateIsTriedFourTimes) {
   EXPECT_EQ(agreement().plan().number, 4);
 }
 
-TEST_F(SwitchCoordinatorTest, OneThatFoundNoGapOrNoReadyDeviceIsMadeTheSlowWay) {
+TEST_F(SwitchCoordinatorTest, ASwitchWithoutAGapOrAReadyDeviceIsRepeatedSlowly) {
   const std::pair<NoSwitch, std::uint8_t> ways[] = {{NoSwitch::kNoGap, kSlowForGap},
                                                     {NoSwitch::kNotReady, kSlowForDevice}};
   std::uint16_t number = 1;
@@ -271,7 +271,7 @@ TEST_F(SwitchCoordinatorTest, AFailureCountsMoreThanLatenessOrNoAnswer) {
   }
 }
 
-TEST_F(SwitchCoordinatorTest, WhatIsCancelledIsNotTriedAgain) {
+TEST_F(SwitchCoordinatorTest, ACancelledSwitchIsNotTriedAgain) {
   ask(kRest);
   EXPECT_TRUE(coordinator().cancel(kBen, [](const SwitchOutcome&) {}));
   over(0, NoSwitch::kLate);
@@ -296,7 +296,7 @@ TEST_F(SwitchCoordinatorTest, ASuccessorGoesOnWithTheSwitchAndFilesItsReceipt) {
   EXPECT_FALSE(coordinator().is_under_way());
 }
 
-TEST_F(SwitchCoordinatorTest, WhatTheRtpusDidWithoutAManagerIsCollected) {
+TEST_F(SwitchCoordinatorTest, TheNextManagerCollectsASwitchOfTheRtpus) {
   ask(kRest);
   fake.kill_manager();
   commit_in(fake.decision_page());
@@ -325,7 +325,7 @@ TEST_F(SwitchCoordinatorTest, ASuccessorClosesAPlanThatIsPastItsDeadline) {
 
 // The manager was killed between the journal and the plan. The switch was not announced, so the next one gets its
 // number.
-TEST_F(SwitchCoordinatorTest, WhatWasNeverAnnouncedIsForgotten) {
+TEST_F(SwitchCoordinatorTest, ForgetsASwitchThatWasNeverAnnounced) {
   BegunSwitch begun;
   begun.order.number = 1;
   begun.order.after = kRest;
@@ -337,8 +337,8 @@ TEST_F(SwitchCoordinatorTest, WhatWasNeverAnnouncedIsForgotten) {
   EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', " + kByAnn);
 }
 
-// The manager was killed between the journal and the plan of another try. The first try was late: the successor reports
-// that, or tries again.
+// The manager was killed between the journal and the plan of another try. The successor reports that the first try was
+// late, or tries again.
 TEST_F(SwitchCoordinatorTest, ATryThatWasNotAnnouncedIsMadeAgain) {
   ask(kRest);
   SwitchJournal journal(fake.loop().state().own.block().journal());
@@ -394,7 +394,7 @@ TEST_F(SwitchCoordinatorTest, ACauseOrATaskThatCannotBeIsForgotten) {
 }
 
 // The page has its number, but the journal has no entry: no manager wrote it.
-TEST_F(SwitchCoordinatorTest, APlanThatNobodyOrderedIsAborted) {
+TEST_F(SwitchCoordinatorTest, APlanWithoutAJournalEntryIsAborted) {
   SwitchOrder order;
   order.number = 7;
   order.members = 0b11;
@@ -442,14 +442,14 @@ TEST_F(SwitchCoordinatorTest, AnRtpuThatDiesBetweenCommitAndChangeComesBackToThe
 
 // One rtpu has agreed and died; the other would agree next. The tasks that come back are decided now, so the plan must
 // be decided too.
-TEST_F(SwitchCoordinatorTest, APlanIsNoLongerOpenWhenItIsDecidedAsWhatADeadRtpuComesBack) {
+TEST_F(SwitchCoordinatorTest, ADeathClosesThePlanBeforeTheGoalsOfTheRtpuAreDecided) {
   ask(kRest);
   const std::uint16_t number = agreement().plan().number;
   ASSERT_TRUE(agreement().propose(number, agreement().round_up(now() + milliseconds(1))));
   EXPECT_FALSE(agreement().agree(number, 1));
   fake.kill_rtpu(1, SIGKILL);
   ASSERT_TRUE(fake.until([&] { return fake.loop().state().state(fake.task("law")) != State::kOn; }));
-  EXPECT_FALSE(agreement().agree(number, 0)) << "else law comes back although it is not in the set";
+  EXPECT_FALSE(agreement().agree(number, 0)) << "otherwise law comes back although it is not in the set";
   EXPECT_EQ(agreement().plan().phase, SwitchPhase::kAborted);
   over(0);
   over(1);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Asker kAnn{control::Role::kOperate, 4'000'000'001u};
 
-TEST(SwitchForesight, GoesTheSlowWayWhereATaskMightMissADeadline) {
+TEST(SwitchForesight, ForeseesASlowSwitchIfATaskMightMissADeadline) {
   FakeSubsystem fake(R"(subsystem: fake
 rtpus: {servo: {cpu: 3, policy: edf}}
 tasks:

@@ -64,14 +64,14 @@ struct SwitchWishesTest : ::testing::Test {
   FakeSubsystem fake;
 };
 
-TEST_F(SwitchWishesTest, AreCarriedOutAndNameWhoAsked) {
+TEST_F(SwitchWishesTest, AreCarriedOutAndNameTheRequester) {
   wish(1, kRest, "law", SwitchCause::kFault);
   rounds();
   EXPECT_EQ(plan().phase, SwitchPhase::kPrepared);
   EXPECT_EQ(coordinator().under_way(), "switch 1 to 'rest', asked for by on_fault of law");
   carry_out();
   rounds();
-  EXPECT_EQ(plan().number, 1) << "dealt with once";
+  EXPECT_EQ(plan().number, 1) << "handled once";
   EXPECT_FALSE(coordinator().is_under_way());
   EXPECT_NE(fake.told("switch").find("by on_fault of law from 'run' to 'rest'"), std::string::npos)
       << fake.told("switch");
@@ -80,7 +80,7 @@ TEST_F(SwitchWishesTest, AreCarriedOutAndNameWhoAsked) {
       << filed()[0];
 }
 
-TEST_F(SwitchWishesTest, ForWhatIsInForceChangeNothing) {
+TEST_F(SwitchWishesTest, ARequestForTheSetInForceChangesNothing) {
   wish(0, kRun, "sensor");
   rounds();
   EXPECT_EQ(plan().number, 0);
@@ -107,7 +107,7 @@ TEST_F(SwitchWishesTest, WaitForTheSwitchThatIsUnderWay) {
   EXPECT_TRUE(coordinator().leads_to({kRun, SwitchCause::kRequest, {}}));
 }
 
-TEST_F(SwitchWishesTest, ASuccessorFindsWhatIsOpenAndOnlyThat) {
+TEST_F(SwitchWishesTest, ASuccessorFindsOpenRequestsOnly) {
   fake.kill_manager();
   wish(1, kRest, "law");
   fake.start_manager();
@@ -122,7 +122,7 @@ TEST_F(SwitchWishesTest, ASuccessorFindsWhatIsOpenAndOnlyThat) {
 }
 
 // The switch was ordered, and its manager died.
-TEST_F(SwitchWishesTest, WhatAPredecessorHasOrderedIsNotOrderedAgain) {
+TEST_F(SwitchWishesTest, ARequestOrderedByAPredecessorIsNotOrderedAgain) {
   wish(1, kRest, "law");
   rounds();
   EXPECT_EQ(plan().number, 1);
@@ -133,7 +133,7 @@ TEST_F(SwitchWishesTest, WhatAPredecessorHasOrderedIsNotOrderedAgain) {
   EXPECT_EQ(plan().number, 1);
 }
 
-TEST_F(SwitchWishesTest, ThatCannotBeAreToldOnce) {
+TEST_F(SwitchWishesTest, ReportsARefusedRequestOnce) {
   fake.rtpu(1).fail(fake.task("law"), "as told");
   ASSERT_TRUE(fake.until([&] { return fake.loop().state().state(fake.task("law")) == State::kError; }));
   wish(0, kRun, "sensor");
@@ -146,7 +146,7 @@ TEST_F(SwitchWishesTest, ThatCannotBeAreToldOnce) {
             "switch to 'run', asked for by task sensor, is refused: task 'law' is in ERROR: clear it first\n");
 }
 
-TEST_F(SwitchWishesTest, OfAnRtpuThatHasDiedSinceStand) {
+TEST_F(SwitchWishesTest, ARequestOutlivesItsRtpu) {
   wish(1, kRest, "law");
   fake.kill_rtpu(1, SIGKILL);
   EXPECT_TRUE(fake.until([this] { return plan().number == 1; }));
@@ -154,7 +154,7 @@ TEST_F(SwitchWishesTest, OfAnRtpuThatHasDiedSinceStand) {
 }
 
 // The memory of an rtpu may hold any value.
-TEST_F(SwitchWishesTest, WhatDoesNotFitTheApplicationIsPassedOver) {
+TEST_F(SwitchWishesTest, SkipsRequestsThatDoNotFitTheApplication) {
   SwitchWishWords& words = fake.rtpu(1).block().head().wish;
   const auto law = static_cast<std::uint16_t>(fake.task("law").index);
   const auto sensor = static_cast<std::uint16_t>(fake.task("sensor").index);
@@ -176,7 +176,7 @@ TEST_F(SwitchWishesTest, WhatDoesNotFitTheApplicationIsPassedOver) {
   }
 }
 
-TEST_F(SwitchWishesTest, ForTasksAreWorkedOutFromWhatIsOn) {
+TEST_F(SwitchWishesTest, ARequestForTasksDependsOnTheTasksThatAreOn) {
   wish_for({.plus = {}, .minus = bits_of(std::vector{fake.task("law")})});
   rounds();
   EXPECT_EQ(plan().phase, SwitchPhase::kPrepared);
@@ -186,7 +186,7 @@ TEST_F(SwitchWishesTest, ForTasksAreWorkedOutFromWhatIsOn) {
   EXPECT_EQ(plan().number, 1) << "it is under way";
 }
 
-TEST_F(SwitchWishesTest, ForTasksThatAreNoLegalSetAreToldOnce) {
+TEST_F(SwitchWishesTest, ReportsARequestForAnIllegalSetOnce) {
   wish_for({.plus = {}, .minus = bits_of(std::vector{fake.task("sensor")})});
   rounds();
   EXPECT_EQ(plan().number, 0);

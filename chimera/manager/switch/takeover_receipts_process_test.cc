@@ -80,7 +80,7 @@ TEST_F(TakeoverReceiptsTest, AStepBeyondItsLimitIsAnEvent) {
             "bump: after takeover 1 the first cycle of task 'second' moved 'y' by 3 rad, limit 1 rad\n");
 }
 
-TEST_F(TakeoverReceiptsTest, OneThatIsNotOverIsWaitedForUntilItsRtpuDies) {
+TEST_F(TakeoverReceiptsTest, ATakeoverIsAwaitedUntilItsRtpuDies) {
   Takeover one = takeover(1);
   one.ended = kNever;
   tell(one);
@@ -92,7 +92,7 @@ TEST_F(TakeoverReceiptsTest, OneThatIsNotOverIsWaitedForUntilItsRtpuDies) {
   EXPECT_EQ(receipt(0)["ended_ns"], receipt(0)["at_ns"]);
 }
 
-TEST_F(TakeoverReceiptsTest, WhatHappenedWithoutAManagerIsFiledByTheNextOne) {
+TEST_F(TakeoverReceiptsTest, TheNextManagerFilesTakeoversFromTheGap) {
   tell(takeover(1));
   ASSERT_TRUE(until_kept(1));
   fake.kill_manager();
@@ -105,7 +105,7 @@ TEST_F(TakeoverReceiptsTest, WhatHappenedWithoutAManagerIsFiledByTheNextOne) {
   EXPECT_EQ(kept().size(), 3u);
 }
 
-TEST_F(TakeoverReceiptsTest, OneThatAPredecessorKeptBeforeItDiedIsNotFiledTwice) {
+TEST_F(TakeoverReceiptsTest, ATakeoverInTheJournalOfAPredecessorIsNotFiledTwice) {
   ASSERT_TRUE(fake.until([&] { return fake.loop().is_ready(); }));
   const Takeover one = takeover(1);
   SwitchReceipt written;
@@ -133,7 +133,7 @@ TEST_F(TakeoverReceiptsTest, OnesThatWereOverwrittenAreCounted) {
   EXPECT_EQ(receipt(TakeoverRing::kKept - 1)["number"], TakeoverRing::kKept);
 }
 
-TEST_F(TakeoverReceiptsTest, WhatADeadRtpuWroteAnywhereIsPassedOver) {
+TEST_F(TakeoverReceiptsTest, SkipsDamagedTakeoversOfADeadRtpu) {
   const auto broken = [&](std::uint32_t number, auto change) {
     Takeover one = takeover(number);
     change(one);

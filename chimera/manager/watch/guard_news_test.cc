@@ -46,7 +46,7 @@ TEST_F(GuardNews, ATaskThatWasSilentAndHowTheGuardIs) {
             "the guard is dead: no safe frames are written until the next run\n");
 }
 
-TEST_F(GuardNews, WhatFitsNothingIsNotTold) {
+TEST_F(GuardNews, IgnoresMessagesThatFitNoTaskOrRtpu) {
   EXPECT_EQ(told({.kind = Kind::kFramesWritten, .index = 7, .code = 2}), "");
   EXPECT_EQ(told({.kind = Kind::kSilent, .index = 1, .code = -1}), "");
   EXPECT_EQ(told({.kind = Kind::kGuardState, .code = KeeperMessage::kGuardIsWell}), "");

@@ -26,7 +26,7 @@ struct Method : ::testing::Test {
   std::uint64_t progress = 0;
 };
 
-TEST_F(Method, IsToldWithinTwoSecondsAndAgainSeldom) {
+TEST_F(Method, IsReportedWithinTwoSecondsAndThenSeldom) {
   after(kEvery, 0x100);
   EXPECT_EQ(after(milliseconds(1250), 0x100).word, 0u);
   const MethodVerdict told = after(kEvery, 0x100);
@@ -41,7 +41,7 @@ TEST_F(Method, IsToldWithinTwoSecondsAndAgainSeldom) {
   EXPECT_EQ(news, 3) << "a minute";
 }
 
-TEST_F(Method, ThatEndsAfterAllIsToldOnce) {
+TEST_F(Method, ItsLateEndIsReportedOnce) {
   after(seconds(3), 0x100);
   const MethodVerdict over = after(kEvery, 0);
   EXPECT_TRUE(over.is_news);
@@ -52,13 +52,13 @@ TEST_F(Method, ThatEndsAfterAllIsToldOnce) {
   EXPECT_EQ(news, 2);
 }
 
-TEST_F(Method, ThatIsFollowedByAnotherOneBeginsAnew) {
+TEST_F(Method, TheNextMethodBeginsAnew) {
   after(milliseconds(1500), 0x100);
   EXPECT_EQ(after(milliseconds(1500), 0x101).word, 0u);
   EXPECT_EQ(after(kEvery, 0x101).word, 0x101u);
 }
 
-TEST_F(Method, ThatIsCalledAgainAndAgainDoesEnd) {
+TEST_F(Method, AMethodThatIsCalledAgainIsNoHang) {
   EXPECT_EQ(after(seconds(30), 0x100, true).word, 0u);
   EXPECT_EQ(news, 0);
 }

@@ -7,7 +7,7 @@
 namespace chimera::manager {
 namespace {
 
-TEST(RtpuHealth, ReadsWhatWasGranted) {
+TEST(RtpuHealth, ReadsTheGrantedRights) {
   const auto all = GrantedRights::of("Real-time OK: memory locked, pinned to CPU 1, SCHED_FIFO 80. Kernel limit ...");
   EXPECT_EQ(all.level, 80);
   EXPECT_EQ(all.cpu, 1);
@@ -20,7 +20,7 @@ TEST(RtpuHealth, ReadsWhatWasGranted) {
   EXPECT_FALSE(none.is_locked);
 }
 
-TEST(RtpuHealth, TellsWhatIsNotAsGranted) {
+TEST(RtpuHealth, NamesTheRightsThatWereLost) {
   const GrantedRights granted{80, 1, true};
   EXPECT_EQ(lost_rights(granted, false, {{7, SCHED_FIFO, 80, 1}}, true), "");
   EXPECT_EQ(lost_rights(granted, false, {{7, SCHED_OTHER, 0, 1}}, true),

@@ -12,7 +12,7 @@
 namespace chimera {
 namespace {
 
-struct Sender {  // signals the other task when told
+struct Sender {  // signals the other task if `turns_off` is set
   Out<double> x{"x", "1", initial = 0.0};
   void cycle(Cycle c) {
     *x = 1;
@@ -145,7 +145,7 @@ TEST_F(EdgeSignalsTest, TheFlagThatASignalRaisesIsRecordedWithIt) {
   const std::vector expected{TapKind::kSignal, TapKind::kFlag, TapKind::kState};
   EXPECT_EQ(recorded(), expected) << "the reader has no producer that is ON";
   EXPECT_TRUE(releases->is_illegal());
-  EXPECT_TRUE(guest.reports.empty()) << "it knows what it did itself";
+  EXPECT_TRUE(guest.reports.empty()) << "its own signal is not reported to it";
 }
 
 TEST_F(EdgeSignalsTest, TasksJoinAndLeaveWithTheirStatesAndShowTheirProfiles) {
@@ -171,7 +171,7 @@ TEST_F(EdgeSignalsTest, AMemberWithAJobUnderWayLeavesAfterIt) {
   EXPECT_FALSE(releases->members().is_on(kReader));
 }
 
-TEST_F(EdgeSignalsTest, WhatJobsLeaveIsSettledOnce) {
+TEST_F(EdgeSignalsTest, ReactionsOfAJobAreSettledOnce) {
   begin();
   app.tasks[0].on_miss = OnMiss::kStop;
   releases->misses().report_late({kSender, milliseconds(1), milliseconds(2)}, true);

@@ -10,7 +10,7 @@
 namespace chimera {
 namespace {
 
-struct FailingSender {  // signals the other task, or fails for ever, when told
+struct FailingSender {  // signals the other task, or fails for ever, by its flags
   Out<double> x{"x", "1", initial = 0.0};
   Outcome cycle(Cycle c) {
     if (std::exchange(turns_off, false)) c.signal(Signal::kOff, "slow");
@@ -172,7 +172,7 @@ TEST_F(ReleasesTest, AReactionThatRefusesLateStartsNeedsTheDeadlineItself) {
   EXPECT_FALSE(releases->may_start(job, job.deadline));
 }
 
-TEST_F(ReleasesTest, WhatAJobLeavesIsSettledAtItsEnd) {
+TEST_F(ReleasesTest, ReactionsOfAJobAreSettledAtItsEnd) {
   begin();
   FailingSender::fails = true;
   releases->release_due(milliseconds(10));

@@ -89,7 +89,7 @@ struct Sample {
   ApplicationSpec spec;
 };
 
-// Where the fields of the header lie: docs/formats/image.md.
+// Offsets of the fields of the header: docs/formats/image.md.
 constexpr std::size_t kVersionAt = 8, kHashAt = 24, kBodyAt = 32;
 
 void set_hash(std::vector<std::byte>& bytes) {
@@ -183,7 +183,7 @@ bool says(const std::string& refusal, const char* why) {
   return refusal.starts_with(std::string("damaged image: ") + why + ", before byte ");
 }
 
-TEST(ApplicationImage, WhatVerificationNeverMakesIsRefused) {
+TEST(ApplicationImage, RefusesSpecificationsThatVerificationNeverMakes) {
   EXPECT_EQ(refusal_of([](Sample&) {}), "accepted");
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].rtpu = RtpuId{2u}; }), "an rtpu that does not exist"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.start[0] = TaskId{3u}; }), "a task that does not exist"));

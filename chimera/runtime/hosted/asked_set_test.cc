@@ -93,14 +93,14 @@ struct AskedSetTest : ::testing::Test {
   TestApplication app;
 };
 
-TEST_F(AskedSetTest, WhoHasTheSameResourceGivesWay) {
+TEST_F(AskedSetTest, ATaskWithTheSameResourceGivesWay) {
   are_on.push_back(kWater);
   EXPECT_EQ(ask({kAir}), "sensor pid motor air");
   EXPECT_EQ(ask({kAir, kWater}), "tasks 'water' and 'air' open the same resource 'tty0'; one of the two with `--off`");
   EXPECT_EQ(ask({}, {kWater}), "sensor pid motor");
 }
 
-TEST_F(AskedSetTest, WhoProducesTheSameGivesWayAndTheOnlyProducerComesAlong) {
+TEST_F(AskedSetTest, ARivalProducerGivesWayAndTheOnlyProducerComesAlong) {
   app.link(kCircle.index, 1, "nothing_else");
   make();
   EXPECT_EQ(ask({kSmooth}), "sensor smooth filter motor");
@@ -112,7 +112,7 @@ TEST_F(AskedSetTest, AChoiceIsRefusedWithTheCandidates) {
   EXPECT_EQ(ask({kSmooth, kFilter}), "sensor smooth filter motor");
 }
 
-TEST_F(AskedSetTest, WhatIsMissingIsAddedOnlyWhereItIsWanted) {
+TEST_F(AskedSetTest, AddsAMissingProducerOnlyForATaskThatIsAskedFor) {
   app.link(kCircle.index, 1, "nothing_else");
   make();
   EXPECT_EQ(ask({kSmooth}, {kFilter}), "z would have no producer");
@@ -135,7 +135,7 @@ TEST_F(AskedSetTest, ALoopWithoutAnInitialValueIsRefused) {
   EXPECT_EQ(ask({kSmooth, kCircle}), "sensor smooth motor circle");
 }
 
-TEST_F(AskedSetTest, WhatTakesMoreOfACpuThanCheckAllowsIsRefused) {
+TEST_F(AskedSetTest, RefusesASetThatTakesMoreOfACpuThanCheckAllows) {
   app.tasks[kSensor.index].budget = microseconds(500);
   app.tasks[kSpare.index].budget = microseconds(430);
   make();

@@ -59,7 +59,7 @@ TEST_F(BackgroundWriters, CallOnceEvenWhenTheEndComesAtOnce) {
   EXPECT_EQ(disk.calls, 1);
 }
 
-TEST_F(BackgroundWriters, DoNotCallAgainWhatFailedAndSayWhy) {
+TEST_F(BackgroundWriters, DoNotCallAFailedMethodAgainAndNameItsFault) {
   Disk disk;
   disk.fails = true;
   ASSERT_TRUE(writer.add(&disk, write));

@@ -31,7 +31,7 @@ TEST(HeapMemory, GivesZeroedBytesThatStayWhereTheyAre) {
   EXPECT_EQ(first[99], std::byte{5});
 }
 
-TEST(HeapMemory, WhatIsKeptOutlivesIt) {
+TEST(HeapMemory, KeptBytesOutliveTheMemory) {
   std::optional<HeapMemory> memory(std::in_place);
   const auto kept = memory->take_bytes(16, 8);
   memory->keep_for_ever();

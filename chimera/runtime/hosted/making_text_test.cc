@@ -8,7 +8,7 @@
 namespace chimera {
 namespace {
 
-TEST(MakingWord, SaysWhatIsMadeForWhom) {
+TEST(MakingWord, NamesTheObjectAndItsTask) {
   std::atomic<std::uint32_t> cell{0};
   show_making(cell, 2, Making::kLoads);
   EXPECT_EQ(task_of_making(cell, 3), 2u);
@@ -20,7 +20,7 @@ TEST(MakingWord, SaysWhatIsMadeForWhom) {
   EXPECT_EQ(task_of_making(cell, 3), UINT32_MAX);
 }
 
-TEST(MakingWord, OfAStrangerIsNone) {
+TEST(MakingWord, AnInvalidWordNamesNoTask) {
   EXPECT_EQ(task_of_making(4u << 8 | 1u, 3), UINT32_MAX) << "no such task";
   EXPECT_EQ(task_of_making(0xdeadbeef, 256), UINT32_MAX);
 }

@@ -39,7 +39,7 @@ struct RefusalText : ::testing::Test {
   std::unique_ptr<HeapTaskSet> set;
 };
 
-TEST_F(RefusalText, OfAStart) {
+TEST_F(RefusalText, ARefusedStartNamesItsReason) {
   EXPECT_TRUE(start({kSource, kSink}));
   const auto illegal = start({kSink});
   ASSERT_FALSE(illegal);
@@ -52,7 +52,7 @@ TEST_F(RefusalText, OfAStart) {
   EXPECT_EQ(failed.error().where.view(), "source");
 }
 
-TEST_F(RefusalText, OfASignal) {
+TEST_F(RefusalText, ARefusedSignalNamesItsReason) {
   ASSERT_TRUE(start({kSource}));
   EXPECT_EQ(refused(kSink, Signal::kOn), "");
   EXPECT_EQ(refused(kSink, Signal::kOn), "on is not legal for sink in state ON");

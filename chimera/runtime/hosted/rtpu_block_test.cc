@@ -35,7 +35,7 @@ TEST(RtpuBlock, LiesBehindTheGroupsOnAPageOfItsOwn) {
   EXPECT_EQ(peer_segment_bytes(*layout, 3), block_offset(*layout) + block_bytes(3));
 }
 
-TEST(RtpuBlock, WhatTheOwnerWritesOthersRead) {
+TEST(RtpuBlock, AViewReadsTheStatusOfTheOwner) {
   const Bytes bytes = zeroed(block_bytes(3));
   const BlockOwner owner(bytes.get(), 1, 5, 3, 4);
   const BlockView view(bytes.get(), 3);
@@ -87,7 +87,7 @@ TEST(RtpuBlock, RingsOfDifferentPeersAreDifferentAndAllOfThemAreInside) {
   EXPECT_EQ(owner.head().magic, kBlockMagic);
 }
 
-TEST(RtpuBlock, AWordThatNoOwnerWritesReadsAsError) {
+TEST(RtpuBlock, AnInvalidStatusWordReadsAsError) {
   EXPECT_EQ(TaskStatus::of(4).state, State::kError);
   EXPECT_EQ(TaskStatus::of(255).state, State::kError);
   const TaskStatus status{State::kOff, false, 0xffffffff};

@@ -72,7 +72,7 @@ TEST_F(Rows, ComeOutAsTheyWerePublished) {
   EXPECT_EQ(tasks, (std::vector<std::uint32_t>{0, 2, 1}));
 }
 
-TEST_F(Rows, OfAnotherSizeOrTaskAreNoRows) {
+TEST_F(Rows, RecordsOfAnotherSizeOrTaskAreNoRows) {
   TapRecord r{.at = {}, .b = 1, .a = 2, .task = TaskId{0u}, .kind = TapKind::kGroup};
   EXPECT_EQ(rows.take(r), nullptr);
   r.kind = TapKind::kValue;
@@ -125,7 +125,7 @@ TEST_F(Rows, ARingThatWasOvertakenLeavesOneGap) {
   EXPECT_EQ(rows.lost(TaskId{1u}) + 1, appended[1] - (kTapRecords - 2) / 2);
 }
 
-TEST_F(Rows, OfRandomRecordsAreNeverHalf) {
+TEST_F(Rows, RandomRecordsNeverGiveHalfARow) {
   std::mt19937_64 random(6);
   std::uint64_t out = 0;
   for (int i = 0; i < 300'000; ++i) {

@@ -70,7 +70,7 @@ TEST_F(SmallestLegalSet, LeavesOutAProducerThatWouldGiveAnotherVariableASecondOn
   passing("servo", "ref", "u");
   passing("both", "u", "ref");  // reads what servo gives: legal, though in a ring
   EXPECT_EQ(explain({"servo"}), "ref would have no producer; the smallest legal set is: servo both");
-  app_.link(1, 0, "nobody");
+  app_.link(1, 0, "unproduced");
   EXPECT_EQ(explain({"servo"}), "ref would have no producer") << "nothing legal holds it";
 }
 

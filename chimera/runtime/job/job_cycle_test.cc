@@ -62,7 +62,7 @@ TEST_F(JobCycleTest, ALateJobIsJudgedAndHeld) {
   EXPECT_EQ(bare.first().group.sequence(), 0u);
 }
 
-TEST_F(JobCycleTest, AJobThatWasReportedLateIsLateWhateverTheClockSaysAtItsEnd) {
+TEST_F(JobCycleTest, AJobThatWasReportedLateStaysLateAtItsEnd) {
   CycleTime time;
   const Job job = BareTasks::job(kFirst, 10);
   const BodyEnd body = jobs.open_and_begin(job, time, false);
@@ -81,7 +81,7 @@ TEST_F(JobCycleTest, AFaultThatIsNotRecoveredEndsInErrorAndIsToBeSettled) {
   EXPECT_TRUE(bare.leaves(JobRecord::kSettle));
 }
 
-TEST_F(JobCycleTest, AFaultNobodyListensToIsSeenAndNotLeft) {
+TEST_F(JobCycleTest, WithoutAListenerAFaultIsSeenAndNotLeft) {
   JobCycle unheard(bare.records, bare.context_tap, misses, nullptr, bare.clock, false);
   record_fault(bare.first(), Method::kCycle, "as told", milliseconds(1));
   CycleTime time;
@@ -99,7 +99,7 @@ TEST_F(JobCycleTest, TooManyMissesInARowEndTheTask) {
   EXPECT_STREQ(bare.first().faults.last.text, "missed as many deadlines in a row as max_consecutive allows");
 }
 
-TEST_F(JobCycleTest, DroppedReleasesAreToldToTheNextCycleThatIsCompleted) {
+TEST_F(JobCycleTest, TheNextCompletedCycleGetsTheDroppedReleases) {
   bare.records[0].dropped = 3;
   bare.specs[0].on_miss = OnMiss::kHold;
   (void)run(milliseconds(21));

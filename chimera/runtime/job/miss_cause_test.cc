@@ -51,7 +51,7 @@ class MissCauseTest : public ::testing::Test {
   MissCause cause{tasks, under_way, heap};
 };
 
-TEST_F(MissCauseTest, FindsWhoWentFurthestBeyondItsBudget) {
+TEST_F(MissCauseTest, FindsTheTaskThatExceededItsBudgetMost) {
   cause.ended(kFirst, milliseconds(3), milliseconds(13));
   cause.ended(kSecond, milliseconds(6), milliseconds(19));
   cause.missed(kFirst, milliseconds(10));
@@ -84,7 +84,7 @@ TEST_F(MissCauseTest, ForgetsJobsThatEndedBeforeTheReleaseBeforeTheMiss) {
   EXPECT_EQ(judged(kFirst, 30).culprit, kFirst);
 }
 
-TEST_F(MissCauseTest, SaysNobodyWhenTheProcessorWasAway) {
+TEST_F(MissCauseTest, BlamesNoTaskWhenTheProcessorWasAway) {
   cause.ended(kFirst, milliseconds(1), milliseconds(20));
   cause.ended(kSecond, milliseconds(2), milliseconds(21));
   cause.missed(kFirst, milliseconds(10));
@@ -94,13 +94,13 @@ TEST_F(MissCauseTest, SaysNobodyWhenTheProcessorWasAway) {
   EXPECT_EQ(verdict.used, milliseconds(7)) << "of 11 ms that it waited, 4 were used";
 }
 
-TEST_F(MissCauseTest, BlamesWhoeverUsedTooMuchEvenWhenTheProcessorWasAwayToo) {
+TEST_F(MissCauseTest, BlamesATaskThatUsedTooMuchThoughTheProcessorWasAway) {
   cause.ended(kSecond, microseconds(2001), milliseconds(20));
   cause.missed(kFirst, milliseconds(10));
   EXPECT_EQ(judged(kFirst, 40).culprit, kSecond);
 }
 
-TEST_F(MissCauseTest, SaysWhoCameNearestWhenTheProcessorWasAwayForLessThanAMillisecond) {
+TEST_F(MissCauseTest, BlamesTheNearestTaskIfTheProcessorWasAwayForLessThanAMillisecond) {
   cause.ended(kFirst, milliseconds(2), milliseconds(18));
   cause.ended(kSecond, microseconds(1900), milliseconds(19));
   cause.ended(kThird, microseconds(6200), milliseconds(20));
@@ -123,13 +123,13 @@ TEST_F(MissCauseTest, WaitsFromTheFirstReleaseThatWasMissed) {
   EXPECT_EQ(judged(kFirst, 35).used, milliseconds(25));
 }
 
-TEST_F(MissCauseTest, BlamesTheTaskItselfWhenNobodyUsedAnything) {
+TEST_F(MissCauseTest, BlamesTheTaskItselfWhenNoTaskUsedTime) {
   const MissCause::Verdict verdict = judged(kFirst, 21);
   EXPECT_EQ(verdict.culprit, kFirst) << "no release of it was missed";
   EXPECT_EQ(verdict.used, Nanoseconds{});
 }
 
-TEST_F(MissCauseTest, JudgesATaskTenTimesASecondAtMostAndForgetsWhatCameBetween) {
+TEST_F(MissCauseTest, JudgesATaskTenTimesASecondAtMostAndForgetsOtherMisses) {
   cause.missed(kFirst, milliseconds(10));
   EXPECT_EQ(judged(kFirst, 20).used, milliseconds(10));
   cause.missed(kFirst, milliseconds(20));
@@ -149,10 +149,10 @@ TEST_F(MissCauseTest, SaysThatAJobWaitsInASystemCall) {
   EXPECT_EQ(verdict.used, microseconds(300));
   EXPECT_TRUE(verdict.is_blocked);
   cause.missed(kSecond, milliseconds(110));
-  EXPECT_FALSE(judged(kSecond, 120).is_blocked) << "it is another one that waits";
+  EXPECT_FALSE(judged(kSecond, 120).is_blocked) << "another job waits";
 }
 
-TEST_F(MissCauseTest, BlamesWhoeverTookHalfOfTheTimeEvenWhenTheJobWaitsByNow) {
+TEST_F(MissCauseTest, BlamesTheTaskThatTookHalfOfTheTimeThoughTheJobIsBlocked) {
   under_way.blocked = kFirst;
   cause.ended(kSecond, microseconds(7001), milliseconds(15));
   cause.missed(kFirst, milliseconds(10));
@@ -178,7 +178,7 @@ TEST_F(MissCauseTest, BlamesAJobWithoutABudgetForItsOwnLateness) {
   under_way.used[kThird.index] = milliseconds(6);
   cause.missed(kThird, milliseconds(10));
   const MissCause::Verdict verdict = judged(kThird, 20);
-  EXPECT_EQ(verdict.culprit, kThird) << "the first one came nearer to what it may use";
+  EXPECT_EQ(verdict.culprit, kThird) << "the first task came nearer to its budget";
   EXPECT_EQ(verdict.used, milliseconds(6));
 }
 

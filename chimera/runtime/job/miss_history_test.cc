@@ -40,7 +40,7 @@ TEST(MissHistory, LooksBackOver64CyclesAtMost) {
   for (int i = 0; i < 62; ++i) EXPECT_TRUE(history.add(false, spec));
   EXPECT_FALSE(history.would_tolerate(spec)) << "the 64th cycle";
   EXPECT_TRUE(history.add(false, spec));
-  EXPECT_TRUE(history.would_tolerate(spec)) << "the miss is 65 cycles ago by then";
+  EXPECT_TRUE(history.would_tolerate(spec)) << "the miss is 65 cycles ago then";
 }
 
 TEST(MissHistory, WithoutTolerationNoMissIsTolerated) {

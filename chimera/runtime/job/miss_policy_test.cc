@@ -74,7 +74,7 @@ TEST_F(MissPolicyTest, SkipDropsTheNextReleaseAndNoOther) {
   EXPECT_FALSE(bare.records[0].skip_next);
 }
 
-TEST_F(MissPolicyTest, RefusesAStartWhoseMinimumIsNotLeftAndCountsThat) {
+TEST_F(MissPolicyTest, RefusesAndCountsAStartWithoutItsMinimumTime) {
   spec().min_time = milliseconds(4);
   spec().on_miss = OnMiss::kHold;
   EXPECT_FALSE(misses.decide_start(BareTasks::job(kFirst, 10), milliseconds(17)));
@@ -97,7 +97,7 @@ TEST_F(MissPolicyTest, ToleratesAsManyMissesAsItsWindowAllows) {
   EXPECT_EQ(profile().missed, 3u) << "a miss that is tolerated is counted";
 }
 
-TEST_F(MissPolicyTest, WhatWasReportedDuringTheJobIsNotDoneAgainAtItsEnd) {
+TEST_F(MissPolicyTest, AReactionDuringTheJobIsNotRepeatedAtItsEnd) {
   spec().on_miss = OnMiss::kFlag;
   misses.report_late(BareTasks::job(kFirst, 10), true);
   EXPECT_TRUE(bare.leaves(JobRecord::kRaiseFlag));
@@ -137,13 +137,13 @@ TEST_F(MissPolicyTest, LosesPatienceByDroppedReleasesToo) {
   EXPECT_EQ(profile().missed_in_a_row, 0u);
 }
 
-TEST_F(MissPolicyTest, WithoutSomebodyToReportToNoCauseIsLookedFor) {
+TEST_F(MissPolicyTest, WithoutAListenerNoCauseIsSearched) {
   MissPolicy alone(bare.tasks, bare.records, bare.context_tap, nullptr, bare.clock);
   alone.drop({kFirst, milliseconds(10), 1});
   EXPECT_EQ(bare.records[0].left, 0);
 }
 
-TEST_F(MissPolicyTest, AnAbandonedJobAndOneThatNeverStartedAreMisses) {
+TEST_F(MissPolicyTest, AbandonedAndUnstartedJobsAreMisses) {
   misses.abandon(BareTasks::job(kFirst, 10));
   misses.expire_unstarted(BareTasks::job(kFirst, 20));
   EXPECT_EQ(profile().missed, 2u);

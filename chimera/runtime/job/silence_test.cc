@@ -38,7 +38,7 @@ TEST_F(SilenceTest, ATaskThatIsNotOnMayBeSilent) {
   EXPECT_TRUE(look(true, 5));
 }
 
-TEST_F(SilenceTest, ALookThatComesLateCountsForNothing) {
+TEST_F(SilenceTest, ALateCheckDoesNotCount) {
   EXPECT_FALSE(look(true, 5));
   for (int i = 0; i < 10; ++i) {
     now = silence.due() + milliseconds(6);
@@ -53,7 +53,7 @@ TEST_F(SilenceTest, ALookThatComesLateCountsForNothing) {
   EXPECT_TRUE(silence.look(true, 5, now));
 }
 
-TEST_F(SilenceTest, OfAPrimaryIsReachedWhenWhatItPublishedIsTooOld) {
+TEST_F(SilenceTest, IsReachedWhenTheOutputsOfThePrimaryAreTooOld) {
   for (const auto& [after_ms, periods] : {std::pair{20, 2}, std::pair{21, 3}, std::pair{30, 3}}) {
     const StandbySpec standby{TaskId(std::size_t{4}), TaskId(std::size_t{5}), milliseconds(after_ms)};
     Silence made = Silence::of(standby, milliseconds(10));

@@ -15,7 +15,7 @@ SporadicJob started(const ServerSpec& spec, Nanoseconds granularity = {}) {
   return job;
 }
 
-TEST(SporadicJob, AnswersOneEventAfterTheOther) {
+TEST(SporadicJob, AnswersEventsInTurn) {
   SporadicJob job = started(kSporadic);
   std::uint32_t waiting = 2;
   EXPECT_TRUE(job.accept(waiting, milliseconds(1)));
@@ -34,7 +34,7 @@ TEST(SporadicJob, AnswersOneEventAfterTheOther) {
   EXPECT_FALSE(job.has_event());
 }
 
-TEST(SporadicJob, LosesTheEventThatWasAcceptedAndOnlyThatOne) {
+TEST(SporadicJob, LosesOnlyTheAcceptedEvent) {
   SporadicJob job = started(kSporadic);
   EXPECT_FALSE(job.forget());
   std::uint32_t waiting = 3;
@@ -55,13 +55,13 @@ TEST(SporadicJob, RunsUntilTheCapacityIsUsedAndAgainWhenItIsBack) {
   job.charge(milliseconds(2));
   const SporadicJob::Grant exhausted = job.grant(milliseconds(5));
   EXPECT_FALSE(exhausted.may_run);
-  EXPECT_TRUE(exhausted.has_another_deadline) << "what was used comes back one period after the job began";
+  EXPECT_TRUE(exhausted.has_another_deadline) << "used capacity comes back one period after the job began";
   EXPECT_EQ(job.next_change(milliseconds(5)), milliseconds(13));
   EXPECT_TRUE(job.grant(milliseconds(13)).may_run);
   EXPECT_EQ(job.deadline(), milliseconds(23));
 }
 
-TEST(SporadicJob, OfADeferrableServerIsAsUrgentAsThePeriodItRunsIn) {
+TEST(SporadicJob, OnADeferrableServerIsAsUrgentAsItsPeriod) {
   SporadicJob job = started(kDeferrable);
   std::uint32_t waiting = 1;
   (void)job.accept(waiting, milliseconds(3));

@@ -79,7 +79,7 @@ struct ExecutionTime : ::testing::Test {
 };
 
 // Two readings with one publication between them: the end of the job, and the next reading after it.
-TEST_F(ExecutionTime, OfAJobHoldsEveryCopyOfItsOutputs) {
+TEST_F(ExecutionTime, IncludesEveryCopyOfTheOutputsOfAJob) {
   app.add("wide", component<Wide>("wide"));
   app.port(0, 0).extent[0].max = 16;
   app.add("reader", component<Reader>("reader"));
@@ -96,14 +96,14 @@ TEST_F(ExecutionTime, OfAJobHoldsEveryCopyOfItsOutputs) {
     if (next.sequence != end.sequence + 1) continue;
     ++publications;
     EXPECT_EQ(end.staged[0], publications) << "the body has run";
-    EXPECT_EQ(end.staged[1], 100) << "what it did not write was staged before";
+    EXPECT_EQ(end.staged[1], 100) << "unwritten outputs were staged before";
     EXPECT_EQ(std::memcmp(end.staged, next.latest, kValues), 0);
     EXPECT_NE(next.staged[0], next.latest[0]) << "the next outputs are staged in the time of the next job";
   }
   EXPECT_GE(publications, 8);
 }
 
-TEST_F(ExecutionTime, OfAMethodHoldsItsTransfers) {
+TEST_F(ExecutionTime, IncludesTheTransfersOfAMethod) {
   app.add("wide", component<Wide>("wide"));
   app.port(0, 0).extent[0].max = 16;
   make();
@@ -119,7 +119,7 @@ TEST_F(ExecutionTime, OfAMethodHoldsItsTransfers) {
   EXPECT_EQ(set->tasks()[0].profile.execution[CHIMERA_OFF].count, 1u);
 }
 
-TEST_F(ExecutionTime, OfAnErrorThatACycleCallsIsMeasured) {
+TEST_F(ExecutionTime, IncludesErrorCalledByACycle) {
   app.add("guarded", component<Guarded>("guarded"));
   make();
   Executive executive(*set, clock, job_clock, {});

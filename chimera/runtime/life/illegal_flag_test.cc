@@ -46,7 +46,7 @@ struct IllegalFlagTest : ::testing::Test {
 TEST_F(IllegalFlagTest, FollowsFromTheTasksThatAreOn) {
   EXPECT_FALSE(flag.is_up());
   turn(kConsumer, true);
-  EXPECT_TRUE(flag.is_up()) << "nobody produces what it reads";
+  EXPECT_TRUE(flag.is_up()) << "no task produces what the consumer reads";
   EXPECT_FALSE(flag.is_on_set_legal());
   EXPECT_FALSE(flag.is_raised());
   turn(kProducer, true);

@@ -77,7 +77,7 @@ TEST_F(SentSignalsTest, ASignalWaitsAtItsTargetInTheOrderOfSending) {
   EXPECT_FALSE(sent.take_pending(tasks[1], signal));
 }
 
-TEST_F(SentSignalsTest, OfTheRequestsForAConfigurationTheLastWaits) {
+TEST_F(SentSignalsTest, TheLastRequestForAConfigurationWaits) {
   EXPECT_FALSE(sent.take_request());
   tasks[0].requested_set = 2;
   sent.deliver(tasks[0]);
@@ -120,7 +120,7 @@ TEST_F(SentSignalsTest, KillTakesTheLastPlaceOfAFullQueue) {
   EXPECT_FALSE(sent.has_pending());
 }
 
-TEST_F(SentSignalsTest, WhatIsForAnotherContextAndEveryOnIsPosted) {
+TEST_F(SentSignalsTest, PostsEveryOnAndSignalsToOtherContexts) {
   send(Signal::kOff, kForeign);
   send(Signal::kOn, kServed);
   sent.deliver(tasks[0]);

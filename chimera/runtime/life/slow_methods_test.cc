@@ -101,7 +101,7 @@ TEST_F(SlowMethodsTest, OnlyInitAndKillLeaveTheEdge) {
   EXPECT_EQ(task().instance, nullptr) << "destroyed where kill ran";
 }
 
-TEST_F(SlowMethodsTest, WhatAMethodUsesIsMeasuredOnTheClockOfTheServiceThread) {
+TEST_F(SlowMethodsTest, MeasuresAMethodOnTheClockOfTheServiceThread) {
   (void)signal(Signal::kSpawn);
   EXPECT_EQ(task().profile.execution[CHIMERA_INIT].max, milliseconds(7));
   EXPECT_EQ(edge_clock.spent(), Nanoseconds{});

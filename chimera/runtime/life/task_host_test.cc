@@ -56,7 +56,7 @@ struct TaskHostTest : ::testing::Test {
   ModelledClock clock;
 };
 
-/// Keeps what it is given.
+/// Records the arguments of keep().
 struct KeptFrames final : SafeFrames {
   std::span<SafeFrame, kSafeFrames> of(TaskId task) noexcept override {
     return std::span<SafeFrame, kSafeFrames>(frames[task.index], kSafeFrames);
@@ -70,7 +70,7 @@ struct KeptFrames final : SafeFrames {
   std::string kept;
 };
 
-TEST_F(TaskHostTest, NobodyWritesSafeFramesOfAContextThatIsAlone) {
+TEST_F(TaskHostTest, RefusesSafeFramesInAContextWithoutAGuard) {
   EXPECT_EQ(host().safe_frame(context(), 0, 1, 0), CHIMERA_FAULT);
   EXPECT_EQ(host().safe_bytes(context(), 0, "x", 1), CHIMERA_OK);
 }
@@ -98,7 +98,7 @@ TEST_F(TaskHostTest, SafeFramesStandUntilOffOrKillHasEndedWell) {
   }
 }
 
-TEST_F(TaskHostTest, AJobIsExpiredPastItsDeadlineOrWhenItIsToldToGiveUp) {
+TEST_F(TaskHostTest, AJobIsExpiredPastItsDeadlineOrOnGiveUp) {
   task().call.deadline_ns = milliseconds(5).count;
   clock.set(milliseconds(5));
   EXPECT_EQ(host().expired(context()), 0) << "at the deadline itself";
@@ -132,8 +132,8 @@ TEST_F(TaskHostTest, ASignalGoesToTheTaskOfThatNameOrToTheOwnTask) {
   EXPECT_TRUE(task().has_news);
 }
 
-TEST_F(TaskHostTest, ASignalThatNobodyCanTakeIsRefused) {
-  EXPECT_EQ(send(kOff, "nobody"), CHIMERA_FAULT);
+TEST_F(TaskHostTest, RefusesASignalWithoutAReceiver) {
+  EXPECT_EQ(send(kOff, "absent"), CHIMERA_FAULT);
   EXPECT_EQ(send(kOff, ""), CHIMERA_FAULT);
   EXPECT_EQ(send(kWakeup + 1, "served"), CHIMERA_FAULT);
   EXPECT_TRUE(task().outbox.empty());
@@ -159,7 +159,7 @@ TEST_F(TaskHostTest, ANoteIsCutAndCounted) {
   EXPECT_TRUE(task().has_news);
 }
 
-TEST_F(TaskHostTest, ARequestForAConfigurationIsKeptWhereSomebodyTakesIt) {
+TEST_F(TaskHostTest, KeepsARequestForAConfigurationIfRequestsAreAllowed) {
   const NamedSet sets[] = {{"near", {}}, {"far", {}}};
   const_cast<ApplicationSpec&>(set->spec()).sets = sets;
   EXPECT_EQ(host().request(context(), "far"), CHIMERA_FAULT);
@@ -173,11 +173,11 @@ TEST_F(TaskHostTest, ARequestForAConfigurationIsKeptWhereSomebodyTakesIt) {
   EXPECT_EQ(host().request(context(), "near"), CHIMERA_OK);
   EXPECT_EQ(task().requested_set, 0u);
   EXPECT_EQ(host().request(context(), "fa"), CHIMERA_FAULT);
-  EXPECT_EQ(task().faults.notes, 1u) << "told once";
+  EXPECT_EQ(task().faults.notes, 1u) << "reported once";
   EXPECT_EQ(task().requests_refused, 2u);
 }
 
-TEST_F(TaskHostTest, ARequestForTasksIsKeptWhereSomebodyTakesLists) {
+TEST_F(TaskHostTest, KeepsARequestForTasksIfListsAreAllowed) {
   const std::string mine(task().spec->name);
   const std::string on = "--on " + mine;
   set->sent().allow_requests({});
@@ -190,7 +190,7 @@ TEST_F(TaskHostTest, ARequestForTasksIsKeptWhereSomebodyTakesLists) {
     EXPECT_EQ(host().request(context(), text), CHIMERA_FAULT);
     return std::string(task().faults.note);
   };
-  EXPECT_EQ(refusal("--on nobody"), "asks for '--on nobody': there is no task 'nobody'");
+  EXPECT_EQ(refusal("--on absent"), "asks for '--on absent': there is no task 'absent'");
   EXPECT_EQ(refusal("--off"), "asks for '--off': expected '--on TASK... --off TASK...'");
   EXPECT_EQ(refusal("-x"), "asks for '-x': expected '--on TASK... --off TASK...'");
   EXPECT_EQ(task().requested_set, kNoRequest);
@@ -200,7 +200,7 @@ TEST_F(TaskHostTest, ARequestForTasksIsKeptWhereSomebodyTakesLists) {
   EXPECT_TRUE(lists[task().id.index].plus.has(task().id));
 }
 
-TEST_F(TaskHostTest, APortKnowsWhatItIsLinkedToAndInWhichRtpu) {
+TEST_F(TaskHostTest, APortKnowsItsVariableAndTheRtpu) {
   EXPECT_EQ(view(host().variable(context(), port(0))), "q");
   EXPECT_EQ(view(host().unit(context(), port(0))), "rad");
   EXPECT_EQ(view(host().variable(context(), port(1))), "") << "not linked";

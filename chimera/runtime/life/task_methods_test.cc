@@ -98,7 +98,7 @@ TEST_F(TaskMethodsTest, AConstructorThatRefusesIsAFaultOfInit) {
   EXPECT_EQ(task.faults.at, milliseconds(1));
 }
 
-TEST_F(TaskMethodsTest, AtAnEdgeAMethodIsShownAndCalledByWhoeverRunsJobs) {
+TEST_F(TaskMethodsTest, AtAnEdgeAMethodIsShownAndCalledByTheJobThreads) {
   Threads threads;
   methods.run_by({nullptr, &threads});
   ASSERT_EQ(methods.construct(task, {}), Answer::kOk);

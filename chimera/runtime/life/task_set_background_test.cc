@@ -17,7 +17,7 @@
 namespace chimera::task_set_background_test {
 namespace {
 
-// What the one instance of a test did, in letters: i b(ackground) c k d(estroyed).
+// Calls of the one instance of a test, in letters: i b(ackground) c k d(estroyed).
 struct Story {
   std::string letters;                 // of the thread that signals
   std::atomic<int> backgrounds{0};
@@ -117,7 +117,7 @@ TEST_F(TaskSetBackground, AStalledOneIsLeftAloneAndTheTaskCanBeMadeAnew) {
   const int begun = for_ever.backgrounds;
   for_ever.is_stalled = false;
   std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  EXPECT_EQ(for_ever.backgrounds, begun) << "what was left alone is not asked again";
+  EXPECT_EQ(for_ever.backgrounds, begun) << "an abandoned background is not called again";
   for_ever.letters.clear();
   set->methods().run_by({nullptr, nullptr, &writer});
   EXPECT_TRUE(set->life().signal(TaskId{0u}, Signal::kSpawn, {}).is_accepted);
@@ -125,7 +125,7 @@ TEST_F(TaskSetBackground, AStalledOneIsLeftAloneAndTheTaskCanBeMadeAnew) {
   EXPECT_EQ(for_ever.letters, "ikd");
 }
 
-TEST_F(TaskSetBackground, AFaultIsToldAtKillAndNotAskedForAgain) {
+TEST_F(TaskSetBackground, AFaultIsReportedAtKillOnly) {
   make();
   told.throws = true;
   set->methods().run_by({nullptr, nullptr, &writer});

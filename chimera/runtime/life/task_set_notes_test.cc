@@ -47,7 +47,7 @@ struct TaskSetNotes : ::testing::Test {
   const FaultRecord& record() const { return set->tasks()[0].faults; }
 };
 
-TEST_F(TaskSetNotes, AComponentLearnsTheNamesAndUnitsOfWhatItIsJoinedTo) {
+TEST_F(TaskSetNotes, AComponentKnowsTheNamesAndUnitsOfItsVariables) {
   ASSERT_TRUE(set->life().start({}));
   EXPECT_EQ(Teller::names, "q rad; ; sum");
 }

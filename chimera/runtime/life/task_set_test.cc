@@ -16,7 +16,7 @@ namespace {
 using testing::component;
 using testing::TestApplication;
 
-struct Counter {  // counts up from 1; throws, returns a fault or publishes NaN when told
+struct Counter {  // counts up from 1; throws at 13, returns a fault at 14, publishes NaN at 15
   Out<double> n{"n", "1", initial = 0.0, safety, range(-100, 100)};
   InConst<double> step{"step", "1", initial = 1.0};
   void on(Cycle) {
@@ -66,7 +66,7 @@ struct User {
 
 struct Boss {  // sends signals to others
   void cycle(Cycle c) {
-    sent_ = c.signal(Signal::kOff, "reader") && !c.signal(Signal::kOff, "nobody");
+    sent_ = c.signal(Signal::kOff, "reader") && !c.signal(Signal::kOff, "absent");
     if (!sent_) throw std::runtime_error("cannot send");
   }
   bool sent_ = false;
@@ -151,7 +151,7 @@ TEST_F(CounterAndReader, AFaultThatIsNotRecoveredEndsInErrorAndClearLeadsToOff) 
   EXPECT_FALSE(set->flag().is_up());
 }
 
-TEST_F(CounterAndReader, RefusesWhatIsNotLegalAndChangesNothing) {
+TEST_F(CounterAndReader, AnIllegalSignalIsRefusedAndChangesNothing) {
   ASSERT_TRUE(set->life().start({}));
   const SignalReport again = set->life().signal(TaskId{std::size_t{0}}, Signal::kOn, {});
   EXPECT_FALSE(again.is_accepted);
@@ -165,7 +165,7 @@ TEST_F(CounterAndReader, RefusesWhatIsNotLegalAndChangesNothing) {
   EXPECT_EQ(set->tasks()[1].state, State::kOff);
 }
 
-TEST_F(CounterAndReader, ARespawnedProducerTakesOverWhatItsPredecessorLeft) {
+TEST_F(CounterAndReader, ARespawnedProducerTakesOverTheLastValue) {
   ASSERT_TRUE(set->life().start({}));
   for (int i = 1; i <= 5; ++i) run_cycle(*set, 0, milliseconds(i));
   const TaskId counter{std::size_t{0}};
@@ -180,7 +180,7 @@ TEST_F(CounterAndReader, ARespawnedProducerTakesOverWhatItsPredecessorLeft) {
   EXPECT_EQ(number(*set, "n"), 6);
 }
 
-TEST_F(CounterAndReader, WhatNobodyHasPublishedIsInheritedFromNobody) {
+TEST_F(CounterAndReader, AnInitialValueIsNotInherited) {
   ASSERT_TRUE(set->life().start({}));
   const auto counter = [&] { return static_cast<Counter*>(set->tasks()[0].instance); };
   EXPECT_EQ(counter()->inherited_, kNever) << "an initial value is no publication";
@@ -197,7 +197,7 @@ TEST_F(CounterAndReader, WhatNobodyHasPublishedIsInheritedFromNobody) {
   EXPECT_EQ(counter()->inherited_, Nanoseconds{}) << "a clock that was read before";
 }
 
-TEST_F(CounterAndReader, ClearDoesNotMakeWhatStoodYounger) {
+TEST_F(CounterAndReader, ClearDoesNotRenewTheAgeOfAValue) {
   ASSERT_TRUE(set->life().start({}));
   run_cycle(*set, 0, milliseconds(1));
   static_cast<Counter*>(set->tasks()[0].instance)->recovers_ = false;
@@ -210,7 +210,7 @@ TEST_F(CounterAndReader, ClearDoesNotMakeWhatStoodYounger) {
   EXPECT_EQ(static_cast<Counter*>(set->tasks()[0].instance)->inherited_, milliseconds(500) - microseconds(10));
 }
 
-TEST(TaskSet, ASuccessorIsToldTheAgeAndWhetherItIsFreshByThePeriodOfItsPredecessor) {
+TEST(TaskSet, ASuccessorKnowsTheAgeAndFreshnessByThePeriodOfItsPredecessor) {
   struct Case {
     Nanoseconds period, age;
     bool is_aperiodic, is_fresh;
@@ -338,7 +338,7 @@ TEST(TaskSet, OperatorVariablesHoldTheirInitialValue) {
   EXPECT_EQ(number(*set, "seen"), 2.5);
 }
 
-TEST(TaskSet, RefusesAVariableThatNobodyProduces) {
+TEST(TaskSet, RefusesAVariableWithoutAProducer) {
   TestApplication app;
   app.add("reader", component<Reader>("reader"));
   app.make();

@@ -28,7 +28,7 @@ struct Last {
 
 constexpr TaskId kOne{0u}, kTwo{1u}, kThree{2u}, kUser{3u}, kLast{4u};
 
-/// Three tools, of which `one` starts; a user of the mass of the tools and one of what it makes of it.
+/// Three tools, of which `one` starts; `user` reads the mass of the tools, `last` the load of `user`.
 struct RivalsTest : ::testing::Test {
   void SetUp() override {
     for (const char* name : {"one", "two", "three"}) app.add(name, testing::component<Tool>("tool"));
@@ -68,7 +68,7 @@ TEST_F(RivalsTest, TheSameTextMakesRivals) {
   EXPECT_EQ(rivals.resource(kOne, kThree), "");
 }
 
-TEST_F(RivalsTest, SharedByEitherOrTogetherInAConfigurationTheyAreNone) {
+TEST_F(RivalsTest, SharedOrConfiguredTogetherTheyAreNoRivals) {
   app.port(kThree.index, 1).shared = true;
   with_two.push_back(kOne);
   make();
@@ -79,14 +79,14 @@ TEST_F(RivalsTest, SharedByEitherOrTogetherInAConfigurationTheyAreNone) {
   EXPECT_FALSE(rivals.may_be_absent(kTwo));
 }
 
-TEST_F(RivalsTest, TheStartLeavesOutRivalsAndWhoNeedsTheirConstants) {
+TEST_F(RivalsTest, TheStartLeavesOutRivalsAndUsersOfTheirConstants) {
   make();
   EXPECT_EQ(created(), (std::vector<bool>{true, false, false, false, false}))
       << "user has the mass of its configuration, which two makes";
   for (const TaskId task : {kOne, kTwo, kThree, kUser, kLast}) EXPECT_TRUE(rivals.may_be_absent(task));
 }
 
-TEST_F(RivalsTest, OfRivalsThatDoNotStartTheFirstIsCreated) {
+TEST_F(RivalsTest, CreatesTheFirstOfTheRivalsOutsideTheStartSet) {
   with_one = {};
   make();
   EXPECT_EQ(created(), (std::vector<bool>{true, false, false, false, false}));

@@ -105,7 +105,7 @@ TEST_F(SlowPlanTest, ChecksThenOffThenReinitInOrderThenOn) {
                                                 {SlowAct::kOn, kHeavy}}));
 }
 
-TEST_F(SlowPlanTest, WhoArrivesIsReinitialisedToo) {
+TEST_F(SlowPlanTest, AnArrivingTaskIsReinitialisedToo) {
   EXPECT_EQ(steps(2, 1), (std::vector<SlowStep>{{SlowAct::kCheck, kArm},
                                                 {SlowAct::kCheck, kLaw},
                                                 {SlowAct::kOff, kClock},
@@ -116,7 +116,7 @@ TEST_F(SlowPlanTest, WhoArrivesIsReinitialisedToo) {
                                                 {SlowAct::kOn, kLaw}}));
 }
 
-// Whatever uses what a tool makes may be absent, so nothing can be checked before the tool is there.
+// Users of the constants of a tool may be absent, so nothing can be checked before the tool is created.
 TEST_F(SlowPlanTest, ToolsWithOneDeviceTakeTurnsWithIt) {
   const std::vector<std::byte> tty = testing::bytes_of("tty0");
   for (const TaskId tool : {kLight, kHeavy}) app.port(tool.index, 4).value = tty;
@@ -145,7 +145,7 @@ TEST_F(SlowPlanTest, ToolsWithOneDeviceTakeTurnsWithIt) {
   EXPECT_EQ(found.rival, kLight);
 }
 
-TEST(SwitchWays, EachTryHasMoreTimeForWhatIsNotTheLongestJob) {
+TEST(SwitchWays, EachTryHasMoreTimeBesideTheLongestJob) {
   EXPECT_EQ(lead_of_try(microseconds(300), 1), microseconds(300));
   EXPECT_EQ(lead_of_try(microseconds(300), 2), microseconds(2700));
   EXPECT_EQ(lead_of_try(microseconds(300), 3), microseconds(19500));
@@ -167,7 +167,7 @@ TEST_F(SlowPlanTest, AnOnThatFitsNoGapOfItsLoopIsKnownBefore) {
 }
 
 // Each pair of configurations, with values that differ and that are equal.
-TEST_F(SlowPlanTest, IsSlowExactlyWhereATaskThatStaysUsesWhatChanges) {
+TEST_F(SlowPlanTest, IsSlowOnlyIfATaskThatStaysUsesAConstantThatChanges) {
   const auto found = [&](std::uint32_t from, std::uint32_t to) { return way(from, to, from).constant.task; };
   for (std::uint32_t from = 0; from < 4; ++from)
     for (std::uint32_t to = 0; to < 4; ++to) {
@@ -186,7 +186,7 @@ TEST_F(SlowPlanTest, IsSlowExactlyWhereATaskThatStaysUsesWhatChanges) {
 
 // After `bare` the constants of `light` or of `bare` are in force: arm was initialised with those of the first that
 // names it.
-TEST_F(SlowPlanTest, TheProducerOfTheSetInForceCountsElseThatOfTheFirstThatNamesTheUser) {
+TEST_F(SlowPlanTest, TheProducerIsOfTheSetInForceOrOfTheFirstSetOfTheUser) {
   const ConstantId mass{0u};
   EXPECT_EQ(producer_for(app.spec, mass, kArm, 0), 0u);
   EXPECT_EQ(producer_for(app.spec, mass, kArm, 1), 1u);

@@ -51,7 +51,7 @@ class StandbysTest : public ::testing::Test {
   Nanoseconds now_;
 };
 
-TEST_F(StandbysTest, NobodyTakesOverFromATaskThatIsOnOrTurnedOff) {
+TEST_F(StandbysTest, NoTakeoverWhenThePrimaryIsOnOrTurnedOff) {
   at(1);
   EXPECT_EQ(standbys_.n_groups(), 1u);
   EXPECT_FALSE(standbys_.next(0).is_valid());
@@ -86,7 +86,7 @@ TEST_F(StandbysTest, TheFirstOfTheDescriptionTakesOverAndCoversForOnePeriodOfIts
   EXPECT_FALSE(standbys_.is_replaced(kSecond));
 }
 
-TEST_F(StandbysTest, OneThatCouldNotGoOnIsPassedOver) {
+TEST_F(StandbysTest, SkipsAStandbyWhoseOnFailed) {
   at(1);
   fail(kPrimary, 2);
   standbys_.rule_out(kSecond);  // its on failed, and it is OFF again
@@ -95,7 +95,7 @@ TEST_F(StandbysTest, OneThatCouldNotGoOnIsPassedOver) {
   set(kFirst, State::kError);
   at(2);
   EXPECT_FALSE(standbys_.next(0).is_valid());
-  EXPECT_TRUE(standbys_.is_any_uncovered()) << "nobody is left: not after a period, but now";
+  EXPECT_TRUE(standbys_.is_any_uncovered()) << "no standby is left: uncovered now, not after a period";
   set(kPrimary, State::kOff);
   at(3);
   EXPECT_FALSE(standbys_.is_any_uncovered()) << "cleared";

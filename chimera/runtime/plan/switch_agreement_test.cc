@@ -50,7 +50,7 @@ TEST_F(SwitchAgreementTest, TheOrderArrivesAsItWasWritten) {
   EXPECT_FALSE(agreement.run(8));
 }
 
-TEST_F(SwitchAgreementTest, AnOrderThatDoesNotFitTheApplicationIsNone) {
+TEST_F(SwitchAgreementTest, RefusesAnOrderThatDoesNotFitTheApplication) {
   agreement.announce(some_order());
   EXPECT_FALSE(agreement.order(agreement.plan(), 1, 70)) << "there is no set 1";
   EXPECT_FALSE(agreement.order(agreement.plan(), 2, 66)) << "there is no task 66";
@@ -63,10 +63,10 @@ TEST_F(SwitchAgreementTest, AnOrderThatDoesNotFitTheApplicationIsNone) {
   agreement.announce(other);
   EXPECT_FALSE(agreement.order(agreement.plan(), 2, 70)) << "there is no task 70";
   agreement.announce(some_order(9, 0));
-  EXPECT_FALSE(agreement.order(agreement.plan(), 2, 70)) << "nobody takes part";
+  EXPECT_FALSE(agreement.order(agreement.plan(), 2, 70)) << "the order has no members";
 }
 
-TEST_F(SwitchAgreementTest, AnOrderWhoseTimesCannotBeAddedIsNone) {
+TEST_F(SwitchAgreementTest, RefusesAnOrderWhoseTimesOverflow) {
   for (const std::int64_t far : {INT64_MAX, INT64_MAX / 2, INT64_MIN, std::int64_t{-1}}) {
     SwitchOrder late = some_order(), early = some_order();
     late.until = {far};
@@ -124,7 +124,7 @@ TEST_F(SwitchAgreementTest, AnAbortEndsItBeforeTheCommit) {
 }
 
 // A context was delayed since the plan before.
-TEST_F(SwitchAgreementTest, WhoComesLateWithAnOlderPlanChangesNothing) {
+TEST_F(SwitchAgreementTest, AContextWithAnOlderPlanChangesNothing) {
   agreement.announce(some_order(3));
   EXPECT_TRUE(agreement.abort(3));
   agreement.announce(some_order(4));
@@ -164,8 +164,8 @@ TEST_F(SwitchAgreementTest, ASlowPlanCountsItsStepsForwardsAndBackAndCommitsAtOn
   EXPECT_FALSE(agreement.commit(8, kOrigin));
 }
 
-// Fault row 27, the stale plan after a restart: acts of plans before, any of them, between any two steps of the present
-// one, which is committed or aborted all the same.
+// Fault row 27, the stale plan after a restart: any acts of earlier plans come between any two steps of the present
+// plan, which is still committed or aborted.
 TEST_F(SwitchAgreementTest, AHundredThousandActsOfOlderPlansChangeNothing) {
   std::mt19937 random(27);
   int replays = 0;

@@ -74,7 +74,7 @@ struct Planned {
 
 std::vector<TaskId> listed(std::span<const TaskId> ids) { return {ids.begin(), ids.end()}; }
 
-TEST(SwitchPlan, SaysWhoArrivesLeavesAndStaysInTheOrdersOfTheDataFlow) {
+TEST(SwitchPlan, ListsArrivingLeavingAndStayingTasksByDataFlow) {
   Planned p;
   ASSERT_TRUE(p.make(1));
   EXPECT_EQ(p.plan.before, 0u);
@@ -100,7 +100,7 @@ TEST(SwitchPlan, NamesEveryVariableThatGetsAnotherProducer) {
   EXPECT_EQ(of("z").to, (PortOf{kObserver, 0}));
 }
 
-TEST(SwitchPlan, WhoLeavesWithoutASuccessorHandsNothingOver) {
+TEST(SwitchPlan, ATaskWithoutASuccessorHandsNothingOver) {
   Planned p;
   p.turn_on({kPlant, kObserver, kTwo});
   ASSERT_TRUE(p.make(2));
@@ -117,7 +117,7 @@ TEST(SwitchPlan, AnOnSetThatIsNoConfigurationIsLeftAsWell) {
   EXPECT_EQ(p.plan.arriving.size(), 3u);
 }
 
-TEST(SwitchPlan, WhatCannotBePlannedIsRefusedWithTheTask) {
+TEST(SwitchPlan, ARefusedPlanNamesTheTask) {
   Planned p;
   EXPECT_EQ(p.make(3).why, NoSwitch::kUnknownSet);
   EXPECT_EQ(p.make(0).why, NoSwitch::kNothingToDo);
@@ -211,7 +211,7 @@ TEST(SwitchPlanner, PlansForAnySetOfTasks) {
   EXPECT_EQ(planned.make(tasks_of(planned.app.spec, 0)).why, NoSwitch::kNothingToDo);
 }
 
-TEST(SwitchPlanner, OfTheTasksOfASetIsThePlanOfThatSet) {
+TEST(SwitchPlanner, ThePlanForTheTasksOfASetIsThePlanOfTheSet) {
   Planned planned;
   ASSERT_TRUE(planned.make(1u));
   const std::vector<TaskId> arriving(planned.plan.arriving.begin(), planned.plan.arriving.end());

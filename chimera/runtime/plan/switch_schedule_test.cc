@@ -48,7 +48,7 @@ struct Scene {
 
 constexpr TaskId kA{0u}, kB{1u}, kC{2u};
 
-TEST(SwitchSchedule, LikeForLikeMaySwitchAndWhatMeetsMayNot) {
+TEST(SwitchSchedule, AllowsLikeForLikeAndForbidsTasksThatMeet) {
   Scene scene({task(10, 8), task(10, 7), task(10, 8, 0, 9)}, {{kA}, {kB}, {kC}});
   EXPECT_TRUE(scene.judge(0, 1));
   EXPECT_TRUE(scene.judge(1, 0));
@@ -58,12 +58,12 @@ TEST(SwitchSchedule, LikeForLikeMaySwitchAndWhatMeetsMayNot) {
   EXPECT_FALSE(scene.judge(2, 0));
 }
 
-TEST(SwitchSchedule, OfAnotherCpuCountsNothingAndOfAnotherRtpuOfTheSameCpuAll) {
+TEST(SwitchSchedule, CountsTasksOfAllRtpusOnTheCpuAndNoOthers) {
   EXPECT_TRUE(Scene({task(10, 8), task(10, 8, 1, 9)}, {{kA}, {kB}}).judge(0, 1));
   EXPECT_FALSE(Scene({task(10, 8), task(10, 8, 2, 9)}, {{kA}, {kB}}).judge(0, 1));
 }
 
-TEST(SwitchSchedule, WhoMayMissLosesNothing) {
+TEST(SwitchSchedule, ATaskThatMayMissDoesNotForbidASwitch) {
   Scene scene({task(10, 8), task(10, 8, 0, 9)}, {{kA}, {kB}});
   for (TaskSpec& each : scene.tasks) each.on_miss = OnMiss::kAbort;
   EXPECT_TRUE(scene.judge(0, 1));
@@ -74,7 +74,7 @@ TEST(SwitchSchedule, WhoMayMissLosesNothing) {
   EXPECT_TRUE(scene.judge(0, 1));
 }
 
-TEST(SwitchSchedule, WhereNothingIsPromisedBeforeTheSwitchIsAllowed) {
+TEST(SwitchSchedule, AllowsASwitchOutOfAnOverload) {
   Scene scene({task(10, 8), task(10, 8), task(10, 8, 0, 9)}, {{kA, kB}, {kC}, {kA}});
   EXPECT_TRUE(scene.judge(0, 1));   // out of an overload
   EXPECT_FALSE(scene.judge(2, 0));  // into it
@@ -92,7 +92,7 @@ TEST(SwitchSchedule, AHotStandbyCountsBesideItsPrimaryAndAfterIt) {
   EXPECT_TRUE(scene.judge(0, 1));
 }
 
-TEST(SwitchSchedule, TellsOfACpuWhatWasConsidered) {
+TEST(SwitchSchedule, ReportsTheTasksThatItConsideredOnACpu) {
   Scene scene({task(10, 4), task(10, 0), task(20, 2, 1)}, {{kA, kC}, {kB, kC}});
   scene.standing[0].state = scene.standing[2].state = State::kOn;
   scene.schedule.consider(scene.standing, tasks_of(scene.spec, 1));

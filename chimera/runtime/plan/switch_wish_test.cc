@@ -13,7 +13,7 @@ TEST(SwitchWish, ComesBackFromItsWord) {
   EXPECT_FALSE(SwitchWish::of(0).is_there());
 }
 
-TEST(SwitchWish, HasAnotherNumberThanTheOneBefore) {
+TEST(SwitchWish, HasANewNumberEachTime) {
   SwitchWish wish;
   wish = wish.next({3, SwitchCause::kMiss, TaskId{7u}});
   EXPECT_EQ(wish, (SwitchWish{1, 3, 7, SwitchCause::kMiss}));
@@ -23,12 +23,12 @@ TEST(SwitchWish, HasAnotherNumberThanTheOneBefore) {
 
 TEST(SwitchWish, TheLastRequestStands) {
   EXPECT_TRUE(is_new_wish(false, false, false));
-  EXPECT_FALSE(is_new_wish(false, true, false)) << "it is in force, and nothing else is asked for";
+  EXPECT_FALSE(is_new_wish(false, true, false)) << "it is in force, and no other request is open";
   EXPECT_TRUE(is_new_wish(false, true, true)) << "it takes another one back";
   EXPECT_FALSE(is_new_wish(true, false, true)) << "it is asked for already";
 }
 
-TEST(SwitchWish, OfListsIsReadWhole) {
+TEST(SwitchWish, ARequestOfListsIsReadWhole) {
   SwitchWishWords words;
   EXPECT_FALSE(words.read().wish.is_there());
   SwitchRequest request{UINT32_MAX, SwitchCause::kRequest, TaskId{7u}};
@@ -45,7 +45,7 @@ TEST(SwitchWish, OfListsIsReadWhole) {
   EXPECT_EQ(words.wish().number, 2);
 }
 
-TEST(SwitchWish, IsDealtWithInOneIncarnation) {
+TEST(SwitchWish, IsHandledInOneIncarnation) {
   EXPECT_NE(wish_dealt_with(1, 3), wish_dealt_with(2, 3));
   EXPECT_NE(wish_dealt_with(1, 3), wish_dealt_with(1, 4));
   EXPECT_NE(wish_dealt_with(1, 3), 0u);

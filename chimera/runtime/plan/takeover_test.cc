@@ -16,7 +16,7 @@ Takeover takeover(std::uint32_t number, Nanoseconds ended) {
   return one;
 }
 
-TEST(TakeoverRing, GivesOutWhatIsOverOrOfADeadContext) {
+TEST(TakeoverRing, GivesOutTakeoversThatAreOverOrOfADeadContext) {
   TakeoverRing ring;
   Takeover read;
   EXPECT_FALSE(ring.read(1, false, read)) << "it has not begun";
@@ -53,11 +53,11 @@ TEST(TakeoverRing, TwoAtATimeMayBeOverInEitherOrder) {
   for (const std::uint32_t n : {1u, 2u}) EXPECT_TRUE(ring.read(n, true, read)) << n;
 }
 
-TEST(TakeoverRing, OneThatDiesWhileItWritesTheNextLeavesAllThatCanBeRead) {
+TEST(TakeoverRing, ADeathInAWriteKeepsTheOlderTakeovers) {
   TakeoverRing ring;
   for (std::uint32_t n = 1; n <= kKept + 1; ++n) ring.put(takeover(n, seconds(1)));
   const std::uint32_t oldest = ring.oldest();
-  std::uint32_t last;  // the word that is stored last stands first
+  std::uint32_t last;  // the first word, which is stored last
   std::memcpy(&last, static_cast<const void*>(&ring), sizeof last);
   ASSERT_EQ(last, kKept + 1);
   ring.put(takeover(kKept + 2, seconds(1)));
@@ -66,8 +66,8 @@ TEST(TakeoverRing, OneThatDiesWhileItWritesTheNextLeavesAllThatCanBeRead) {
   for (std::uint32_t n = oldest; n <= kKept + 1; ++n) EXPECT_TRUE(ring.read(n, false, read)) << n;
 }
 
-// A takeover that is kept no more has no place to be told anew in: that is a younger one's.
-TEST(TakeoverRing, OneThatIsOverTooLateLeavesTheYoungerOnes) {
+// A takeover that was overwritten cannot be stored again: its place belongs to a younger one.
+TEST(TakeoverRing, AnOverwrittenTakeoverKeepsTheYoungerOnes) {
   TakeoverRing ring;
   for (std::uint32_t n = 1; n <= kKept + 2; ++n) ring.put(takeover(n, n == 1 ? kNever : seconds(1)));
   ring.put(takeover(1, seconds(1)));

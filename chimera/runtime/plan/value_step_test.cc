@@ -52,7 +52,7 @@ TEST(ValueStep, EveryTypeOfNumberIsMeasured) {
   EXPECT_FALSE(step<char>(CHIMERA_STRING, {'a'}, {'b'}).is_known);
 }
 
-TEST(ValueStep, WhatIsNotANumberIsBeyondEveryLimit) {
+TEST(ValueStep, NotANumberIsBeyondEveryLimit) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const ValueStep found = step<double>(CHIMERA_FLOAT64, {0, 0, 0}, {9, nan, 1}, {10, 10, 10});
   EXPECT_TRUE(found.is_beyond);

@@ -27,7 +27,7 @@ struct EdgeAccessTest : testing::PreemptiveParts, ::testing::Test {
     testing::Idle::during_off = std::move(during);
     EXPECT_EQ(access().call(job(task).task, Method::kOff, at(0)), Answer::kOk);
   }
-  /// As the edge does.
+  /// Acts as an edge.
   void settle(std::uint32_t task, Nanoseconds now) { releases().settlement().settle_at_once(TaskId(task), now); }
 };
 
@@ -157,7 +157,7 @@ TEST_F(EdgeAccessTest, HoldsReleasesFromAnInstantOnUntilTheTaskIsLetGo) {
   EXPECT_EQ(job(1).release_end, at(100)) << "the run ends before";
 }
 
-TEST_F(EdgeAccessTest, ARunThatGoesOnKeepsWhatIsHeld) {
+TEST_F(EdgeAccessTest, ARunThatGoesOnKeepsHeldReleases) {
   access().open(at(100));
   access().hold_releases(at(30));
   access().let_release(TaskId(1u));
@@ -175,7 +175,7 @@ TEST_F(EdgeAccessTest, WakesAThreadWhoseReleaseCameWhileItWasHeld) {
   const std::uint32_t heard = job(0).heard();
   clock.time = at(29);
   access().let_release(TaskId(0u));
-  EXPECT_EQ(job(0).heard(), heard) << "its own alarm comes";
+  EXPECT_EQ(job(0).heard(), heard) << "its own alarm wakes it";
   access().hold_releases(at(30));
   clock.time = at(30);
   access().let_release(TaskId(0u));
@@ -194,11 +194,11 @@ TEST_F(EdgeAccessTest, AJobReleasedBeforeAnInstantIsUnderWayOrWaits) {
   EXPECT_TRUE(access().has_job_before(TaskId(0u), at(30)));
 }
 
-TEST_F(EdgeAccessTest, WhatIsAwaitedStaysAwaitedWhenTheTaskIsClaimed) {
+TEST_F(EdgeAccessTest, AnAwaitedJobStaysAwaitedWhenItsTaskIsClaimed) {
   access().await_job(TaskId(0u));
   EXPECT_TRUE(job(0).is_awaited);
   EXPECT_TRUE(access().claim(TaskId(0u)));
-  EXPECT_TRUE(job(0).is_awaited) << "the one who awaits is another than the one who claims";
+  EXPECT_TRUE(job(0).is_awaited) << "awaiting and claiming are independent";
 }
 
 }  // namespace

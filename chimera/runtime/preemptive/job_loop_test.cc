@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop ends itself out of the body of a job, or is asked to end by the test. Periods are of many seconds, so that
-// which releases have come does not depend on how fast the machine is.
+// The loop ends itself out of the body of a job, or is asked to end by the test. Periods are many seconds long, so that
+// the number of releases does not depend on the speed of the machine.
 #include "chimera/runtime/preemptive/job_loop.h"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ struct JobLoopTest : testing::PreemptiveParts, ::testing::Test {
     };
     loop->run(job(task), n_attached);
   }
-  /// The loop of the task has a thread of its own, which sleeps by now.
+  /// The loop of the task has its own thread, which sleeps now.
   void start_and_await_sleep(std::uint32_t task) {
     job(task).start([this, task] { loop->run(job(task), n_attached); });
     while (n_attached.load() == 0 || !is_asleep(job(task).thread())) std::this_thread::yield();
@@ -87,7 +87,7 @@ TEST_F(JobLoopTest, TakesTheNewestReleaseAndDropsTheOthers) {
   EXPECT_EQ(job(0).task.profile.dropped, 3u);
 }
 
-TEST_F(JobLoopTest, ForgetsWhatWasSaidOfTheJobBefore) {
+TEST_F(JobLoopTest, ForgetsTheStateOfTheJobBefore) {
   add("one", seconds(100));
   make_loop();
   job(0).next_release = now() - seconds(1);

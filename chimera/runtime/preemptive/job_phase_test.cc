@@ -71,7 +71,7 @@ TEST(JobPhaseDeathTest, EndsTheProgramAtEveryOtherMove) {
     }
 }
 
-TEST(JobPhase, BeginsAndIsClaimedWhenReadyAndElseStaysWhereItIs) {
+TEST(JobPhase, BeginsOrIsClaimedOnlyWhenReady) {
   for (const JobPhase::Value from : kPhases) {
     JobPhase begun, claimed;
     bring(begun, from);

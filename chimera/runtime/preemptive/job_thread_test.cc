@@ -20,7 +20,7 @@ class JobThreadTest : public ::testing::Test {
   Task task_;
 };
 
-TEST_F(JobThreadTest, CountsWhatItsThreadUsesFromTheBeginningOfTheJobOn) {
+TEST_F(JobThreadTest, CountsTheTimeOfItsThreadFromTheBeginOfTheJob) {
   JobThread job(task_);
   Nanoseconds used, passed;
   job.start([&] {
@@ -34,7 +34,7 @@ TEST_F(JobThreadTest, CountsWhatItsThreadUsesFromTheBeginningOfTheJobOn) {
     passed = used_by_this_thread() - before;
   });
   testing::join_and_await_end(job);
-  EXPECT_LE(used, passed) << "what came before is not the job's";
+  EXPECT_LE(used, passed) << "time before the job does not count";
   EXPECT_GE(job.used_before(), milliseconds(5));
   EXPECT_EQ(job.used(), Nanoseconds{}) << "the thread is gone";
 }
@@ -46,7 +46,7 @@ TEST_F(JobThreadTest, LosesNoWakeThatCameBeforeTheWait) {
   job.wait(heard, kNever);
 }
 
-// A job that is preempted between its begin and its first look at the clock began when it went on.
+// A job that is preempted between its begin and its first reading of the clock began when it continued.
 TEST_F(JobThreadTest, TheFirstSliceBeginsOnce) {
   JobThread job(task_);
   EXPECT_EQ(job.slice(), kNever);

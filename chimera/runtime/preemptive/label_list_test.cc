@@ -42,7 +42,7 @@ class Kernel {
   }
   void rekey(std::uint32_t task, const Urgency& urgency) { apply(list.rekey(TaskId(task), urgency)); }
 
-  // Which job the kernel would run: the highest level; "?" when two share it.
+  // Job that the kernel would run: the one at the highest level; "?" if two share it.
   std::string runs() const {
     std::int32_t top = 0;
     std::string who;
@@ -65,7 +65,7 @@ class Kernel {
     const auto jobs = list.jobs();
     ASSERT_EQ(jobs.size(), level_.size());
     for (std::size_t i = 0; i < jobs.size(); ++i) {
-      EXPECT_EQ(level_.at(jobs[i].task.index), jobs[i].level) << "the kernel was told";
+      EXPECT_EQ(level_.at(jobs[i].task.index), jobs[i].level) << "the kernel has the level of the list";
       EXPECT_LT(jobs[i].level, kCeiling);
       if (i < list.parked()) {
         EXPECT_EQ(jobs[i].level, kBase);
@@ -77,7 +77,7 @@ class Kernel {
       }
     }
     if (list.size() > 1) {
-      EXPECT_LE(list.parked(), list.size() - 1) << "whoever runs has a level of its own";
+      EXPECT_LE(list.parked(), list.size() - 1) << "the running job has a level of its own";
     }
   }
 
@@ -96,7 +96,7 @@ TEST(LabelList, TheMostUrgentJobHasTheHighestLevel) {
   EXPECT_EQ(k.runs(), "2");
 }
 
-TEST(LabelList, AFullTieKeepsTheJobThatRunsElseTheOrderOfTheTasksDecides) {
+TEST(LabelList, AFullTieKeepsTheRunningJobOrFollowsTheOrderOfTheTasks) {
   Kernel k(Policy::kEdf, 4);
   k.insert(job(2, 10));
   k.insert(job(1, 10));

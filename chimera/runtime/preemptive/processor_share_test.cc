@@ -36,7 +36,7 @@ class ProcessorShareTest : public ::testing::Test {
   std::array<Task, 3> tasks_;
 };
 
-TEST_F(ProcessorShareTest, KeepsForImportantTasksWhatTheirBudgetsSay) {
+TEST_F(ProcessorShareTest, KeepsTheBudgetsOfImportantTasksFree) {
   ProcessorShare s = share();
   EXPECT_EQ(s.left(kNow), milliseconds(600));
   run(s, kLess, kNow, milliseconds(250));
@@ -60,7 +60,7 @@ TEST_F(ProcessorShareTest, DemotesAnImportantOneOnlyWhenAllIsUsedUp) {
   ProcessorShare s = share();
   run(s, kImportant, kNow, milliseconds(900));
   const Nanoseconds now = kNow + milliseconds(900);
-  EXPECT_FALSE(s.may_demote(kImportant, false, true, now)) << "the most urgent one that kept to its budget goes on";
+  EXPECT_FALSE(s.may_demote(kImportant, false, true, now)) << "the most urgent job within its budget goes on";
   EXPECT_TRUE(s.may_demote(kImportant, true, true, now));
   EXPECT_TRUE(s.may_demote(kImportant, false, false, now));
 }

@@ -32,7 +32,7 @@ TEST_F(ReadyJobsTest, KeepsJobsInOrderOfUrgency) {
   EXPECT_EQ(ready().size(), 1u) << "it was not there";
 }
 
-TEST_F(ReadyJobsTest, TellsTheLevelOfTheJobThatIsInserted) {
+TEST_F(ReadyJobsTest, ReturnsTheLevelOfTheInsertedJob) {
   make_two();
   JobThread &slow = job(1), &fast = job(0);
   const int of_slow = ready().insert(slow, at(20), {}, &slow), of_fast = ready().insert(fast, at(10), {}, &fast);

@@ -72,7 +72,7 @@ TEST_F(ContextTapTest, WithoutATapDoesNothing) {
   EXPECT_TRUE(records().empty());
 }
 
-TEST_F(ContextTapTest, KeepsWhatHappensToABusyTaskUntilItIsFlushed) {
+TEST_F(ContextTapTest, KeepsRecordsOfABusyTaskUntilTheyAreFlushed) {
   ContextTap tap(tasks, &ring_tap, 0, true, heap);
   tasks[0].is_busy = true;
   tap.record(TapKind::kMiss, milliseconds(1), kFirst, 0);

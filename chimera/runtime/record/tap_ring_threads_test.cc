@@ -31,7 +31,7 @@ struct TapRings : ::testing::Test {
   std::unique_ptr<TapRing> ring = std::make_unique<TapRing>();
 };
 
-TEST_F(TapRings, GiveBackWhatWasAppendedInOrder) {
+TEST_F(TapRings, GiveBackRecordsInTheirOrder) {
   Tap tap(*ring);
   TapReader reader(*ring);
   for (std::uint64_t i = 0; i < 5; ++i) tap.append(numbered(i));
@@ -108,7 +108,7 @@ TEST_F(TapRings, RandomHeadsNeverLeadOutOfTheRingOrIntoALoop) {
   EXPECT_GT(n, 0u);
 }
 
-TEST_F(TapRings, AReaderWhoseWriterCountsBackGoesOnWithWhatIsWrittenNext) {
+TEST_F(TapRings, AReaderWhoseWriterCountsBackReadsTheNextRecord) {
   Tap tap(*ring);
   for (std::uint64_t i = 0; i < 9; ++i) tap.append(numbered(i));
   TapReader reader(*ring);

@@ -40,7 +40,7 @@ struct ConstantStoreTest : ::testing::Test {
   HeapMemory heap;
 };
 
-TEST_F(ConstantStoreTest, KnowsWhatTheDescriptionGives) {
+TEST_F(ConstantStoreTest, KnowsTheConstantsOfTheDescription) {
   const ConstantStore store(spec, heap);
   EXPECT_TRUE(store[kGiven].is_known);
   EXPECT_EQ(store.integer(kGiven, -1), 7);
@@ -50,7 +50,7 @@ TEST_F(ConstantStoreTest, KnowsWhatTheDescriptionGives) {
 
 TEST_F(ConstantStoreTest, HasRoomForTheLargestPort) { EXPECT_EQ(ConstantStore(spec, heap)[kMade].value.size(), 24u); }
 
-TEST_F(ConstantStoreTest, TellsWhetherAValueIsAnother) {
+TEST_F(ConstantStoreTest, ReportsWhetherAValueHasChanged) {
   ConstantStore store(spec, heap);
   const std::int64_t one[3] = {1, 2, 3}, other[3] = {1, 2, 4};
   EXPECT_TRUE(store.set(kMade, 0, bytes_of(one)));

@@ -103,7 +103,7 @@ TEST_F(ContextConstantsTest, AConstantGoesFromItsMakerToItsUsers) {
   EXPECT_EQ(seen_by_user(), 3);
 }
 
-TEST_F(ContextConstantsTest, KnowsWhoUsesAConstantThatHasChanged) {
+TEST_F(ContextConstantsTest, KnowsTheUsersOfAChangedConstant) {
   make();
   makes(3);
   ASSERT_TRUE(constants.collect(kMaker, why));
@@ -111,7 +111,7 @@ TEST_F(ContextConstantsTest, KnowsWhoUsesAConstantThatHasChanged) {
   ASSERT_TRUE(constants.give(kUser, why));
   EXPECT_FALSE(constants.uses_changed(kUser));
   ASSERT_TRUE(constants.collect(kMaker, why));
-  EXPECT_FALSE(constants.has_new()) << "made again with the same value";
+  EXPECT_FALSE(constants.has_new()) << "made again with an equal value";
   makes(4);
   ASSERT_TRUE(constants.collect(kMaker, why));
   EXPECT_TRUE(constants.has_new());

@@ -149,7 +149,7 @@ TEST_F(SwitchOrdersTest, LateSwitchIsNotTriedAfterItsDeadline) {
   EXPECT_FALSE(orders.make_next_try(present, NoSwitch::kLate, present.order.until));
 }
 
-TEST_F(SwitchOrdersTest, SwitchWithoutAGapGoesTheSlowWayOnce) {
+TEST_F(SwitchOrdersTest, ASwitchWithoutAGapIsRepeatedSlowlyOnce) {
   ask();
   abort(NoSwitch::kNoGap);
   const Nanoseconds now = kAsked + kSwitchPatience;

@@ -8,7 +8,7 @@
 namespace chimera::switch_record_test {
 namespace {
 
-TEST(StartDelays, TellsTheLongestOfAWindow) {
+TEST(StartDelays, ReportsTheLongestDelayOfAWindow) {
   HeapMemory memory;
   StartDelays delays;
   delays.prepare(2, memory);

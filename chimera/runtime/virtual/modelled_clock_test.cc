@@ -13,7 +13,7 @@ TaskSpec spec() {
   return s;
 }
 
-TEST(ModelledClock, StandsStillButForWhatIsSpent) {
+TEST(ModelledClock, AdvancesBySpentTimeOnly) {
   ModelledClock clock;
   clock.set(milliseconds(3));
   clock.spend(microseconds(7));
@@ -24,7 +24,7 @@ TEST(ModelledClock, StandsStillButForWhatIsSpent) {
 
 constexpr std::uint64_t kSeven = 7;
 
-TEST(ModelledTime, IsWhatTheBodySpentElseTheBudget) {
+TEST(ModelledTime, IsTheSpentTimeOrTheBudget) {
   EXPECT_EQ(modelled_time(spec(), TaskId(0u), {}, microseconds(5), true, nullptr), microseconds(5));
   EXPECT_EQ(modelled_time(spec(), TaskId(0u), {}, microseconds(5), true, &kSeven), microseconds(5));
   EXPECT_EQ(modelled_time(spec(), TaskId(0u), {}, {}, true, nullptr), microseconds(40));

@@ -94,7 +94,7 @@ TEST_F(SporadicTasksTest, TakesTheProcessorFromAJobWithoutCapacityUntilThereIsSo
   EXPECT_EQ(again.deadline, milliseconds(23));
 }
 
-TEST_F(SporadicTasksTest, AnswersOneEventAfterTheOther) {
+TEST_F(SporadicTasksTest, AnswersEventsInTurn) {
   events(2);
   sporadic->follow(milliseconds(3));
   dispatch(milliseconds(3));

@@ -81,7 +81,7 @@ TEST_F(VirtualPeersTest, PassesSignalsOnInOrderAsFarAsThereIsRoom) {
     EXPECT_TRUE(peers->post(Signal::kOff, kTaker, kMaker, false));
   EXPECT_FALSE(peers->post(Signal::kOff, kTaker, kMaker, false));
   peers->die(kOfMaker, {});
-  EXPECT_FALSE(peers->post(Signal::kOff, kMaker, kTaker, false)) << "nobody is there";
+  EXPECT_FALSE(peers->post(Signal::kOff, kMaker, kTaker, false)) << "the rtpu of the maker is dead";
 }
 
 TEST_F(VirtualPeersTest, AnOperatorVariableReachesItsReaders) {
@@ -148,7 +148,7 @@ struct VirtualReaderTest : VirtualPeersTest {
   }
 };
 
-TEST_F(VirtualReaderTest, AUserOfAConstantIsReinitialisedWhenItChangesElsewhere) {
+TEST_F(VirtualReaderTest, AUserOfAConstantIsReinitialisedWhenAnotherRtpuChangesIt) {
   app.add("numberer", testing::component<Numberer>("numberer"));
   app.add("user", testing::component<User>("user"));
   begin({signal_at(microseconds(2500), Signal::kReinit, TaskId(0u))});

@@ -35,7 +35,7 @@ class VirtualProcessorTest : public ::testing::Test, public testing::BareTasks {
   VirtualProcessor processor{context_tap, 2};
 };
 
-TEST_F(VirtualProcessorTest, CountsWhatTheJobUses) {
+TEST_F(VirtualProcessorTest, CountsTheTimeOfTheJob) {
   EXPECT_TRUE(processor.is_idle());
   EXPECT_FALSE(processor.running().is_valid());
   processor.give(kSecond, milliseconds(5));
@@ -69,7 +69,7 @@ TEST_F(VirtualProcessorTest, RecordsNoSliceWithoutTime) {
   EXPECT_EQ(slices(), "");
 }
 
-TEST_F(VirtualProcessorTest, ASliceThatIsRecordedInBetweenGoesOn) {
+TEST_F(VirtualProcessorTest, ASliceContinuesAfterItIsRecorded) {
   processor.give(kFirst, milliseconds(1));
   (void)processor.use(milliseconds(2));
   processor.record_slice();
@@ -79,7 +79,7 @@ TEST_F(VirtualProcessorTest, ASliceThatIsRecordedInBetweenGoesOn) {
   EXPECT_EQ(slices(), "0 1 1\n0 2 2\n");
 }
 
-TEST_F(VirtualProcessorTest, WhatSomethingElseUsesInBetweenIsNotTheJobs) {
+TEST_F(VirtualProcessorTest, DoesNotCountTimeBetweenTheSlicesOfAJob) {
   processor.give(kFirst, milliseconds(1));
   (void)processor.use(milliseconds(2));
   processor.record_slice();

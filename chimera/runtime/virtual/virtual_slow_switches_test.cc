@@ -61,11 +61,11 @@ TEST_P(VirtualSlowSwitches, TheStepFromATaskOfAnotherRtpuIsFromItsLastCycle) {
   const SwitchReceipt& receipt = rtpus->receipts()[0];
   ASSERT_EQ(receipt.end, SwitchEnd::kDone) << static_cast<int>(receipt.why);
   ASSERT_EQ(receipt.variables.size(), 1u);
-  EXPECT_EQ(receipt.variables[0].step_of_on.size, 0) << "heavy takes over what light wrote last";
+  EXPECT_EQ(receipt.variables[0].step_of_on.size, 0) << "heavy takes over the last value of light";
   EXPECT_EQ(receipt.variables[0].usual.size, 1);
 }
 
-TEST_P(VirtualSlowSwitches, WhatFailsOnOneRtpuIsUndoneOnBoth) {
+TEST_P(VirtualSlowSwitches, AFailureOnOneRtpuIsUndoneOnBoth) {
   shop.fails = "on heavy";
   const auto receipts = go(milliseconds(40), {act_at(milliseconds(5), ScriptAct::Kind::kSwitch, 1)});
   ASSERT_EQ(receipts[0].end, SwitchEnd::kAborted);
@@ -81,7 +81,7 @@ TEST_P(VirtualSlowSwitches, WhatFailsOnOneRtpuIsUndoneOnBoth) {
 }
 
 // The second rtpu dies at each tenth of a millisecond of the switch: living rtpus end with the constants of one side.
-TEST_P(VirtualSlowSwitches, WhoeverDiesWhoLivesComesToOneSide) {
+TEST_P(VirtualSlowSwitches, LivingRtpusAgreeOnOneSideWhenTheOtherDies) {
   for (std::int64_t us = 0; us < 5000; us += 100) {
     shop = {};
     const auto receipts = go(milliseconds(20), {act_at(milliseconds(5), ScriptAct::Kind::kSwitch, 1),
@@ -91,7 +91,7 @@ TEST_P(VirtualSlowSwitches, WhoeverDiesWhoLivesComesToOneSide) {
     EXPECT_TRUE(is_done || receipts[0].why == NoSwitch::kMemberDied) << us;
     EXPECT_EQ(shop.weighed.back(), is_done ? 3 : 1) << us;
     EXPECT_EQ(rtpus->state(kArm), State::kOn);
-    EXPECT_TRUE(rtpus->peers().is_flag_up()) << "nobody produces grip";
+    EXPECT_TRUE(rtpus->peers().is_flag_up()) << "no task produces grip";
     EXPECT_FALSE(rtpus->set(0).flag().is_held());
   }
 }

@@ -90,7 +90,7 @@ struct VirtualStandbysTest : ::testing::TestWithParam<bool> {
 INSTANTIATE_TEST_SUITE_P(All, VirtualStandbysTest, ::testing::Bool(),
                          [](const auto& one) { return one.param ? "Preemptive" : "Executive"; });
 
-TEST_P(VirtualStandbysTest, TakeOverFromATaskThatFailsElsewhere) {
+TEST_P(VirtualStandbysTest, TakeOverFromATaskThatFailsInAnotherRtpu) {
   scene.fails_at = milliseconds(4).count;
   go(milliseconds(8));
   EXPECT_EQ(state(kPrimary), State::kError);
@@ -134,7 +134,7 @@ TEST_P(VirtualStandbysTest, TheNextOneTakesOverWhenTheFirstIsDeadOrFails) {
   go(milliseconds(10), {death_at(microseconds(3500), 0)});
   EXPECT_EQ(state(kSpare), State::kError);
   EXPECT_EQ(state(kLast), State::kError);
-  EXPECT_EQ(scene.illegal.front(), milliseconds(4).count) << "nobody is left: at once";
+  EXPECT_EQ(scene.illegal.front(), milliseconds(4).count) << "no standby is left: at once";
 }
 
 TEST_P(VirtualStandbysTest, WithoutAFitOneTheFlagIsUpAtOnce) {
@@ -143,12 +143,12 @@ TEST_P(VirtualStandbysTest, WithoutAFitOneTheFlagIsUpAtOnce) {
   EXPECT_EQ(scene.illegal.front(), milliseconds(4).count) << "no standby that is fit is left";
 }
 
-TEST_P(VirtualStandbysTest, TakeOverAlsoWhereWhatTheyReadFailedWithThePrimary) {
+TEST_P(VirtualStandbysTest, TakeOverThoughTheirInputFailedWithThePrimary) {
   source_rtpu = 0;
   go(milliseconds(8), {death_at(microseconds(3500), 0)});
   EXPECT_EQ(state(kSpare), State::kOn);
   EXPECT_EQ(scene.u, (std::vector<double>{0, 1, 2, 3, 4, 104, 204, 304}));
-  EXPECT_EQ(scene.illegal.front(), milliseconds(4).count) << "nobody produces x";
+  EXPECT_EQ(scene.illegal.front(), milliseconds(4).count) << "no task produces x";
 }
 
 TEST_P(VirtualStandbysTest, APrimaryThatPublishesNothingForTooLongIsKilledAndThenReplaced) {
@@ -160,11 +160,11 @@ TEST_P(VirtualStandbysTest, APrimaryThatPublishesNothingForTooLongIsKilledAndThe
   EXPECT_EQ(rtpus->peers().died(RtpuId(0u)) - rtpus->rtpus().origin(), milliseconds(7));
   EXPECT_EQ(state(kSpare), State::kOn);
   EXPECT_EQ(scene.illegal, std::vector<std::int64_t>{});
-  // Published last at 3 ms, with the cycle released then: that is older than 3 ms with the look at 7 ms, which kills.
+  // The last publication is from the cycle of 3 ms: it is older than 3 ms at the check of 7 ms, which kills the rtpu.
   EXPECT_EQ(scene.u, (std::vector<double>{0, 1, 2, 3, 4, 4, 4, 4, 104, 204, 304}));
 }
 
-TEST_P(VirtualStandbysTest, APrimaryThatIsSilentIsLeftAloneWhileNobodyCouldTakeOver) {
+TEST_P(VirtualStandbysTest, LeavesASilentPrimaryAloneWhenItsStandbyIsDead) {
   pairs = {{kPrimary, kSpare, milliseconds(3), false}};
   scene.hangs_at = milliseconds(4).count;
   go(milliseconds(11), {death_at(microseconds(500), 2)});

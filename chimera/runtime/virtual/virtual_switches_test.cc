@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A switch over several rtpus in virtual time: no cycle is lost, who stays is not touched.
+// A switch over several rtpus in virtual time: no cycle is lost, and tasks that stay are not disturbed.
 #include "chimera/runtime/virtual/virtual_switches.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST_P(VirtualSwitchesTest, TwoRtpusChangeAtOneInstant) {
   EXPECT_EQ(rtpus->lost(), 0u);
 }
 
-TEST_P(VirtualSwitchesTest, WhoStaysSeesNothingOfAThousandSwitches) {
+TEST_P(VirtualSwitchesTest, AThousandSwitchesDoNotDisturbTasksThatStay) {
   std::vector<ScriptAct> acts;
   std::mt19937 random(3);
   Nanoseconds at = milliseconds(10);
@@ -125,7 +125,7 @@ TEST_P(VirtualSwitchesTest, ATaskOfEitherRtpuAsksForTasks) {
   EXPECT_EQ(rtpus->lost(), 0u);
 }
 
-TEST_P(VirtualSwitchesTest, OfTheWishesThatComeMeanwhileTheLastIsTakenNext) {
+TEST_P(VirtualSwitchesTest, ALaterRequestForTheRunningSwitchTakesBackAnEarlierOne) {
   scene.in_plant = [](Cycle c) {
     if (c.count() == 6) c.request("beside");  // under way: observed
   };
@@ -135,12 +135,12 @@ TEST_P(VirtualSwitchesTest, OfTheWishesThatComeMeanwhileTheLastIsTakenNext) {
   };
   ScriptAct first = act_at(microseconds(5950), ScriptAct::Kind::kSwitch, kObserved);
   const auto receipts = go(milliseconds(30), {first});
-  ASSERT_EQ(receipts.size(), 1u) << "the wish of the second rtpu, for what is under way, takes that of the first back";
+  ASSERT_EQ(receipts.size(), 1u) << "the request of the second rtpu for the running switch replaces that of the first";
   EXPECT_TRUE(rtpus->are_on(kSets[kObserved]));
 }
 
-// One that chatters in each cycle, of which the receipts that there is room for are kept.
-TEST_P(VirtualSwitchesTest, WhoAsksAllTheTimeFillsNothing) {
+// Two tasks request a switch in each cycle. Receipts are kept while there is room.
+TEST_P(VirtualSwitchesTest, RequestsInEveryCycleFillNoMemory) {
   scene.in_reader = [](Cycle c) { c.request(c.count() % 10 < 5 ? "observed" : "beside"); };
   scene.in_plant = [](Cycle c) { c.request(c.count() % 10 < 5 ? "observed" : "beside"); };
   const auto receipts = go(seconds(1));
@@ -150,7 +150,7 @@ TEST_P(VirtualSwitchesTest, WhoAsksAllTheTimeFillsNothing) {
   EXPECT_EQ(rtpus->lost(), 0u);
 }
 
-TEST_P(VirtualSwitchesTest, ARequestForWhatIsInForceOrNotThereLeavesNoReceipt) {
+TEST_P(VirtualSwitchesTest, ARequestForTheSetInForceOrAnUnknownSetLeavesNoReceipt) {
   scene.in_reader = [](Cycle c) {
     if (c.count() == 5) c.request("nowhere");
     if (c.count() == 6) c.request("direct");
@@ -160,7 +160,7 @@ TEST_P(VirtualSwitchesTest, ARequestForWhatIsInForceOrNotThereLeavesNoReceipt) {
   EXPECT_EQ(rtpus->set(1).tasks()[kReader.index].requests_refused, 1);
 }
 
-TEST_P(VirtualSwitchesTest, WhatFailsOnOneRtpuIsUndoneOnTheOther) {
+TEST_P(VirtualSwitchesTest, AFailureOnOneRtpuIsUndoneOnTheOther) {
   scene.on_of_two_fails = true;
   const auto receipts = go(milliseconds(30), {act_at(microseconds(5600), ScriptAct::Kind::kSwitch, kObserved)});
   EXPECT_EQ(receipts[0].end, SwitchEnd::kAborted);

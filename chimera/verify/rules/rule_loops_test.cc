@@ -197,7 +197,7 @@ TEST(RuleLoops, OrdersRandomGraphsAsThePlainRuleDoes) {
   EXPECT_GT(cuts, 100u) << "hardly a graph has a loop: the test says little";
 }
 
-TEST(RuleLoops, TellsEachLoopWithoutInitialValueOnce) {
+TEST(RuleLoops, NamesEachLoopWithoutInitialValueOnce) {
   const unsigned seed = 20261123;
   std::mt19937 random(seed);
   std::size_t told = 0;
