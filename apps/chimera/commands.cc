@@ -14,13 +14,9 @@ namespace {
 const std::vector<FileCommand>& file_commands() {
   static const std::vector<FileCommand> kRows = {
       check_row(),    schedule_row(), run_row(), idle_row(),          attend_row(),          sweep_row(), list_row(),
-      describe_row(), test_row(),     new_row(), new_component_row(), new_application_row(), pages_row()};
+      describe_row(), test_row(),     new_row(), new_component_row(), new_application_row(), pages_row(), version_row(),
+      shell_row()};
   return kRows;
-}
-
-const FileCommand& the_shell() {
-  static const FileCommand kRow = shell_row();
-  return kRow;
 }
 
 }  // namespace
@@ -29,15 +25,14 @@ cli::Table all_commands() {
   static const std::vector<const cli::Command*> kTable = [] {
     std::vector<const cli::Command*> table;
     for (const FileCommand& row : file_commands()) table.push_back(&row.words);
-    for (const cli::RunningCommand& row : cli::running_commands()) table.push_back(&row.words);
-    table.push_back(&the_shell().words);  // which takes those before it
+    for (const cli::RunningCommand& row : cli::running_commands())
+      table.insert(table.end() - 1, &row.words);  // before the shell, which carries them out
     return table;
   }();
   return kTable;
 }
 
 int carry_out(const cli::Call& call, const cli::Workplace& workplace) {
-  if (call.command == &the_shell().words) return the_shell().carry_out(call, workplace);
   for (const FileCommand& row : file_commands())
     if (&row.words == call.command) return row.carry_out(call, workplace);
   return cli::carry_out({call.value("--subsystem"), workplace.unit_files}, call, stdout, stderr);

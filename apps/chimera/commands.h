@@ -30,6 +30,7 @@ FileCommand attend_row();
 FileCommand sweep_row();
 FileCommand shell_row();
 FileCommand pages_row();
+FileCommand version_row();
 
 /// All rows in the order of `chimera --help`.
 chimera::cli::Table all_commands();

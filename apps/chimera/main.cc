@@ -3,15 +3,15 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <system_error>
 
-#include "apps/chimera/command_line.h"
 #include "apps/chimera/commands.h"
-#include "chimera/cli/command/command_result.h"
+#include "apps/chimera/option_values.h"
 #include "chimera/cli/files/file_refusal.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/platform/standard_streams.h"
@@ -45,13 +45,29 @@ bool memory_is_limited() {
   ::_exit(cli::kRefused);
 }
 
+std::string help_of_program(const std::string& documents) {
+  return "Real-time control software assembled from components: check it, run it, look at it.\n"
+         "Usage: chimera [OPTIONS] COMMAND\n\n"
+         "Options:\n"
+         "  -h,--help                   Print this help and exit\n"
+         "  --version                   Print the version and exit\n"
+         "  --json                      as behind a command that has it\n"
+         "  --subsystem NAME            as behind a command on a running subsystem\n\n"
+         "Commands:\n" +
+         cli::help_text(all_commands(), nullptr, "chimera") +
+         "\n`chimera COMMAND --help` has an example. Documents and examples: " + documents + "\n";
+}
+
 int run_program(int argc, char** argv) {
   const cli::Workplace workplace = cli::Workplace::around(cli::program_path());
-  CommandLine line(all_commands(), workplace.documents);
-  const auto call = line.read(argc, argv);
-  if (!call) return line.exit_code();
-  if (call->command->outlives_reader) std::signal(SIGPIPE, SIG_IGN);  // seen as a failed write
-  return carry_out(*call, workplace);
+  const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  const cli::CallReading reading = cli::read_call(all_commands(), words, "chimera");
+  const cli::Command* command = reading.call.command;
+  if (!reading.fault.empty()) return print({"", reading.fault, cli::kUsage});
+  if (reading.is_help && command == nullptr) return print({help_of_program(workplace.documents), "", cli::kOk});
+  if (reading.is_help) return print({cli::help_text(all_commands(), command, "chimera"), "", cli::kOk});
+  if (command->outlives_reader) std::signal(SIGPIPE, SIG_IGN);  // seen as a failed write
+  return carry_out(reading.call, workplace);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `chimera shell`, and the hidden command `pages` that the build calls.
+// `chimera shell`, the hidden command `pages` that the build calls, and `--version`, which is read as a command.
 #include <cstdio>
 
 #include "apps/chimera/commands.h"
@@ -66,4 +66,9 @@ FileCommand pages_row() {
                     .json = nullptr,
                     .is_hidden = true},
           .carry_out = pages};
+}
+
+FileCommand version_row() {
+  return {.words = {.name = "--version", .help = "Print the version", .json = "", .is_hidden = true},
+          .carry_out = [](const Call&, const cli::Workplace&) { return print({CHIMERA_VERSION "\n", "", cli::kOk}); }};
 }

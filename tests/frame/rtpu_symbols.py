@@ -4,7 +4,7 @@ that the look finds them where they are."""
 import subprocess
 import sys
 
-UNWANTED = ("YAML::", "nlohmann::", "boost::beast", "ut_parse", "CLI::")
+UNWANTED = ("YAML::", "nlohmann::", "boost::beast", "ut_parse")
 
 
 def found(program):

@@ -21,7 +21,7 @@ def said_by_help(program, words=()):
     """Maps "" and every command ("new component") to its options and subcommands in `--help`."""
     text = help_of(program, words)
     options = set(re.findall(r"^\s+(?:-\w,\s*)?(--[a-z-]+)", text, re.MULTILINE))
-    heading = re.search(r"^SUBCOMMANDS:\n|^Subcommands:\n", text, re.MULTILINE | re.IGNORECASE)
+    heading = re.search(r"^Commands:\n", text, re.MULTILINE)
     commands = re.findall(r"^  ([a-z]+)\b", text[heading.end():], re.MULTILINE) if heading else []
     said = {" ".join(words): options | set(commands)}
     for command in commands:

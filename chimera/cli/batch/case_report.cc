@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "chimera/cli/run/run_verdict.h"
 #include "chimera/draw/svg_text.h"
 #include "chimera/text/json_text.h"
 
@@ -13,12 +14,6 @@ namespace {
 using draw::escaped;
 
 std::string said_by(const RunReport::Judged& judged) { return judged.text + " (" + judged.said + ")"; }
-
-std::string seconds_text(Nanoseconds time) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f", to_seconds(time));
-  return text;
-}
 
 std::string count_text(std::size_t n, const char* noun) { return std::to_string(n) + " " + noun + (n == 1 ? "" : "s"); }
 

@@ -112,7 +112,6 @@ class Measuring {
 
   MeasuredRun run() {
     RunOptions options;
-    options.policy = followed_rtpu(plan_.configuration, true).policy;
     options.script = Script(plan_.acts);
     options.asked = &asked_;
     loop_ = make_virtual_loop(application_, request_.run, options);

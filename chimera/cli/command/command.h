@@ -74,7 +74,7 @@ struct Command {
   bool outlives_reader = false;  ///< goes on when its output has no reader; the others end by SIGPIPE, as `cat` does
 };
 
-/// A command as the user gave it, however it was typed.
+/// A command as the user gave it.
 struct Call {
   const Command* command = nullptr;
   std::vector<std::string> operands;
@@ -98,14 +98,28 @@ using Table = std::span<const Command* const>;
 /// nullptr when there is none of that name.
 const Command* command_named(Table table, std::string_view name);
 
-/// Reads the words of a line of the shell. Refuses, saying what is wrong and the nearest name: an unknown command or
-/// option, an option without its value, too few or too many operands. Requires: at least one word.
-Result<Call> read_call(Table table, const std::vector<std::string>& words);
+/// The commands of `above` that help shows, in order; of the program if `above` is "". The name of one ends with
+/// last_word() of it.
+std::vector<const Command*> commands_of(Table table, std::string_view above);
+std::string_view last_word(std::string_view name);
+/// --help, the options of the row, --json and --subsystem, as far as the command has them.
+std::vector<Option> options_of(const Command& command);
+
+/// A command line that was read.
+struct CallReading {
+  Call call;             ///< its command is null if the words name none
+  bool is_help = false;  ///< the help of the command, or of the program without one
+  std::string fault;     ///< lines that say what is wrong and what to type; "": nothing is wrong
+};
+
+/// Reads the words of a command line. `program` is "chimera"; or "" in the shell, where a command has no --subsystem
+/// and no option stands before it.
+CallReading read_call(Table table, std::span<const std::string> words, std::string_view program);
 
 /// `call` as it is typed at a command line: "chimera set kp '[100 90] N.m/rad'".
 std::string command_line(const Call& call);
 
-/// The output of `help` of the shell: a line for each command, or more lines of one; "" when no command has that name.
-std::string help_text(Table table, std::string_view command = {});
+/// The help of a command; of nullptr a line for each command. `program` as in read_call().
+std::string help_text(Table table, const Command* command, std::string_view program);
 
 }  // namespace chimera::cli

@@ -36,23 +36,16 @@ std::string sentence(std::string text) {
   return text.ends_with('.') ? text : text + ".";
 }
 
-std::string option_of_manual(const std::string& name, const char* value, const std::string& text) {
-  const std::string head = value == nullptr ? ".B " + roff(name) : ".BI " + roff(name) + " \" " + value + "\"";
-  return ".TP\n" + head + "\n" + roff(text) + "\n";
+std::string option_of_manual(const Option& option) {
+  const std::string name = roff(option.name);
+  const std::string head = option.value == nullptr ? ".B " + name : ".BI " + name + " \" " + option.value + "\"";
+  return ".TP\n" + head + "\n" + roff(option.manual == nullptr ? sentence(option.help) : option.manual) + "\n";
 }
 
 std::string section(const Command& row) {
   std::string text = std::string(".SS ") + row.name + "\n";
   text += roff(row.manual == nullptr ? sentence(row.help) : row.manual) + "\n";
-  text += option_of_manual("--help", nullptr, "The usage of this command.");
-  for (const Option& option : row.options)
-    text +=
-        option_of_manual(option.name, option.value, option.manual == nullptr ? sentence(option.help) : option.manual);
-  const bool is_on_subsystem = row.which != nullptr;
-  if (row.json != nullptr)
-    text += option_of_manual(
-        "--json", nullptr, is_on_subsystem ? "The raw answer, as docs/formats/control.md has it." : sentence(row.json));
-  if (is_on_subsystem) text += option_of_manual("--subsystem", "NAME", sentence(row.which));
+  for (const Option& option : options_of(row)) text += option_of_manual(option);
   return text;
 }
 
@@ -86,25 +79,18 @@ std::string sections(const Visible& rows) {
   return text;
 }
 
-/// The names of the commands of `parent` ("": of the program), each behind a blank.
-std::string names_of(const Visible& rows, const std::string& parent) {
+/// The names of the commands of `above`, each behind a blank.
+std::string names_of(const Visible& rows, std::string_view above) {
   std::string names;
-  for (const Command* row : rows) {
-    const std::string name = row->name;
-    const std::size_t blank = name.find(' ');
-    const std::string above = blank == std::string::npos ? "" : name.substr(0, blank);
-    if (above == parent) names += " " + (above.empty() ? name : name.substr(blank + 1));
-  }
+  for (const Command* row : commands_of(rows, above)) names += " " + std::string(last_word(row->name));
   return names;
 }
 
 std::string words(const Visible& rows) {
   std::string text = "    '') echo '--help --version --json --subsystem" + names_of(rows, "") + "' ;;\n";
   for (const Command* row : rows) {
-    text += std::string("    '") + row->name + "') echo '--help";
-    if (row->json != nullptr) text += " --json";
-    if (row->which != nullptr) text += " --subsystem";
-    for (const Option& option : row->options) text += std::string(" ") + option.name;
+    text += std::string("    '") + row->name + "') echo '";
+    for (const Option& option : options_of(*row)) text += (text.ends_with('\'') ? "" : " ") + std::string(option.name);
     if (row->has_commands) text += names_of(rows, row->name);
     text += "' ;;\n";
   }
@@ -150,9 +136,8 @@ std::string takes(const Visible& rows) {
     const std::string name = row->name;
     if (row->has_commands) text += branch(name, "command");
     if (row->most > 0) text += branch(name, completer(row->operand_kind, row->operand_words));
-    for (const Option& option : row->options)
+    for (const Option& option : options_of(*row))
       if (option.value != nullptr) text += branch(name + " " + option.name, completer(option.kind, option.words));
-    if (row->which != nullptr) text += branch(name + " --subsystem", "text");
   }
   return text;
 }

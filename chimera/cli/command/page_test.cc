@@ -64,7 +64,7 @@ TEST(Page, WordsOfEveryCommandButHiddenOnes) {
             "    '') echo '--help --version --json --subsystem new draw' ;;\n"
             "    'new') echo '--help app' ;;\n"
             "    'new app') echo '--help' ;;\n"
-            "    'draw') echo '--help --json --subsystem --as --fast --to' ;;\n");
+            "    'draw') echo '--help --as --fast --to --json --subsystem' ;;\n");
 }
 
 TEST(Page, EveryOperandAndOptionNamesItsKindOfValue) {

@@ -14,47 +14,52 @@
 namespace chimera::cli {
 namespace {
 
-Result<Call> read_call(const std::vector<std::string>& words) { return cli::read_call(shell_words(), words); }
-std::string help_text(std::string_view name = {}) { return cli::help_text(shell_words(), name); }
+Call read_call(const std::vector<std::string>& words) { return cli::read_call(shell_words(), words, "").call; }
+std::string help_text(std::string_view name = {}) {
+  return cli::help_text(shell_words(), command_named(shell_words(), name), "");
+}
 
+/// The first line of what is wrong.
 std::string refusal(const std::vector<std::string>& words) {
-  const auto call = read_call(words);
-  return call ? "none" : std::string(call.error().message.view());
+  const std::string fault = cli::read_call(shell_words(), words, "").fault;
+  return fault.substr(0, fault.find('\n'));
 }
 
 TEST(Command, OperandsAndOptionsComeInAnyOrder) {
-  const auto call = read_call({"scope", "--for", "1 s", "q", "--json", "tau", "--csv", "a.csv"});
-  ASSERT_TRUE(call);
-  EXPECT_EQ(call->operands, (std::vector<std::string>{"q", "tau"}));
-  EXPECT_EQ(call->value("--for"), "1 s");
-  EXPECT_EQ(call->value("--svg"), "");
-  EXPECT_TRUE(call->has("--csv"));
-  EXPECT_TRUE(call->json);
+  const Call call = read_call({"scope", "--for", "1 s", "q", "--json", "tau", "--csv", "a.csv"});
+  EXPECT_EQ(call.operands, (std::vector<std::string>{"q", "tau"}));
+  EXPECT_EQ(call.value("--for"), "1 s");
+  EXPECT_EQ(call.value("--svg"), "");
+  EXPECT_TRUE(call.has("--csv"));
+  EXPECT_TRUE(call.json);
 }
 
 TEST(Command, RefusesWithTheNearestName) {
   EXPECT_EQ(refusal({"statsu"}), "no command 'statsu'; did you mean 'status'?; `help` lists them");
   EXPECT_EQ(refusal({"events", "--sinc", "3"}), "events has no option '--sinc'; did you mean '--since'?");
   EXPECT_EQ(refusal({"events", "--since"}), "--since needs a value: N");
-  EXPECT_EQ(refusal({"why"}), "usage: why VAR");
-  EXPECT_EQ(refusal({"status", "x"}), "usage: status [--pid RTPU]");
-  EXPECT_EQ(refusal({"get"}), "none");
+  EXPECT_EQ(refusal({"why"}), "VAR is required");
+  EXPECT_EQ(refusal({"status", "x"}), "'x' is one word too many");
+  EXPECT_EQ(refusal({"status", "--subsystem", "x"}), "status has no option '--subsystem'");
+  EXPECT_EQ(refusal({"get"}), "");
+  EXPECT_EQ(cli::read_call(shell_words(), std::vector<std::string>{"why"}, "").fault,
+            "VAR is required\nExample: chimera why tau\n`why --help` says more\n");
 }
 
 TEST(Command, IsTypedAgainAsItWasGiven) {
-  const auto call = read_call({"scope", "q[0]", "--for", "1 s", "--json", "--csv", "a.csv"});
-  EXPECT_EQ(cli::command_line(*call), "chimera scope 'q[0]' --csv a.csv --for '1 s' --json");
-  EXPECT_EQ(cli::command_line(*read_call({"set", "kp", "it's"})), "chimera set kp 'it'\\''s'");
+  const Call call = read_call({"scope", "q[0]", "--for", "1 s", "--json", "--csv", "a.csv"});
+  EXPECT_EQ(cli::command_line(call), "chimera scope 'q[0]' --csv a.csv --for '1 s' --json");
+  EXPECT_EQ(cli::command_line(read_call({"set", "kp", "it's"})), "chimera set kp 'it'\\''s'");
 }
 
 TEST(Command, ACommandWithAnEffectIsAnAct) {
-  EXPECT_TRUE(read_call({"off", "pid"})->is_act());
-  EXPECT_TRUE(read_call({"end"})->is_act());
-  EXPECT_TRUE(read_call({"save", "--write"})->is_act());
-  EXPECT_TRUE(read_call({"status", "--pid", "servo"})->is_act()) << "its user signals the process";
-  EXPECT_FALSE(read_call({"save"})->is_act());
-  EXPECT_FALSE(read_call({"status"})->is_act());
-  EXPECT_FALSE(read_call({"get", "q"})->is_act());
+  EXPECT_TRUE(read_call({"off", "pid"}).is_act());
+  EXPECT_TRUE(read_call({"end"}).is_act());
+  EXPECT_TRUE(read_call({"save", "--write"}).is_act());
+  EXPECT_TRUE(read_call({"status", "--pid", "servo"}).is_act()) << "its user signals the process";
+  EXPECT_FALSE(read_call({"save"}).is_act());
+  EXPECT_FALSE(read_call({"status"}).is_act());
+  EXPECT_FALSE(read_call({"get", "q"}).is_act());
 }
 
 TEST(Command, TheTableIsInOrderAndComplete) {
@@ -105,17 +110,18 @@ TEST(Command, ControlMdNamesEveryMethodAndEveryAct) {
 
 TEST(Command, HelpPrintsUsageOptionsAndAnExample) {
   EXPECT_EQ(help_text("events"),
-            "events [--since N] [--kind KIND,...] [--each] [--follow]\n"
-            "  Print the events of the subsystem, numbered without a gap\n"
-            "  --since N         events from this number on\n"
-            "  --kind KIND,...   only these, such as 'set,fault'\n"
-            "  --each            a line for every event; else misses within 100 ms of each other are one\n"
-            "  --follow          print new events as they happen, until Ctrl-C\n"
-            "  Example: chimera events --follow\n");
-  EXPECT_EQ(help_text("nonsense"), "");
-  EXPECT_NE(help_text("top").find("INPUT: age of the\n  oldest input\n  Example: chimera top\n"), std::string::npos);
-  EXPECT_NE(help_text().find("why VAR           Tell where a value comes from, and what is wrong with it\n"),
-            std::string::npos);
+            "Print the events of the subsystem, numbered without a gap\n"
+            "Usage: events [OPTIONS]\n\n"
+            "Options:\n"
+            "  -h,--help                   Print this help and exit\n"
+            "  --since N                   events from this number on\n"
+            "  --kind KIND,...             only these, such as 'set,fault'\n"
+            "  --each                      a line for every event; else misses within 100 ms of each other are one\n"
+            "  --follow                    print new events as they happen, until Ctrl-C\n"
+            "  --json                      the raw answer\n\n"
+            "Example: chimera events --follow\n");
+  EXPECT_NE(help_text("top").find("INPUT: age of the\noldest input\nExample: chimera top\n"), std::string::npos);
+  EXPECT_NE(help_text().find("\n  why VAR                     Tell where a value comes from, "), std::string::npos);
 }
 
 }  // namespace

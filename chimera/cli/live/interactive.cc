@@ -36,14 +36,17 @@ LineResult carry_out_line(Session& session, std::string_view line, std::FILE* ou
   const auto words = words_of(line);
   if (!words) return {print(refused(words.error(), false, kUsage), out, err)};
   if (words.value().empty()) return {};
-  const auto call = read_call(shell_words(), words.value());
-  if (!call) return {print(refused(call.error(), false, kUsage), out, err)};
-  if (call->command == &quit_words()) return {kOk, true};
-  if (call->command != &help_words()) return {carry_out(session, *call, out, err)};
-  const std::string asked = call->operand(0);
-  const std::string text = help_text(shell_words(), asked);
-  if (text.empty()) return {print({"", "no command '" + asked + "'; `help` lists them\n", kUsage}, out, err)};
-  return {print({text, "", kOk}, out, err)};
+  const CallReading reading = read_call(shell_words(), words.value(), "");
+  const Call& call = reading.call;
+  if (!reading.fault.empty()) return {print({"", reading.fault, kUsage}, out, err)};
+  if (reading.is_help) return {print({help_text(shell_words(), call.command, ""), "", kOk}, out, err)};
+  if (call.command == &quit_words()) return {kOk, true};
+  if (call.command != &help_words()) return {carry_out(session, call, out, err)};
+  const std::string asked = call.operand(0);
+  const Command* about = command_named(shell_words(), asked);
+  if (about == nullptr && !asked.empty())
+    return {print({"", "no command '" + asked + "'; `help` lists them\n", kUsage}, out, err)};
+  return {print({help_text(shell_words(), about, ""), "", kOk}, out, err)};
 }
 
 /// The line editor with its history and completion. One at a time.

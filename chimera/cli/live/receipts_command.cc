@@ -2,12 +2,10 @@
 // Asks for receipts, or reads them from their file, and makes a table of them.
 #include "chimera/cli/live/receipts_command.h"
 
-#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
-#include <optional>
 
 #include "chimera/cli/print/answer_text.h"
 #include "chimera/cli/print/columns.h"
@@ -20,22 +18,8 @@
 namespace chimera::cli {
 namespace {
 
-constexpr std::uint64_t kLast = 20, kMostLast = 200;
-
-/// None: it is no number that --last may have.
-std::optional<std::uint64_t> last_of(const Call& call) {
-  if (!call.has("--last")) return kLast;
-  const std::string text = call.value("--last");
-  std::uint64_t last = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), last);
-  const bool is_number = error == std::errc() && end == text.data() + text.size();
-  return is_number && last >= 1 && last <= kMostLast ? std::optional(last) : std::nullopt;
-}
-
-CommandResult wrong_last(const Call& call) {
-  const std::string text = "--last: '" + call.value("--last") + "' is not a whole number from 1 to 200";
-  return refused(Error{ErrorCode::kBadInput, std::string_view(text), {}}, call.json, kUsage);
-}
+/// How many receipts are asked for.
+std::uint64_t last_of(const Call& call) { return call.has("--last") ? std::stoull(call.value("--last")) : 20; }
 
 /// The only subsystem with receipts; "" where there is none, or there are several.
 std::string only_one() {
@@ -111,26 +95,22 @@ std::string receipts_text(const Json& answer) {
 }
 
 CommandResult receipts(Session& session, const Call& call, const Screen&) {
-  const auto last = last_of(call);
-  if (!last) return wrong_last(call);
   const std::string named = call.operand(0);
   if (!named.empty() && named.find('/') == std::string::npos && named != session.subsystem()) {
     const std::string why = "has no receipts here";
     return filed_receipts(call, named, {ErrorCode::kNotFound, std::string_view(why), std::string_view(named)});
   }
-  return answered(session.ask("receipts", {{"last", *last}}), call.json, receipts_text);
+  return answered(session.ask("receipts", {{"last", last_of(call)}}), call.json, receipts_text);
 }
 
 CommandResult filed_receipts(const Call& call, const std::string& subsystem, const Error& why) {
-  const auto last = last_of(call);
-  if (!last) return wrong_last(call);
   if (why.code != ErrorCode::kNotFound) return refused(why, call.json);  // it may run
   const char* chosen = std::getenv("CHIMERA_SUBSYSTEM");
   const std::string asked = !subsystem.empty() ? subsystem : chosen != nullptr ? chosen : "";
   const std::string name = asked.empty() ? only_one() : asked;
   if (name.empty() || name.find('/') != std::string::npos) return refused(why, call.json);
   const control::ReceiptFile file(control::state_folder_of(name));
-  const std::vector<std::string> lines = file.last(*last);
+  const std::vector<std::string> lines = file.last(last_of(call));
   if (lines.empty()) return refused(why, call.json);
   Json receipts = Json::array();
   for (const std::string& line : lines) receipts.push_back(Json::parse(line));

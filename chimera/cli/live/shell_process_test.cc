@@ -34,7 +34,7 @@
 namespace chimera::cli {
 namespace {
 
-Result<Call> read_call(const std::vector<std::string>& words) { return cli::read_call(shell_words(), words); }
+Call read_call(const std::vector<std::string>& words) { return cli::read_call(shell_words(), words, "").call; }
 
 using control::RpcResponse;
 
@@ -159,7 +159,7 @@ struct ShellTest : ::testing::Test {
   /// Exit code, standard output and standard error of a command.
   std::string run(const std::vector<std::string>& words, const std::string& subsystem = "") {
     std::FILE *out = std::tmpfile(), *err = std::tmpfile();
-    const int code = carry_out(surroundings(subsystem), read_call(words).value(), out, err);
+    const int code = carry_out(surroundings(subsystem), read_call(words), out, err);
     return std::to_string(code) + "|" + text(out) + "|" + text(err);
   }
   static std::string text(std::FILE* file) {
@@ -305,7 +305,7 @@ TEST_F(ShellTest, WatchGoesOnUntilCtrlC) {
     ::pthread_kill(me, SIGINT);
   });
   ::pthread_sigmask(SIG_BLOCK, &interrupt, nullptr);  // as it is while the command runs, from before the user types
-  const int code = carry_out(surroundings(), read_call({"watch", "error", "--every", "20 ms"}).value(), out, err);
+  const int code = carry_out(surroundings(), read_call({"watch", "error", "--every", "20 ms"}), out, err);
   user.join();
   const std::string said = std::to_string(code) + "|" + text(out) + "|" + text(err);
   EXPECT_EQ(said.rfind("0|error = 0.0 rad\nerror = 0.0 rad\n", 0), 0u) << said;
@@ -407,7 +407,7 @@ class OnTerminal {
 constexpr const char* kLeave = "\x1b[?25h\x1b[?1049l";
 
 TEST_F(ShellTest, TopFillsTheScreenFollowsItsSizeAndLeavesItAsItWas) {
-  OnTerminal terminal([this] { return carry_out(surroundings(), read_call({"top"}).value(), stdout, stderr); });
+  OnTerminal terminal([this] { return carry_out(surroundings(), read_call({"top"}), stdout, stderr); });
   serve();
   EXPECT_TRUE(terminal.shows("\x1b[?1049h"));
   EXPECT_TRUE(terminal.shows("TASK         STATE    RATE    EXEC     MAX  BUDGET USED  JITTER MISSED  INPUT   "));
@@ -422,7 +422,7 @@ TEST_F(ShellTest, TopFillsTheScreenFollowsItsSizeAndLeavesItAsItWas) {
 }
 
 TEST_F(ShellTest, CtrlCLeavesTheTerminalAsItWas) {
-  OnTerminal terminal([this] { return carry_out(surroundings(), read_call({"top"}).value(), stdout, stderr); });
+  OnTerminal terminal([this] { return carry_out(surroundings(), read_call({"top"}), stdout, stderr); });
   serve();
   EXPECT_TRUE(terminal.shows("q quit"));
   terminal.type("\x03");
@@ -432,7 +432,7 @@ TEST_F(ShellTest, CtrlCLeavesTheTerminalAsItWas) {
 }
 
 TEST_F(ShellTest, TopEndsWithASentenceWhenTheSubsystemDoes) {
-  OnTerminal terminal([this] { return carry_out(surroundings(), read_call({"top"}).value(), stdout, stderr); });
+  OnTerminal terminal([this] { return carry_out(surroundings(), read_call({"top"}), stdout, stderr); });
   serve();
   EXPECT_TRUE(terminal.shows("q quit"));
   stop();
@@ -444,8 +444,8 @@ TEST_F(ShellTest, TopEndsWithASentenceWhenTheSubsystemDoes) {
 }
 
 TEST_F(ShellTest, TopAndWatchOutliveARestartOfTheManager) {
-  OnTerminal top([this] { return carry_out(surroundings(), read_call({"top"}).value(), stdout, stderr); });
-  OnTerminal watch([this] { return carry_out(surroundings(), read_call({"watch", "error"}).value(), stdout, stderr); });
+  OnTerminal top([this] { return carry_out(surroundings(), read_call({"top"}), stdout, stderr); });
+  OnTerminal watch([this] { return carry_out(surroundings(), read_call({"watch", "error"}), stdout, stderr); });
   serve();
   EXPECT_TRUE(top.shows("q quit"));
   EXPECT_TRUE(watch.shows("0.0 rad"));

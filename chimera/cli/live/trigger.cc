@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "chimera/cli/files/blanks.h"
+
 namespace chimera::cli {
 namespace {
 
@@ -13,12 +15,6 @@ struct Sign {
 };
 constexpr Sign kSigns[] = {{">=", Comparison::kAtLeast}, {"<=", Comparison::kAtMost}, {"==", Comparison::kEqual},
                            {"!=", Comparison::kUnequal}, {">", Comparison::kAbove},   {"<", Comparison::kBelow}};
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(' ');
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
 
 Error bad_trigger(std::string_view text, std::string_view why) {
   return {ErrorCode::kBadInput, std::string_view("trigger '" + std::string(text) + "': " + std::string(why)), {}};
@@ -46,9 +42,9 @@ Result<Trigger> Trigger::read(std::string_view text, const UnitSystem& units) {
       sign = &candidate;
   if (sign == nullptr) return bad_trigger(text, "expected VARIABLE, one of > >= < <= == !=, QUANTITY");
   Trigger trigger;
-  trigger.text_ = trimmed(text);
+  trigger.text_ = trimmed(std::string(text));
   trigger.comparison_ = sign->comparison;
-  std::string_view left = trimmed(text.substr(0, at));
+  std::string left = trimmed(std::string(text.substr(0, at)));
   if (left.size() > 2 && left.front() == '|' && left.back() == '|') {
     trigger.is_absolute_ = true;
     left = trimmed(left.substr(1, left.size() - 2));
@@ -56,7 +52,7 @@ Result<Trigger> Trigger::read(std::string_view text, const UnitSystem& units) {
   auto channel = read_channel(left);
   if (!channel) return bad_trigger(text, channel.error().message.view());
   trigger.channel_ = std::move(*channel);
-  const std::string_view right = trimmed(text.substr(at + sign->text.size()));
+  const std::string right = trimmed(std::string(text.substr(at + sign->text.size())));
   if (right == "true" || right == "false") {
     trigger.quantity_.value = right == "true" ? 1 : 0;
     return trigger;

@@ -106,7 +106,6 @@ class RemoteTarget final : public RunTarget {
   std::vector<TaskProfile> profiles(const Json& origin);
   std::optional<Json> await_end();
   void judge_end(RunReport& report, const Json& status);
-  std::string since_start(Nanoseconds at) const;
 
   const AttendRequest& request_;
   const RunRequest& run_;
@@ -263,7 +262,7 @@ void RemoteTarget::on_event(const Json& event) {
   if (is_refusal && instant(event["at_ns"]) < started_ && !failure_)
     failed_ = event, failure_ = Error{ErrorCode::kRefused, std::string_view(text), std::string_view(task)};
   else if (kind == "refused")
-    refused_ += "refused at " + since_start(instant(event["at_ns"])) + ": " + task + ": " + text + "\n";
+    refused_ += refused_line(instant(event["at_ns"]) - started_, task, text);
   if (kind == "rtpu-restarted" && event["rtpu"].is_string())
     restarted_[event["rtpu"].as_string()] = instant(event["at_ns"]);
   const bool is_news = next_event_ > page_.events_seen;
@@ -273,12 +272,6 @@ void RemoteTarget::on_event(const Json& event) {
   if (kind != "stop" || task_stopped_) return;
   task_stopped_ = true;
   stopped_by_ = task;
-}
-
-std::string RemoteTarget::since_start(Nanoseconds at) const {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f s", to_seconds(at - started_));
-  return text;
 }
 
 /// Carries out the next act. An act that an earlier run client began before it died is not repeated.
@@ -301,12 +294,12 @@ void RemoteTarget::switch_to(const TimedAct& timed) {
   if (timed.lists.minus != TaskBits{}) asked["off"] = names(timed.lists.minus);
   const auto answer = line_.ask("switch", asked, kSwitchLimit);
   if (!answer) {
-    const std::string what = timed.has_lists() ? trimmed(timed.text.substr(timed.text.find(':') + 1)) + ": " : "";
-    refused_ += "refused at " + since_start(clock_.now()) + ": " + what + answer.error().message.c_str() + "\n";
+    const std::string what = timed.has_lists() ? trimmed(timed.text.substr(timed.text.find(':') + 1)) : "";
+    refused_ += refused_line(now(), what, answer.error().message.c_str());
   } else if (text_at(*answer, "end") == "nothing-to-do") {
     const std::string to = text_at(*answer, "to");
     const std::string what = to.empty() ? "these tasks are" : "'" + to + "' is";
-    switches_ += "switch at " + since_start(clock_.now()) + ": " + what + " in force, nothing to do\n";
+    switches_ += "switch at " + seconds_text(now()) + " s: " + what + " in force, nothing to do\n";
   }
 }
 
@@ -325,7 +318,7 @@ void RemoteTarget::act(const TimedAct& timed) {
   const std::string what = is_signal ? std::string(is_ring ? "ring" : signal_name(act.signal)) + " " + task
                            : is_set  ? "set " + timed.variable
                                      : "flag";
-  refused_ += "refused at " + since_start(clock_.now()) + ": " + what + ": " + answer.error().message.c_str() + "\n";
+  refused_ += refused_line(now(), what, answer.error().message.c_str());
 }
 
 std::vector<Reading> RemoteTarget::read(const std::vector<std::string>& names) {

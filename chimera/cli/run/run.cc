@@ -114,7 +114,6 @@ class LocalTarget final : public RunTarget {
 
 Result<void> LocalTarget::start() {
   RunOptions options;
-  options.policy = followed_rtpu(plan_.configuration, request_.virtual_time).policy;
   options.script = Script(plan_.acts);
   options.asked = &asked_;
   options.stop = &stop_requested;

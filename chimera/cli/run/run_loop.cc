@@ -8,6 +8,7 @@
 #include <future>
 #include <thread>
 
+#include "chimera/cli/run/run_verdict.h"
 #include "chimera/control/receipt/switch_reason.h"
 #include "chimera/platform/clock.h"
 #include "chimera/platform/realtime.h"
@@ -20,21 +21,9 @@
 #include "chimera/runtime/virtual/virtual_rtpus.h"
 
 namespace chimera::cli {
-
-const RtpuSpec& followed_rtpu(const Configuration& configuration, bool virtual_time) {
-  const bool has_tasks = !configuration.tasks().empty();
-  return configuration.rtpus()[virtual_time && has_tasks ? configuration.tasks()[0].rtpu : 0];
-}
-
 namespace {
 
-std::string refused_line(Nanoseconds since_start, const std::string& what, const std::string& why) {
-  char at[32];
-  std::snprintf(at, sizeof at, "%.3f s", to_seconds(since_start));
-  return std::string("refused at ") + at + ": " + what + ": " + why + "\n";
-}
-
-std::string refused_line(const RefusedSignal& refused, const Task& task, Nanoseconds origin) {
+std::string signal_line(const RefusedSignal& refused, const Task& task, Nanoseconds origin) {
   const std::string name(task.spec->name);
   std::string why = task.faults.last.text;
   if (refused.why == Refusal::kState) why = std::string("not legal in state ") + state_name(refused.state);
@@ -48,7 +37,7 @@ std::string refused_line(const RefusedSignal& refused, const Task& task, Nanosec
 }
 
 // "switch --on pid, asked for by task watch: u would have two producers: pid and lqr".
-std::string refused_line(const RefusedLists& refused, const ApplicationSpec& spec, Nanoseconds origin) {
+std::string lists_line(const RefusedLists& refused, const ApplicationSpec& spec, Nanoseconds origin) {
   const bool is_of_task = refused.request.by.is_valid();
   const std::string by = is_of_task ? ", asked for by " + control::asked_by(refused.request, spec) : "";
   return refused_line(refused.at - origin, "switch " + lists_text(refused.request.lists, spec) + by, refused.why);
@@ -60,9 +49,9 @@ std::vector<std::string> refused_lines(RunLoop& loop, std::span<const Task* cons
                                        const ApplicationSpec& spec) {
   std::vector<std::pair<Nanoseconds, std::string>> found;
   for (const RefusedSignal& refused : loop.refused())
-    found.emplace_back(refused.at, refused_line(refused, *tasks[refused.task.index], loop.origin()));
+    found.emplace_back(refused.at, signal_line(refused, *tasks[refused.task.index], loop.origin()));
   for (const RefusedLists& refused : asked.refused())
-    found.emplace_back(refused.at, refused_line(refused, spec, loop.origin()));
+    found.emplace_back(refused.at, lists_line(refused, spec, loop.origin()));
   std::ranges::stable_sort(found, {}, [](const auto& one) { return one.first; });
   std::vector<std::string> lines;
   for (auto& [at, line] : found) lines.push_back(std::move(line));
@@ -80,74 +69,63 @@ std::string who_stopped(std::span<const Task* const> tasks) {
 
 namespace {
 
-std::string with_seed(std::string description, const RunRequest& request) {
-  return request.seed ? description + ", seed " + std::to_string(*request.seed) : description;
+/// The rtpu that one context in virtual time follows.
+const RtpuSpec& followed_rtpu(const Configuration& configuration) {
+  return configuration.rtpus()[configuration.tasks().empty() ? 0 : configuration.tasks()[0].rtpu];
 }
 
+/// "virtual time, preemptive, seed 3"; with several contexts each rtpu that has tasks.
+std::string virtual_time_text(Application& application, const RunRequest& request) {
+  const auto how = [&request](const RtpuSpec& rtpu) {
+    return std::string(request.preemptive || rtpu.preemptive ? "preemptive" : "non-preemptive");
+  };
+  std::string text = "virtual time";
+  const VirtualPeers* const peers = application.peers();
+  if (peers == nullptr) text += ", " + how(followed_rtpu(application.configuration()));
+  for (std::size_t r = 0; peers != nullptr && r < peers->spec().rtpus.size(); ++r)
+    if (const RtpuSpec& rtpu = peers->spec().rtpus[r]; peers->tasks(RtpuId(r)) != nullptr)
+      text += ", " + std::string(rtpu.name) + ": " + how(rtpu);
+  return request.seed ? text + ", seed " + std::to_string(*request.seed) : text;
+}
+
+/// `Executor` runs one context, or a context for each rtpu.
+template <class Executor>
 class VirtualLoop final : public RunLoop {
  public:
-  VirtualLoop(Application& application, const RunRequest& request, const RunOptions& options)
-      : request_(request),
-        is_preemptive_(request.preemptive || followed_rtpu(application.configuration(), true).preemptive),
-        executor_(application.tasks(), options, {is_preemptive_, request.seed, request.quantum}) {}
+  template <class Tasks>
+  VirtualLoop(Tasks& tasks, bool is_preemptive, Application& application, const RunRequest& request,
+              const RunOptions& options)
+      : duration_(request.duration),
+        description_(virtual_time_text(application, request)),
+        executor_(tasks, options, {is_preemptive, request.seed, request.quantum}) {}
 
   Result<void> start() override { return executor_.start(); }
   std::optional<RunEnd> advance(Nanoseconds until) override {
-    const bool last = until >= request_.duration;
-    const RunEnd end = executor_.run(last ? request_.duration : until);
+    const bool last = until >= duration_;
+    const RunEnd end = last ? executor_.run(duration_) : run_to(until);
     if (end == RunEnd::kTime && !last) return std::nullopt;
     return end;
   }
   Nanoseconds now() const override { return executor_.now() - executor_.origin(); }
   Nanoseconds origin() const override { return executor_.origin(); }
   void shut_down() override { executor_.shut_down(); }
-  std::span<const RefusedSignal> refused() override { return executor_.refused(); }
+  std::span<const RefusedSignal> refused() override {
+    const auto refused = executor_.refused();
+    refused_.assign(refused.begin(), refused.end());
+    return refused_;
+  }
   const SwitchReceipts& receipts() override { return executor_.receipts(); }
-  std::string description() const override {
-    return with_seed(is_preemptive_ ? "virtual time, preemptive" : "virtual time, non-preemptive", request_);
-  }
+  std::string description() const override { return description_; }
 
  private:
-  const RunRequest& request_;
-  const bool is_preemptive_;
-  VirtualExecutor executor_;
-};
-
-// A context for each rtpu.
-class RtpusLoop final : public RunLoop {
- public:
-  RtpusLoop(Application& application, const RunRequest& request, const RunOptions& options)
-      : request_(request),
-        peers_(*application.peers()),
-        rtpus_(peers_, options, {request.preemptive, request.seed, request.quantum}) {}
-
-  Result<void> start() override { return rtpus_.start(); }
-  std::optional<RunEnd> advance(Nanoseconds until) override {
-    const bool last = until >= request_.duration;
-    const RunEnd end = last ? rtpus_.run(request_.duration) : rtpus_.run_to(until);
-    if (end == RunEnd::kTime && !last) return std::nullopt;
-    return end;
-  }
-  Nanoseconds now() const override { return rtpus_.now() - rtpus_.origin(); }
-  Nanoseconds origin() const override { return rtpus_.origin(); }
-  void shut_down() override { rtpus_.shut_down(); }
-  std::span<const RefusedSignal> refused() override { return refused_ = rtpus_.refused(); }
-  const SwitchReceipts& receipts() override { return rtpus_.receipts(); }
-  std::string description() const override {
-    std::string text = "virtual time";
-    for (std::size_t r = 0; r < peers_.spec().rtpus.size(); ++r) {
-      const RtpuSpec& rtpu = peers_.spec().rtpus[r];
-      if (peers_.tasks(RtpuId(r)) == nullptr) continue;
-      const bool is_preemptive = request_.preemptive || rtpu.preemptive;
-      text += ", " + std::string(rtpu.name) + (is_preemptive ? ": preemptive" : ": non-preemptive");
-    }
-    return with_seed(text, request_);
+  RunEnd run_to(Nanoseconds until) {
+    if constexpr (requires { executor_.run_to(until); }) return executor_.run_to(until);
+    else return executor_.run(until);
   }
 
- private:
-  const RunRequest& request_;
-  VirtualPeers& peers_;
-  VirtualRtpus rtpus_;
+  const Nanoseconds duration_;
+  const std::string description_;
+  Executor executor_;
   std::vector<RefusedSignal> refused_;
 };
 
@@ -215,14 +193,18 @@ class RealTimeLoop final : public RunLoop {
 
 }  // namespace
 
-std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request,
-                                           const RunOptions& options) {
-  if (application.peers() != nullptr) return std::make_unique<RtpusLoop>(application, request, options);
-  return std::make_unique<VirtualLoop>(application, request, options);
+std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request, RunOptions options) {
+  const RtpuSpec& followed = followed_rtpu(application.configuration());
+  options.policy = followed.policy;
+  if (VirtualPeers* const peers = application.peers())
+    return std::make_unique<VirtualLoop<VirtualRtpus>>(*peers, request.preemptive, application, request, options);
+  const bool is_preemptive = request.preemptive || followed.preemptive;
+  return std::make_unique<VirtualLoop<VirtualExecutor>>(application.tasks(), is_preemptive, application, request,
+                                                        options);
 }
 
-std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request,
-                                             const RunOptions& options) {
+std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request, RunOptions options) {
+  options.policy = application.configuration().rtpus()[0].policy;
   return std::make_unique<RealTimeLoop>(application, request, options);
 }
 

@@ -30,9 +30,6 @@ class RunLoop {
   virtual std::string description() const = 0;
 };
 
-/// The rtpu whose policy a run of one context follows: in virtual time that of the first task, else the first rtpu.
-const RtpuSpec& followed_rtpu(const Configuration& configuration, bool virtual_time);
-
 /// "refused at 0.200 s: off pid: ..." and a line end, of each signal of the script and of tasks that was refused, and
 /// of the lists of tasks that led to no legal set, in order of time. Context: setup, after the end.
 std::vector<std::string> refused_lines(RunLoop& loop, std::span<const Task* const> tasks, const AskedSets& asked,
@@ -40,10 +37,9 @@ std::vector<std::string> refused_lines(RunLoop& loop, std::span<const Task* cons
 /// The task whose reaction `stop` ended it: the first failure of time with that; "" when there is none.
 std::string who_stopped(std::span<const Task* const> tasks);
 
-/// With a context for each rtpu: each by its own policy, and preemptive when it says so or the request does.
-std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request,
-                                           const RunOptions& options);
-std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request,
-                                             const RunOptions& options);
+/// With a context for each rtpu: each by its own policy, and preemptive when it says so or the request does. One
+/// context follows the rtpu of the first task; in real time it follows the first rtpu.
+std::unique_ptr<RunLoop> make_virtual_loop(Application& application, const RunRequest& request, RunOptions options);
+std::unique_ptr<RunLoop> make_real_time_loop(Application& application, const RunRequest& request, RunOptions options);
 
 }  // namespace chimera::cli

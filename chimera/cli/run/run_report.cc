@@ -35,12 +35,6 @@ std::string sentence(const RunReport& report) {
   return "";
 }
 
-std::string seconds_text(Nanoseconds t) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f", to_seconds(t));
-  return text;
-}
-
 void print_json(const RunReport& report, std::FILE* out) {
   std::string variables, expectations;
   for (const RunReport::Watched& v : report.variables)

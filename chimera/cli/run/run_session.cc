@@ -30,9 +30,7 @@ RunEnd RunSession::watch() {
 
 void RunSession::show_values(Nanoseconds at) {
   if (request_.watch.empty() || target_.draws(at) || request_.json) return;
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f s", to_seconds(at));
-  std::string line = std::string("t ") + text;
+  std::string line = "t " + seconds_text(at) + " s";
   const std::vector<Reading> readings = target_.read(request_.watch);
   for (std::size_t i = 0; i < readings.size(); ++i)
     line += "  " + request_.watch[i] + " " + (readings[i].seen.is_written ? readings[i].seen.text : "not written yet");

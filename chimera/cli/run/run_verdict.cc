@@ -41,15 +41,11 @@ void add_rtpu(RunVerdict& verdict, const RtpuFate& rtpu, bool is_told) {
   verdict.restarts += rtpu.restarts;
   if (rtpu.restarts > 0) {
     verdict.remarks.push_back(counted(rtpu.restarts, "restart", "restarts") + " of " + rtpu.name);
-    char at[40] = "";
-    if (rtpu.restarted != kNever) std::snprintf(at, sizeof at, " at %.3f s", to_seconds(rtpu.restarted));
-    verdict.since.push_back(rtpu.name + ": the counts of its tasks begin at its restart" + at);
+    verdict.since.push_back(rtpu.name + ": the counts of its tasks begin at its restart" +
+                            (rtpu.restarted == kNever ? "" : " at " + seconds_text(rtpu.restarted) + " s"));
   }
-  if (rtpu.died != kNever) {
-    char at[40];
-    std::snprintf(at, sizeof at, "%.3f s", to_seconds(rtpu.died));
-    verdict.remarks.push_back(rtpu.name + " died at " + at + " and is not restarted");
-  }
+  if (rtpu.died != kNever)
+    verdict.remarks.push_back(rtpu.name + " died at " + seconds_text(rtpu.died) + " s and is not restarted");
   if (rtpu.is_given_up)
     verdict.failures.push_back(rtpu.name + " was given up: its process ended too often, its tasks did not run");
   if (!rtpu.bad_end.empty() && !is_told)
@@ -73,6 +69,16 @@ void add_end(RunVerdict& verdict, const TaskProfile& task, bool died_on_purpose,
 }
 
 }  // namespace
+
+std::string seconds_text(Nanoseconds time) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.3f", to_seconds(time));
+  return text;
+}
+
+std::string refused_line(Nanoseconds since_start, const std::string& what, const std::string& why) {
+  return "refused at " + seconds_text(since_start) + " s: " + (what.empty() ? "" : what + ": ") + why + "\n";
+}
 
 RunVerdict judge_run(const RunFacts& facts) {
   RunVerdict verdict;

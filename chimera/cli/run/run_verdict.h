@@ -60,4 +60,9 @@ struct RunFacts {
 };
 RunVerdict judge_run(const RunFacts& facts);
 
+/// "0.200", in seconds.
+std::string seconds_text(Nanoseconds time);
+/// "refused at 0.200 s: off pid: not legal in state ERROR" and a line end; `what` may be empty.
+std::string refused_line(Nanoseconds since_start, const std::string& what, const std::string& why);
+
 }  // namespace chimera::cli
