@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "chimera/base/hosted/ordinary_file.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/description/draft_values.h"
 #include "chimera/description/yaml_reader.h"
 
@@ -16,9 +17,9 @@ constexpr std::array<std::string_view, 2> kTruth = {"true", "false"};
 /// A value of `set` in the words of a command line.
 std::string flow_text(const Node& node) {
   if (node.is_scalar()) return node.text;
-  std::string text;
-  for (std::size_t i = 0; i < node.items.size(); ++i)
-    text += (text.empty() ? "" : ", ") + (node.is_map() ? node.keys[i].text + ": " : "") + flow_text(node.items[i]);
+  const std::string text = join_n(node.items.size(), ", ", [&node](std::size_t i) {
+    return (node.is_map() ? node.keys[i].text + ": " : "") + flow_text(node.items[i]);
+  });
   return node.is_map() ? "{" + text + "}" : "[" + text + "]";
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "chimera/base/hosted/ordinary_file.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/base/message.h"
 #include "chimera/catalogue/descriptor_json.h"
 #include "chimera/component_test/judge.h"
@@ -164,10 +165,10 @@ std::string text_of(const component_test::TrialReport& report) {
 }
 
 std::string json_of(const component_test::TrialReport& report) {
-  std::string rows;
-  for (const component_test::JudgedProperty& one : report.judgements)
-    rows += std::string(rows.empty() ? "" : ", ") + "{\"name\": " + json_string(one.name) + ", \"finding\": \"" +
-            word(one.verdict) + "\", \"text\": " + json_string(one.text) + "}";
+  const std::string rows = join(report.judgements, ", ", [](const component_test::JudgedProperty& one) {
+    return "{\"name\": " + json_string(one.name) + ", \"finding\": \"" + word(one.verdict) + "\", \"text\": " +
+           json_string(one.text) + "}";
+  });
   return "{\"component\": " + json_string(report.component) + ", \"passes\": " + (report.passes() ? "true" : "false") +
          ", \"inputs\": " + json_string(report.inputs) + ", \"judgements\": [" + rows +
          "], \"measured_cycles\": " + std::to_string(report.measured.cycles) +
@@ -205,7 +206,7 @@ CommandResult test_components(const TestOptions& options, const Workplace& workp
     const auto report = OneTest(options, entry, library->units()).run();
     if (!report) return file_refusal(report.error(), options.json);
     if (!report->passes()) output.code = kRefused;
-    if (options.json) rows += (rows.empty() ? "" : ", ") + json_of(*report);
+    if (options.json) append_joined(rows, ", ", json_of(*report));
     else output.out += text_of(*report);
   }
   if (options.json) output.out = "{\"reports\": [" + rows + "]}\n";

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "chimera/analysis/mode_report.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/files/graph_of.h"
 #include "chimera/cli/files/modes_text.h"
 #include "chimera/draw/graph.h"
@@ -12,14 +13,8 @@
 namespace chimera::cli {
 namespace {
 
-std::string count(std::size_t n, const char* one, const char* many) {
-  return std::to_string(n) + " " + (n == 1 ? one : many);
-}
-
 std::string order_text(const Configuration& configuration, const ConfiguredSet& set) {
-  std::string text;
-  for (TaskId id : set.order) text += (text.empty() ? "" : " -> ") + configuration.tasks()[id.index].name;
-  return text;
+  return join(set.order, " -> ", [&](TaskId task) { return configuration.tasks()[task.index].name; });
 }
 
 CommandResult check_modes(const CheckOptions& options, const Verdict& verdict, const Library& library) {
@@ -41,10 +36,9 @@ CommandResult check_modes(const CheckOptions& options, const Verdict& verdict, c
 std::string verdict_text(const Configuration& configuration) {
   std::size_t states = 0, constants = 0;
   for (const ConfiguredVariable& variable : configuration.variables()) ++(variable.is_constant ? constants : states);
-  std::string text = configuration.subsystem() + ": legal. " + count(configuration.tasks().size(), "task", "tasks") +
-                     ", " + count(states, "state variable", "state variables") + ", " +
-                     count(constants, "constant", "constants") + ", " +
-                     count(configuration.sets().size(), "configuration", "configurations") + "\n";
+  std::string text = configuration.subsystem() + ": legal. " + counted(configuration.tasks().size(), "task") + ", " +
+                     counted(states, "state variable") + ", " + counted(constants, "constant") + ", " +
+                     counted(configuration.sets().size(), "configuration") + "\n";
   for (std::size_t s = 0; s < configuration.sets().size(); ++s) {
     const ConfiguredSet& set = configuration.sets()[s];
     text +=
@@ -85,7 +79,7 @@ CommandResult check(const CheckOptions& options, const Workplace& workplace) {
   }
   output.err = verdict.report.text();
   if (!verdict.report.is_legal()) {
-    output.err += count(verdict.report.errors(), "error", "errors") + "\n";
+    output.err += counted(verdict.report.errors(), "error") + "\n";
     return output;
   }
   if (options.graph.empty()) {

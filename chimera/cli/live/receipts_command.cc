@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/print/answer_text.h"
 #include "chimera/cli/print/columns.h"
 #include "chimera/cli/print/fields.h"
@@ -78,10 +79,9 @@ std::string moves(const Json& receipt) {
   for (const Json& variable : receipt["variables"]) {
     const Json &step = variable["step"], &limit = variable["limit"];
     if (!step.is_number()) continue;
-    const std::string unit = text_of(variable, "unit");
-    text += (text.empty() ? "" : ", ") + text_of(variable, "variable") + " " + short_figure(step) +
-            (limit.is_number() ? " of " + short_figure(limit) : "") + (unit == "1" ? "" : " " + unit) +
-            (truth_at(variable, "beyond") ? " (beyond)" : "");
+    const std::string move = short_figure(step) + (limit.is_number() ? " of " + short_figure(limit) : "");
+    append_joined(text, ", ", text_of(variable, "variable") + " " + with_unit(move, text_of(variable, "unit")) +
+                                  (truth_at(variable, "beyond") ? " (beyond)" : ""));
   }
   return text;
 }

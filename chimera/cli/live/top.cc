@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/print/columns.h"
 #include "chimera/cli/print/fields.h"
 #include "chimera/cli/print/figures.h"
@@ -56,7 +57,7 @@ std::string remarks_on(const Json& task) {
       {"partial", "partial"},   {"tolerated", "tolerated"},       {"preempted", "preempted"}};
   for (const auto& [key, word] : kSeldom)
     if (const std::int64_t n = whole_of(task, key); n > 0)
-      text += (text.empty() ? "" : ", ") + count_text(n) + " " + word;
+      append_joined(text, ", ", count_text(n) + " " + word);
   return text;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/print/columns.h"
 #include "chimera/cli/print/fields.h"
 #include "chimera/cli/print/sparkline.h"
@@ -29,11 +30,11 @@ std::string text_of_part(const Json& reading, const std::string& part, const std
   char number[40];
   for (const ChannelNumber& n : numbers) {
     std::snprintf(number, sizeof number, "%.6g", n.value);
-    text += (text.empty() ? "" : " ") + std::string(number);
+    append_joined(text, " ", number);
   }
   if (numbers.size() > 1) text = "[" + text + "]";
   const std::string unit = text_of(reading, "unit");
-  return unit == "1" || unit.empty() ? text : text + " " + unit;
+  return unit.empty() ? text : with_unit(text, unit);
 }
 
 std::string range_text(const std::deque<double>& course) {
@@ -87,11 +88,10 @@ std::vector<std::string> Watch::lines(std::size_t width, bool unicode) const {
 }
 
 std::string Watch::plain() const {
-  std::string text;
-  for (const Watched& watched : watched_)
-    text += (text.empty() ? "" : "  ") + watched.name.variable + watched.name.part + " = " + watched.text +
-            (watched.remark.empty() ? "" : " (" + watched.remark + ")");
-  return text;
+  return join(watched_, "  ", [](const Watched& watched) {
+    return watched.name.variable + watched.name.part + " = " + watched.text +
+           (watched.remark.empty() ? "" : " (" + watched.remark + ")");
+  });
 }
 
 }  // namespace chimera::cli

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "chimera/base/hosted/wording.h"
+
 namespace chimera::cli {
 namespace {
 
@@ -42,7 +44,7 @@ constexpr Seldom kSeldom[] = {{"over budget", &Profile::overrun},
 std::string seldom_line(const TaskProfile& task) {
   std::string text;
   const auto add = [&text](std::uint64_t n, const char* name) {
-    if (n > 0) text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + name;
+    if (n > 0) append_joined(text, ", ", std::to_string(n) + " " + name);
   };
   for (const Seldom& kind : kSeldom) add(task.profile.*kind.count, kind.name);
   add(task.profile.restarts, task.profile.restarts == 1 ? "restart" : "restarts");

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/control/receipt/receipt_parts.h"
 #include "chimera/control/receipt/switch_reason.h"
 #include "chimera/text/json_text.h"
@@ -79,17 +80,14 @@ std::string json_durations(const SwitchReceipt& receipt) {
 
 template <class Parts>
 std::string json_list(const Parts& parts, const ApplicationSpec& spec) {
-  std::string json;
-  for (const auto& part : parts) json += (json.empty() ? "" : ", ") + json_of(part, spec);
-  return "[" + json + "]";
+  return "[" + join(parts, ", ", [&spec](const auto& part) { return json_of(part, spec); }) + "]";
 }
 
 std::string json_way(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
   const bool is_slow = receipt.way.slow != 0;
-  std::string reasons, list;
-  for (const std::string& word : slow_words(receipt.way)) reasons += (reasons.empty() ? "\"" : ", \"") + word + "\"";
-  for (const TaskId task : receipt.reinitialised)
-    list += (list.empty() ? "" : ", ") + json_string(std::string(spec.tasks[task.index].name));
+  const std::string reasons = join(slow_words(receipt.way), ", ", json_string);
+  const auto name = [&spec](TaskId task) { return json_string(spec.tasks[task.index].name); };
+  const std::string list = join(receipt.reinitialised, ", ", name);
   const bool is_back = !receipt.not_back.is_valid();
   const char* const way = receipt.cause == SwitchCause::kStandby ? "takeover" : is_slow ? "slow" : "fast";
   return std::string("\"way\": \"") + way + "\", \"slow_because\": [" + reasons +

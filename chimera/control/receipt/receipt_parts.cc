@@ -17,7 +17,6 @@ const PortSpec* find_port(const PortOf& of, int kind, const ApplicationSpec& spe
 
 }  // namespace
 
-std::string quoted(std::string_view name) { return "'" + std::string(name) + "'"; }
 
 std::string number_text(double value) {
   char text[32];

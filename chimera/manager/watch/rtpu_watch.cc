@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/manager/state/cause.h"
 #include "chimera/runtime/task_word.h"
 
@@ -101,7 +102,7 @@ void RtpuWatch::tell(RtpuId rtpu, const MethodVerdict& verdict, Nanoseconds at) 
   if (what.empty()) return;
   std::string& hang = state_.rtpus[rtpu.index].hang;
   const std::string text = what + (verdict.ended == 0 ? " for " : " ended after ") + seconds_text(verdict.since);
-  if (verdict.ended == 0) hang += (hang.empty() ? "" : "; ") + text;
+  if (verdict.ended == 0) append_joined(hang, "; ", text);
   if (verdict.is_news) state_.tell("hang", TaskWord::found(word).task(), rtpu, text, at);
 }
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/hosted/variables.h"
 #include "chimera/runtime/plan/rivals.h"
@@ -90,7 +91,7 @@ class SetMaker {
         return true;
       }
       std::string names;
-      for (const TaskId task : may) names += (names.empty() ? "" : " or ") + name(task);
+      for (const TaskId task : may) append_joined(names, " or ", name(task));
       const std::string lacks = std::string(variable.name) + " would have no producer";
       refuse(may.empty() ? lacks : lacks + ", and there is a choice: " + names,
              may.empty() ? "" : "`--on` with one of them");
@@ -118,7 +119,7 @@ class SetMaker {
     }
     std::string names;
     for (std::size_t t = 0; t < left.size(); ++t)
-      if (left[t]) names += (names.empty() ? "" : " ") + std::string(spec_.tasks[t].name);
+      if (left[t]) append_joined(names, " ", spec_.tasks[t].name);
     if (!names.empty()) refuse("a loop of data would have no initial value, among: " + names);
   }
   bool is_fed(TaskId reader, const std::vector<bool>& left) const {
@@ -195,7 +196,7 @@ std::string lists_text(const TaskLists& lists, const ApplicationSpec& spec) {
   std::string text;
   const auto add = [&](const char* word, const TaskBits& tasks) {
     if (tasks == TaskBits{}) return;
-    text += (text.empty() ? "" : " ") + std::string(word);
+    append_joined(text, " ", word);
     for (const TaskId task : ids_of(tasks, spec)) text += " " + std::string(spec.tasks[task.index].name);
   };
   add("--on", lists.plus);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "chimera/base/hosted/wording.h"
+
 namespace chimera {
 namespace {
 
@@ -29,13 +31,13 @@ std::string Variables::explain(const std::vector<bool>& on, std::span<const Task
 
 std::string Variables::fault(const std::vector<bool>& on, std::span<const TaskSpec> tasks) const {
   std::string text;
-  const auto add = [&text](std::string part) { text += (text.empty() ? "" : "; ") + std::move(part); };
+  const auto add = [&text](const std::string& part) { append_joined(text, "; ", part); };
   for (const Variable& variable : variables_) {
     const SetFault fault = fault_of(variable, on);
     if (fault == SetFault::kTwoProducers) {
       std::string who;
       for (const PortOf& p : variable.producers)
-        if (on[p.task.index]) who += (who.empty() ? "" : " and ") + std::string(tasks[p.task.index].name);
+        if (on[p.task.index]) append_joined(who, " and ", tasks[p.task.index].name);
       add(std::string(variable.name) + " would have two producers: " + who);
     } else if (fault == SetFault::kNoProducer) {
       add(std::string(variable.name) + " would have no producer");
@@ -63,7 +65,7 @@ std::string Variables::smallest_legal(std::vector<bool> on, std::span<const Task
   complete(on, best, tries);
   std::string names;
   for (std::size_t t = 0; t < best.size(); ++t)
-    if (best[t]) names += (names.empty() ? "" : " ") + std::string(tasks[t].name);
+    if (best[t]) append_joined(names, " ", tasks[t].name);
   return names;
 }
 
