@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 
 #include "chimera/base/assert.h"
 #include "chimera/base/hosted/wording.h"
@@ -15,11 +14,7 @@ namespace {
 constexpr double kPlain = 0.5;
 constexpr std::uint32_t kInstances = 2;
 
-std::string number_text(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
+std::string number_text(double value) { return formatted("%.17g", value); }
 
 // The unit with 1 for its unit variables (single capitals U X Y Z); "1" if no unit remains.
 std::string plain_unit(std::string unit) {
@@ -54,7 +49,7 @@ double middle(const Descriptor& component, const PortDescriptor& port) {
   return std::isfinite(port.min) ? port.min + kPlain : std::isfinite(port.max) ? port.max - kPlain : kPlain;
 }
 
-std::string with_unit(double value, const std::string& unit) {
+std::string number_with_unit(double value, const std::string& unit) {
   return with_unit(number_text(value), plain_unit(unit));
 }
 
@@ -65,7 +60,7 @@ std::string struct_text(const PortDescriptor& port) {
     const std::string items = join_n(field.count, ", ", [&](std::size_t i) {
       return field.type == CHIMERA_STRING ? "\"\""
              : field.type == CHIMERA_BOOL ? "false"
-                                          : with_unit(is_turn && i == 0 ? 1 : 0, field.unit);
+                                          : number_with_unit(is_turn && i == 0 ? 1 : 0, field.unit);
     });
     append_joined(text, ", ", field.name + ": " + (field.count == 1 ? items : "[" + items + "]"));
   }
@@ -82,9 +77,9 @@ std::string element_text(const Descriptor& component, const PortDescriptor& port
       return struct_text(port);
     case CHIMERA_INT32:
     case CHIMERA_INT64:
-      return with_unit(std::round(middle(component, port)), port.unit);
+      return number_with_unit(std::round(middle(component, port)), port.unit);
     default:
-      return with_unit(middle(component, port), port.unit);
+      return number_with_unit(middle(component, port), port.unit);
   }
 }
 

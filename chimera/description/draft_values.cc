@@ -85,7 +85,6 @@ bool check_name(const Word& word, const std::string& what, Report& report) {
                          std::to_string(kMaxNameBytes),
               .found = shown,
               .expected = "a name",
-              .nearest = {},
               .remedy = glued ? "a space must follow the ':'" : ""});
   return false;
 }

@@ -17,9 +17,6 @@ Fault fault(Place at, std::string message, std::string remedy) {
   return {.rule = "yaml-syntax",
           .at = at,
           .message = std::move(message),
-          .found = {},
-          .expected = {},
-          .nearest = {},
           .remedy = std::move(remedy)};
 }
 

@@ -15,11 +15,7 @@ constexpr std::string_view kKinds[] = {"in-var",   "out-var",   "in-const",  "ou
                                        "resource", "in-stream", "out-stream"};
 constexpr std::string_view kTypes[] = {"bool", "int32", "int64", "float32", "float64", "string", "struct", "any"};
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
+std::string number(double value) { return formatted("%.17g", value); }
 
 std::string hex(const std::vector<std::byte>& bytes) {
   constexpr char kDigits[] = "0123456789abcdef";

@@ -205,9 +205,8 @@ Node in_unit(Node value, const std::string& unit, const UnitSystem& units) {
   if (!quantity || !wanted || quantity->unit_text == unit) return value;
   const auto number = value_in(*quantity, *wanted, unit);
   if (!number && number.error().code != ErrorCode::kRefused) return value;
-  char text[40] = "inf";  // not finite in this unit: the rules report it
-  if (number) std::snprintf(text, sizeof text, "%.17g", *number);
-  value.text = with_unit(text, unit);
+  // If the value is not finite in this unit, the rules report it.
+  value.text = with_unit(number ? formatted("%.17g", *number) : "inf", unit);
   return value;
 }
 

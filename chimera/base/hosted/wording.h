@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -81,6 +82,13 @@ inline std::string shell_word(const std::string& word) {
 /// "1 row", "2 rows". `many` is the plural; if it is empty, `one` with an s. Context: setup; may block.
 inline std::string counted(std::uint64_t n, const std::string& one, const std::string& many = {}) {
   return std::to_string(n) + " " + (n == 1 ? one : many.empty() ? one + "s" : many);
+}
+
+/// `value` in a printf `pattern` with one place for a double: "%.3g Hz". Context: setup; may block.
+inline std::string formatted(const char* pattern, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, pattern, value);
+  return text;
 }
 
 /// "5 m/s"; a number with the unit of measure "1" stands alone. Context: setup; may block.

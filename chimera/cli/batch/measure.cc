@@ -22,9 +22,7 @@ Error wrong(const std::string& text, const std::string& why) {
 }
 
 std::string number_text(double value, const std::string& unit) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return with_unit(text, unit);
+  return with_unit(formatted("%.6g", value), unit);
 }
 
 bool is_of(const std::string& number, const std::string& chosen) {

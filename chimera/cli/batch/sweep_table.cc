@@ -39,12 +39,6 @@ const Measure::Number* number_of(const MeasuredRun& run, const std::string& name
   return nullptr;
 }
 
-std::string shown(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 std::string failure_of(const MeasuredRun& run) { return run.failure.empty() ? "" : "FAILED: " + run.failure; }
 
 Cells head(const SweepTable& table) {
@@ -66,7 +60,7 @@ Cells row(const SweepTable& table, std::size_t r, const std::vector<Column>& col
     if (number == nullptr || !number->value)
       cells.push_back(nothing);
     else
-      cells.push_back(exact ? json_number(*number->value) : shown(*number->value));
+      cells.push_back(exact ? json_number(*number->value) : formatted("%.6g", *number->value));
   }
   for (std::size_t e = 0; e < table.expectations.size(); ++e)
     cells.push_back(!run.failure.empty() ? nothing : run.expectations[e].holds ? "holds" : "FAILS");

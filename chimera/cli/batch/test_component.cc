@@ -23,7 +23,7 @@ constexpr std::size_t kMostRecordingBytes = std::size_t{256} << 20;
 
 namespace fs = std::filesystem;
 
-constexpr Nanoseconds kPartnerPatience = seconds(5);
+constexpr Nanoseconds kPartnerStartLimit = seconds(5);  // a partner that answers its first request
 constexpr std::size_t kMostMemory = 64u * 1024 * 1024;  // of rows and their outputs
 constexpr std::size_t kFewest = 20;                     // cycles of a short recording
 
@@ -93,7 +93,7 @@ class OneTest {
   Result<void> start_partner(component_test::Setup& setup) {
     const std::string program = beside(entry_, ".test.partner");
     if (program.empty()) return {};
-    auto partner = component_test::Partner::start(program, kPartnerPatience);
+    auto partner = component_test::Partner::start(program, kPartnerStartLimit);
     if (!partner) return partner.error();
     partner_.emplace(*std::move(partner));
     setup.partner_text = partner_->line();
@@ -139,11 +139,8 @@ const char* word(component_test::Finding finding) {
 }
 
 std::string short_text(double ns) {
-  char text[32];
   if (ns < 10) return "less than 10 ns";  // the steps of a processor's counter
-  if (ns < 1000) std::snprintf(text, sizeof text, "%.0f ns", ns);
-  else std::snprintf(text, sizeof text, "%.1f us", ns * 1e-3);
-  return text;
+  return ns < 1000 ? formatted("%.0f ns", ns) : formatted("%.1f us", ns * 1e-3);
 }
 
 std::string text_of(const component_test::TrialReport& report) {

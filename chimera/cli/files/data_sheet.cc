@@ -25,11 +25,7 @@ std::string type_text(const PortDescriptor& port) {
   return base + port.shape;
 }
 
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
+std::string number_text(double value) { return formatted("%g", value); }
 
 std::string initial_text(const PortDescriptor& port) {
   const std::size_t count = port.initial.size() / port.element_size;

@@ -19,12 +19,6 @@ namespace {
 constexpr double kWindowLetters = 60;  // approximate letters of a picture
 constexpr std::size_t kMostUnseen = 6;  // names in a line
 
-std::string number(const char* pattern, double value) {
-  char text[48];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
-}
-
 /// 1, 2 or 5 times a power of ten, so that `length` takes about kWindowLetters of it.
 Nanoseconds unit_for(Nanoseconds length) {
   const double wanted = std::max(static_cast<double>(length.count) / kWindowLetters, 1.0);
@@ -53,9 +47,9 @@ class ScheduleLines {
 
   std::string cpu(const CpuSchedule& cpu) const {
     std::string text = "CPU " + std::to_string(cpu.verdict.cpu) + ": " + policies(cpu) + "; load " +
-                       number("%.3f", cpu.verdict.utilisation) + " of at most " + number("%.2f", kMaxUtilisation) +
-                       "; rate monotonic bound " + number("%.3f", cpu.verdict.rate_monotonic_bound) +
-                       ", product of (1 + load) " + number("%.3f", cpu.verdict.hyperbolic) + ", enough up to 2\n";
+                       formatted("%.3f of at most ", cpu.verdict.utilisation) + formatted("%.2f", kMaxUtilisation) +
+                       "; rate monotonic bound " + formatted("%.3f", cpu.verdict.rate_monotonic_bound) +
+                       ", product of (1 + load) " + formatted("%.3f", cpu.verdict.hyperbolic) + ", enough up to 2\n";
     return text + table(cpu) + verdict(cpu) + unstated(cpu) + remedies(cpu) + window(cpu);
   }
 
@@ -245,7 +239,7 @@ std::vector<draw::Gantt> schedule_pictures(const Configuration& configuration, c
       draw::Gantt picture;
       picture.title = configuration.subsystem() + ", CPU " + std::to_string(cpu.verdict.cpu) + ": worst window";
       picture.note =
-          "load " + number("%.3f", cpu.verdict.utilisation) + "; all released at once" +
+          "load " + formatted("%.3f", cpu.verdict.utilisation) + "; all released at once" +
           (has_blocker(report, cpu) ? ", the longest job of an executive just begun; " : ", ") +
           "each as long as stated";
       picture.length = cpu.window.length;

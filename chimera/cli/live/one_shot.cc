@@ -62,7 +62,7 @@ CommandResult pid(Session& session, const Call& call) {
   if (found != pids.end() && found->second > 0)
     return {call.json ? json_line({{"name", name}, {"pid", found->second}})
                       : std::to_string(found->second) + "\n", "", kOk};
-  const auto names = names_of(pids, [](const auto& pid) { return pid.first; });
+  const auto names = chimera::names_of(pids, [](const auto& pid) { return pid.first; });
   const std::string why = found != pids.end() ? "the process of '" + name + "' is dead" : no_such("rtpu", name, names);
   return refused(Error{ErrorCode::kNotFound, {"--pid: " + why}, {}}, call.json);
 }

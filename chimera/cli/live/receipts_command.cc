@@ -67,11 +67,7 @@ std::string asked_by(const Json& receipt) {
   return task.empty() ? text_of(by, "script") : "task " + task;
 }
 
-std::string short_figure(const Json& number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", number.as_double());
-  return text;
-}
+std::string short_figure(const Json& number) { return formatted("%.4g", number.as_double()); }
 
 /// "wanted 2 of 3 m/s, tau 0.1 N.m": the limit where there is one.
 std::string moves(const Json& receipt) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "chimera/base/hosted/wording.h"
@@ -16,22 +15,13 @@
 namespace chimera::cli {
 namespace {
 
-std::string number_text(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
+std::string number_text(double value) { return formatted("%.4g", value); }
 
 /// The text of a reading; of a part its numbers with the unit.
 std::string text_of_part(const Json& reading, const std::string& part, const std::vector<ChannelNumber>& numbers) {
   if (part.empty() || !truth_at(reading, "valid")) return text_of(reading, "text");
   if (numbers.empty()) return "no such element";
-  std::string text;
-  char number[40];
-  for (const ChannelNumber& n : numbers) {
-    std::snprintf(number, sizeof number, "%.6g", n.value);
-    append_joined(text, " ", number);
-  }
+  std::string text = join(numbers, " ", [](const ChannelNumber& n) { return formatted("%.6g", n.value); });
   if (numbers.size() > 1) text = "[" + text + "]";
   const std::string unit = text_of(reading, "unit");
   return unit.empty() ? text : with_unit(text, unit);

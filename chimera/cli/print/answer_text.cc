@@ -3,7 +3,6 @@
 #include "chimera/cli/print/answer_text.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <vector>
 
 #include "chimera/base/hosted/terminal_text.h"
@@ -32,11 +31,7 @@ std::string producer_of(const Json& link) {
   return component.empty() || component == producer ? producer : producer + " (" + component + ")";
 }
 
-std::string figure(const Json& number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", number.as_double());
-  return text;
-}
+std::string figure(const Json& number) { return formatted("%.6g", number.as_double()); }
 
 bool is_well(const Json& link) { return text_of(link, "verdict") == "ok"; }
 

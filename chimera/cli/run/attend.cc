@@ -39,11 +39,7 @@ constexpr std::size_t kEventsAtOnce = 1000;
 constexpr Nanoseconds kLastOutput = seconds(1);  // half of the time that the keeper waits for the run client to finish
 constexpr Nanoseconds kEndLimit = seconds(600);  // the keeper ends a process that takes too long: not judged here
 
-std::string limit_text(Nanoseconds time) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g s", to_seconds(time));
-  return text;
-}
+std::string limit_text(Nanoseconds time) { return formatted("%g s", to_seconds(time)); }
 
 Nanoseconds instant(const Json& json) { return json.is_number() ? Nanoseconds{json.as_int64()} : kNever; }
 
@@ -276,9 +272,7 @@ void RemoteTarget::on_event(const Json& event) {
 }
 
 std::string RemoteTarget::since_start(Nanoseconds at) const {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f s", to_seconds(at - started_));
-  return text;
+  return formatted("%.3f s", to_seconds(at - started_));
 }
 
 /// Carries out the next act. An act that an earlier run client began before it died is not repeated.

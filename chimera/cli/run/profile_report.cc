@@ -11,12 +11,9 @@ namespace chimera::cli {
 namespace {
 
 std::string spread_text(Nanoseconds t) {
-  char text[32];
   const double us = static_cast<double>(t.count) * 1e-3;
-  if (us < 1000) std::snprintf(text, sizeof text, "%.1f us", us);
-  else if (us < 1e6) std::snprintf(text, sizeof text, "%.2f ms", us * 1e-3);
-  else std::snprintf(text, sizeof text, "%.2f s", us * 1e-6);
-  return text;
+  if (us < 1000) return formatted("%.1f us", us);
+  return us < 1e6 ? formatted("%.2f ms", us * 1e-3) : formatted("%.2f s", us * 1e-6);
 }
 
 std::string max_text(const Spread& spread) { return spread.count == 0 ? "-" : spread_text(spread.max); }

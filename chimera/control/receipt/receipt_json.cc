@@ -3,7 +3,6 @@
 #include "chimera/control/receipt/receipt_json.h"
 
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "chimera/base/hosted/wording.h"
@@ -37,10 +36,7 @@ std::string json_instant(Nanoseconds instant, Nanoseconds origin) {
 }
 
 std::string json_number(bool is_known, double value) {
-  if (!is_known || !std::isfinite(value)) return "null";
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
+  return is_known && std::isfinite(value) ? formatted("%.17g", value) : "null";
 }
 
 std::string json_name(bool is_there, std::string_view name) {

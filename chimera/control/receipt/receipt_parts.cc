@@ -2,7 +2,7 @@
 // Names, units, steps and words of receipts.
 #include "chimera/control/receipt/receipt_parts.h"
 
-#include <cstdio>
+#include "chimera/base/hosted/wording.h"
 
 namespace chimera::control {
 namespace {
@@ -17,12 +17,7 @@ const PortSpec* find_port(const PortOf& of, int kind, const ApplicationSpec& spe
 
 }  // namespace
 
-
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
+std::string number_text(double value) { return formatted("%.6g", value); }
 
 const char* word(SwitchEnd end) {
   switch (end) {

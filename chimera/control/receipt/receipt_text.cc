@@ -2,8 +2,6 @@
 // Puts receipts into lines.
 #include "chimera/control/receipt/receipt_text.h"
 
-#include <cstdio>
-
 #include "chimera/base/hosted/wording.h"
 #include "chimera/control/receipt/receipt_parts.h"
 #include "chimera/control/receipt/switch_reason.h"
@@ -12,11 +10,7 @@
 namespace chimera::control {
 namespace {
 
-std::string at(Nanoseconds instant, Nanoseconds origin) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.3f s", to_seconds(instant - origin));
-  return text;
-}
+std::string at(Nanoseconds instant, Nanoseconds origin) { return formatted("%.3f s", to_seconds(instant - origin)); }
 
 /// "switch 3", "takeover 4".
 std::string what(const SwitchReceipt& receipt) {
@@ -34,9 +28,7 @@ std::string names(std::span<const TaskId> tasks, const ApplicationSpec& spec) {
 }
 
 std::string after_text(const SwitchReceipt& receipt) {
-  char took[40];
-  std::snprintf(took, sizeof took, " after %.3f ms", to_seconds(receipt.at - receipt.asked) * 1e3);
-  return took;
+  return formatted(" after %.3f ms", to_seconds(receipt.at - receipt.asked) * 1e3);
 }
 
 std::string moves_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {

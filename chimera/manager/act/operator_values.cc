@@ -3,7 +3,6 @@
 #include "chimera/manager/act/operator_values.h"
 
 #include <algorithm>
-#include <functional>
 
 #include "chimera/base/hosted/wording.h"
 #include "chimera/catalogue/descriptor_value.h"

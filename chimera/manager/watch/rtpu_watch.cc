@@ -3,7 +3,6 @@
 #include "chimera/manager/watch/rtpu_watch.h"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "chimera/base/hosted/wording.h"
 #include "chimera/manager/state/cause.h"
@@ -16,9 +15,7 @@ constexpr Nanoseconds kWatchEvery = milliseconds(250);
 constexpr Nanoseconds kStartPatience = seconds(10);  // until an rtpu has begun its first method or answers the manager
 
 std::string seconds_text(Nanoseconds time) {
-  char text[32];
-  std::snprintf(text, sizeof text, time < seconds(10) ? "%.1f s" : "%.0f s", to_seconds(time));
-  return text;
+  return formatted(time < seconds(10) ? "%.1f s" : "%.0f s", to_seconds(time));
 }
 
 const BlockHead* head_of(const ManagerState& state, RtpuId rtpu) {
