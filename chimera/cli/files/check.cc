@@ -2,8 +2,6 @@
 // Reads and verifies a description and prints its verdict, its order of tasks, its picture, or its switches.
 #include "chimera/cli/files/check.h"
 
-#include <cstdio>
-
 #include "chimera/analysis/mode_report.h"
 #include "chimera/base/hosted/wording.h"
 #include "chimera/cli/files/graph_of.h"
@@ -46,15 +44,10 @@ std::string verdict_text(const Configuration& configuration) {
   }
   const auto loads = configuration.utilisation();
   for (std::size_t r = 0; r < loads.size(); ++r) {
-    char line[160];
     const RtpuSpec& rtpu = configuration.rtpus()[r];
-    if (loads[r] > 0)
-      std::snprintf(line, sizeof line, "  rtpu %.*s on cpu %u: budgets take %.3f of at most 0.93\n",
-                    static_cast<int>(rtpu.name.size()), rtpu.name.data(), rtpu.cpu, loads[r]);
-    else
-      std::snprintf(line, sizeof line, "  rtpu %.*s on cpu %u: no budgets stated, so the load is not judged\n",
-                    static_cast<int>(rtpu.name.size()), rtpu.name.data(), rtpu.cpu);
-    text += line;
+    text += "  rtpu " + std::string(rtpu.name) + " on cpu " + std::to_string(rtpu.cpu) + ": " +
+            (loads[r] > 0 ? formatted("budgets take %.3f of at most 0.93\n", loads[r])
+                          : "no budgets stated, so the load is not judged\n");
   }
   return text;
 }
