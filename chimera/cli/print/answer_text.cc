@@ -12,6 +12,7 @@
 #include "chimera/cli/print/figures.h"
 #include "chimera/cli/print/status_text.h"
 #include "chimera/text/json.h"
+#include "chimera/text/nearest.h"
 
 namespace chimera::cli {
 namespace {

@@ -110,13 +110,18 @@ std::string plain(std::uint32_t type, std::span<const std::byte> at, const std::
   return with_unit(finite == "null" ? (number > 0 ? "inf" : "-inf") : finite, unit);
 }
 
+template <class Item>
+std::string listed(std::size_t count, const Item& item) {
+  return "[" + join_n(count, ", ", item) + "]";
+}
+
 std::string element(const ValueForm& form, std::span<const std::byte> at) {
   if (form.type != CHIMERA_STRUCT) return plain(form.type, at, form.unit);
   return "{" + join(form.fields, ", ", [at](const FieldDescriptor& field) {
-    const std::string items = join_n(field.count, ", ", [&](std::size_t i) {
+    const auto item = [&](std::size_t i) {
       return plain(field.type, at.subspan(field.offset + i * field.size, field.size), field.unit);
-    });
-    return field.name + ": " + (field.count == 1 ? items : "[" + items + "]");
+    };
+    return field.name + ": " + (field.count == 1 ? item(0) : listed(field.count, item));
   }) + "}";
 }
 
