@@ -15,7 +15,11 @@ using draw::escaped;
 
 std::string said_by(const RunReport::Judged& judged) { return judged.text + " (" + judged.said + ")"; }
 
-std::string seconds_text(Nanoseconds time) { return formatted("%.3f", to_seconds(time)); }
+std::string seconds_text(Nanoseconds time) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", to_seconds(time));
+  return text;
+}
 
 Json json_of(const CaseOutcome& one) {
   Json expectations = Json::array();

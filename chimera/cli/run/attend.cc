@@ -272,7 +272,9 @@ void RemoteTarget::on_event(const Json& event) {
 }
 
 std::string RemoteTarget::since_start(Nanoseconds at) const {
-  return formatted("%.3f s", to_seconds(at - started_));
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f s", to_seconds(at - started_));
+  return text;
 }
 
 /// Carries out the next act. An act that an earlier run client began before it died is not repeated.

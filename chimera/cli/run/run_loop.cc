@@ -8,7 +8,6 @@
 #include <future>
 #include <thread>
 
-#include "chimera/base/hosted/wording.h"
 #include "chimera/control/receipt/switch_reason.h"
 #include "chimera/platform/clock.h"
 #include "chimera/platform/realtime.h"
@@ -30,7 +29,9 @@ const RtpuSpec& followed_rtpu(const Configuration& configuration, bool virtual_t
 namespace {
 
 std::string refused_line(Nanoseconds since_start, const std::string& what, const std::string& why) {
-  return "refused at " + formatted("%.3f s", to_seconds(since_start)) + ": " + what + ": " + why + "\n";
+  char at[32];
+  std::snprintf(at, sizeof at, "%.3f s", to_seconds(since_start));
+  return std::string("refused at ") + at + ": " + what + ": " + why + "\n";
 }
 
 std::string refused_line(const RefusedSignal& refused, const Task& task, Nanoseconds origin) {

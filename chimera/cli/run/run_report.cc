@@ -36,7 +36,11 @@ std::string sentence(const RunReport& report) {
   return "";
 }
 
-std::string seconds_text(Nanoseconds t) { return formatted("%.3f", to_seconds(t)); }
+std::string seconds_text(Nanoseconds t) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", to_seconds(t));
+  return text;
+}
 
 void print_json(const RunReport& report, std::FILE* out) {
   const std::string variables = join(report.variables, ", ", [](const RunReport::Watched& v) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "chimera/base/hosted/terminal_text.h"
-#include "chimera/base/hosted/wording.h"
 #include "chimera/platform/standard_streams.h"
 
 namespace chimera::cli {
@@ -31,7 +30,9 @@ RunEnd RunSession::watch() {
 
 void RunSession::show_values(Nanoseconds at) {
   if (request_.watch.empty() || target_.draws(at) || request_.json) return;
-  std::string line = formatted("t %.3f s", to_seconds(at));
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f s", to_seconds(at));
+  std::string line = std::string("t ") + text;
   const std::vector<Reading> readings = target_.read(request_.watch);
   for (std::size_t i = 0; i < readings.size(); ++i)
     line += "  " + request_.watch[i] + " " + (readings[i].seen.is_written ? readings[i].seen.text : "not written yet");

@@ -38,11 +38,15 @@ void add_rtpu(RunVerdict& verdict, const RtpuFate& rtpu, bool is_told) {
   verdict.restarts += rtpu.restarts;
   if (rtpu.restarts > 0) {
     verdict.remarks.push_back(counted(rtpu.restarts, "restart", "restarts") + " of " + rtpu.name);
-    const std::string at = rtpu.restarted != kNever ? formatted(" at %.3f s", to_seconds(rtpu.restarted)) : "";
+    char at[40] = "";
+    if (rtpu.restarted != kNever) std::snprintf(at, sizeof at, " at %.3f s", to_seconds(rtpu.restarted));
     verdict.since.push_back(rtpu.name + ": the counts of its tasks begin at its restart" + at);
   }
-  if (rtpu.died != kNever)
-    verdict.remarks.push_back(rtpu.name + formatted(" died at %.3f s and is not restarted", to_seconds(rtpu.died)));
+  if (rtpu.died != kNever) {
+    char at[40];
+    std::snprintf(at, sizeof at, "%.3f s", to_seconds(rtpu.died));
+    verdict.remarks.push_back(rtpu.name + " died at " + at + " and is not restarted");
+  }
   if (rtpu.is_given_up)
     verdict.failures.push_back(rtpu.name + " was given up: its process ended too often, its tasks did not run");
   if (!rtpu.bad_end.empty() && !is_told)

@@ -16,7 +16,8 @@ inline constexpr std::size_t kTasksNamed = 16;  ///< of a command with more task
 /// "off pid, arm", "ring lamp", "ring a, ..., p and 9984 more". Context: setup.
 inline std::string command_text(const ApplicationSpec& spec, Signal signal, std::span<const TaskId> tasks) {
   const auto name = [&spec](TaskId task) { return spec.tasks[task.index].name; };
-  const std::string text = std::string(signal == Signal::kWakeup ? "ring" : signal_name(signal)) + " " +
+  const std::string word = signal == Signal::kWakeup ? "ring" : signal_name(signal);
+  const std::string text = word + (tasks.empty() ? "" : " ") +
                            join(tasks.first(std::min(tasks.size(), kTasksNamed)), ", ", name);
   return tasks.size() <= kTasksNamed ? text : text + " and " + std::to_string(tasks.size() - kTasksNamed) + " more";
 }
