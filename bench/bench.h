@@ -28,6 +28,8 @@
 #include <utility>
 #include <vector>
 
+#include "chimera/base/hosted/wording.h"
+
 namespace chimera::bench {
 
 /// Makes the compiler believe that `value` is used and may have changed.
@@ -254,10 +256,10 @@ struct Figure {
 
   /// One JSON object, one line.
   std::string json() const {
-    return "{\"row\": " + std::to_string(row) + ", \"what\": " + text(what) + ", \"figure\": " + number(figure) +
-           ", \"unit\": " + text(unit) + ", \"baseline\": " + number(baseline) +
-           ", \"baseline_name\": " + text(baseline_name) + ", \"limit\": " + number(limit) +
-           ", \"ratio\": " + number(ratio) + ", \"goal\": " + text(goal_text()) +
+    return "{\"row\": " + std::to_string(row) + ", \"what\": " + backslashed(what) + ", \"figure\": " + number(figure) +
+           ", \"unit\": " + backslashed(unit) + ", \"baseline\": " + number(baseline) +
+           ", \"baseline_name\": " + backslashed(baseline_name) + ", \"limit\": " + number(limit) +
+           ", \"ratio\": " + number(ratio) + ", \"goal\": " + backslashed(goal_text()) +
            ", \"met\": " + (goal.of == Goal::kNothing ? "null" : met() ? "true" : "false") +
            ", \"aa_spread\": " + number(aa_spread) + ", \"n\": " + std::to_string(n) + "}";
   }
@@ -273,14 +275,6 @@ struct Figure {
     char digits[32];
     std::snprintf(digits, sizeof digits, "%.6g", value);
     return digits;
-  }
-  static std::string text(const std::string& plain) {
-    std::string quoted = "\"";
-    for (const char c : plain) {
-      if (c == '"' || c == '\\') quoted += '\\';
-      quoted += c < ' ' && c >= 0 ? ' ' : c;
-    }
-    return quoted + "\"";
   }
 };
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/runtime/hosted/asked_set.h"
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/plan/constant_choice.h"
@@ -233,8 +234,8 @@ class ModeWriter {
 
   /// Warns of reactions whose switch goes the slow way, under the flag; some only if the values of constants differ.
   void warn(const ModeEdge& edge) {
-    std::string names;
-    for (const ModeConstant& each : edge.constants) names += (names.empty() ? "'" : ", '") + each.name + "'";
+    const auto name = [](const ModeConstant& constant) { return in_quotes(constant.name); };
+    const std::string names = join(edge.constants, ", ", name);
     const std::string unless = "unless the values are the same of " +
                                std::string(edge.constants.size() == 1 ? "constant " : "constants ") + names;
     const std::string why = edge.resources.empty() ? unless : "because resource '" + edge.resources[0].text +

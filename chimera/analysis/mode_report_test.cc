@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/catalogue/library.h"
 #include "chimera/units/testing/unit_samples.h"
 #include "chimera/verify/verify.h"
@@ -78,9 +79,7 @@ std::string text(const Configuration& made, const ModeConstant& constant) {
 }
 
 std::string anew(const Configuration& made, const ModeEdge& edge) {
-  std::string text;
-  for (const std::size_t task : edge.anew) text += (text.empty() ? "" : " ") + made.tasks()[task].name;
-  return text;
+  return join(edge.anew, " ", [&made](std::size_t task) { return made.tasks()[task].name; });
 }
 
 constexpr const char* kTools =

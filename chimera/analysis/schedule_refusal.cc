@@ -33,7 +33,6 @@ Fault fault_of(const Configuration& configuration, const CpuSchedule& cpu, const
                      (found.empty() ? "" : ": a cycle may take " + found),
           .found = found,
           .expected = "at most " + time_text(row.work.deadline),
-          .nearest = {},
           .remedy = helps + "chimera schedule says more, --may-miss " + task.name + " runs it all the same"};
 }
 

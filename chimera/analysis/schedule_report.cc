@@ -6,9 +6,9 @@
 
 #include "chimera/analysis/schedule_parts.h"
 #include "chimera/base/assert.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/runtime/hosted/together.h"
 #include "chimera/schedule/utilisation.h"
-#include "chimera/text/nearest.h"
 #include "chimera/text/time_text.h"
 
 namespace chimera {
@@ -17,12 +17,6 @@ namespace {
 constexpr std::size_t kMostRuns = 400;
 constexpr std::uint64_t kFewSamples = 100;
 constexpr std::int64_t kMostPeriods = 4;  // of the longest, in the picture
-
-std::vector<std::string> names_of(const Configuration& configuration) {
-  std::vector<std::string> names;
-  for (const ConfiguredTask& task : configuration.tasks()) names.push_back(task.name);
-  return names;
-}
 
 class ReportWriter {
  public:
@@ -48,11 +42,10 @@ class ReportWriter {
   }
 
   void note_unknown() {
-    const std::vector<std::string> names = names_of(configuration_);
-    const auto unknown = [&names](const std::string& name) {
-      return std::find(names.begin(), names.end(), name) == names.end();
-    };
     if (options_.profile == nullptr) return;
+    const auto unknown = [this](const std::string& name) {
+      return std::ranges::find(configuration_.tasks(), name, &ConfiguredTask::name) == configuration_.tasks().end();
+    };
     if (options_.profile->subsystem != configuration_.subsystem())
       report_.notes.push_back("the profile was recorded of subsystem '" + options_.profile->subsystem +
                               "': tasks of the same name have their times from it");
@@ -71,7 +64,7 @@ class ReportWriter {
       if (task.budget.count > 0 && seen->worst > task.budget)
         report_.notes.push_back("task '" + name + "' was seen to take " + time_text(seen->worst) +
                                 ", more than its budget of " + time_text(task.budget));
-      if (seen->samples < kFewSamples) few += (few.empty() ? "" : ", ") + name + " " + std::to_string(seen->samples);
+      if (seen->samples < kFewSamples) append_joined(few, ", ", name + " " + std::to_string(seen->samples));
     }
     if (!few.empty()) report_.notes.push_back("few cycles were measured: " + few + "; the longest of few is no bound");
   }

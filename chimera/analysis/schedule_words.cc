@@ -2,20 +2,10 @@
 // The advice of the schedule analysis, in words.
 #include "chimera/analysis/schedule_words.h"
 
-#include <cstdio>
-
+#include "chimera/base/hosted/wording.h"
 #include "chimera/description/criticality.h"
 
 namespace chimera {
-namespace {
-
-std::string number(const char* pattern, double value) {
-  char text[48];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
-}
-
-}  // namespace
 
 std::string remedy_text(const Configuration& configuration, const Remedy& remedy) {
   const std::string task = "task '" + configuration.tasks()[remedy.task].name + "'";
@@ -24,7 +14,7 @@ std::string remedy_text(const Configuration& configuration, const Remedy& remedy
     case Remedy::Kind::kExecutor:
       return "rtpu '" + rtpu + "' with executor: preemptive";
     case Remedy::Kind::kRate:
-      return task + " at rate: " + number("%g", remedy.hz) + " Hz";
+      return task + " at rate: " + formatted("%g", remedy.hz) + " Hz";
     case Remedy::Kind::kProcessor:
       return task + " on rtpu: " + rtpu;
     case Remedy::Kind::kNewProcessor:
@@ -36,6 +26,6 @@ std::string remedy_text(const Configuration& configuration, const Remedy& remedy
          (remedy.is_for_others ? " (then all others are guaranteed)" : "");
 }
 
-std::string scale_text(double scale) { return number("%.3g", scale) + " times as long as stated"; }
+std::string scale_text(double scale) { return formatted("%.3g", scale) + " times as long as stated"; }
 
 }  // namespace chimera

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "chimera/base/hosted/ordinary_file.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/catalogue/descriptor_value.h"
 #include "chimera/task/signal.h"
 #include "chimera/text/json.h"
@@ -32,9 +33,8 @@ std::uint32_t word_at(const JsonCursor& at, std::string_view what, const std::ve
   for (std::uint32_t i = 0; i < all.size(); ++i) {
     if (all[i] == word) return i;
   }
-  const std::string near = nearest(word, all);
-  at.refuse("no " + std::string(what) + " is called \"" + word.substr(0, 60) + "\"" +
-            (near.empty() ? "" : "; did you mean \"" + near + "\"?"));
+  at.refuse("no " + std::string(what) + " is called " + in_double_quotes(word.substr(0, 60)) +
+            did_you_mean(nearest(word, all), '"'));
 }
 
 std::string optional_text(const JsonCursor& at, std::string_view key) { return at.has(key) ? at.at(key).text() : ""; }

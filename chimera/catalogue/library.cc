@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "chimera/base/hosted/ordinary_file.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/catalogue/descriptor_json.h"
 #include "chimera/text/nearest.h"
 
@@ -129,9 +130,7 @@ std::size_t Library::n_unbuilt() const noexcept {
 }
 
 std::string Library::nearest_name(std::string_view name) const {
-  std::vector<std::string> names;
-  for (const LibraryEntry& entry : entries_) names.push_back(entry.descriptor.name);
-  return nearest(name, names);
+  return nearest(name, names_of(entries_, [](const LibraryEntry& entry) { return entry.descriptor.name; }));
 }
 
 std::vector<std::string> component_folders(std::span<const std::string> installed) {

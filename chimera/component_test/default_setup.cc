@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 
 #include "chimera/base/assert.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/component_test/setup.h"
 
 namespace chimera::component_test {
@@ -14,11 +14,7 @@ namespace {
 constexpr double kPlain = 0.5;
 constexpr std::uint32_t kInstances = 2;
 
-std::string number_text(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
+std::string number_text(double value) { return formatted("%.17g", value); }
 
 // The unit with 1 for its unit variables (single capitals U X Y Z); "1" if no unit remains.
 std::string plain_unit(std::string unit) {
@@ -53,23 +49,20 @@ double middle(const Descriptor& component, const PortDescriptor& port) {
   return std::isfinite(port.min) ? port.min + kPlain : std::isfinite(port.max) ? port.max - kPlain : kPlain;
 }
 
-std::string with_unit(double value, const std::string& unit) {
-  const std::string plain = plain_unit(unit);
-  return number_text(value) + (plain == "1" ? "" : " " + plain);
+std::string number_with_unit(double value, const std::string& unit) {
+  return with_unit(number_text(value), plain_unit(unit));
 }
 
 std::string struct_text(const PortDescriptor& port) {
   std::string text;
   for (const FieldDescriptor& field : port.fields) {
     const bool is_turn = port.type_name == "Pose" && field.name == "orientation";
-    std::string items;
-    for (std::uint32_t i = 0; i < field.count; ++i) {
-      const std::string one = field.type == CHIMERA_STRING ? "\"\""
-                              : field.type == CHIMERA_BOOL ? "false"
-                                                           : with_unit(is_turn && i == 0 ? 1 : 0, field.unit);
-      items += (i == 0 ? "" : ", ") + one;
-    }
-    text += (text.empty() ? "" : ", ") + field.name + ": " + (field.count == 1 ? items : "[" + items + "]");
+    const std::string items = join_n(field.count, ", ", [&](std::size_t i) {
+      return field.type == CHIMERA_STRING ? "\"\""
+             : field.type == CHIMERA_BOOL ? "false"
+                                          : number_with_unit(is_turn && i == 0 ? 1 : 0, field.unit);
+    });
+    append_joined(text, ", ", field.name + ": " + (field.count == 1 ? items : "[" + items + "]"));
   }
   return "{" + text + "}";
 }
@@ -84,16 +77,14 @@ std::string element_text(const Descriptor& component, const PortDescriptor& port
       return struct_text(port);
     case CHIMERA_INT32:
     case CHIMERA_INT64:
-      return with_unit(std::round(middle(component, port)), port.unit);
+      return number_with_unit(std::round(middle(component, port)), port.unit);
     default:
-      return with_unit(middle(component, port), port.unit);
+      return number_with_unit(middle(component, port), port.unit);
   }
 }
 
 std::string repeated(const std::string& text, std::uint32_t n) {
-  std::string list;
-  for (std::uint32_t i = 0; i < n; ++i) list += (i == 0 ? "" : ", ") + text;
-  return "[" + list + "]";
+  return "[" + join_n(n, ", ", [&text](std::size_t) { return text; }) + "]";
 }
 
 // One value fills an extent that a constant fixes; a list sets the length of an extent variable.
@@ -144,9 +135,8 @@ std::string default_setup(const Descriptor& component) {
     if (port.kind == CHIMERA_IN_CONST && port.initial.empty() && port.repeated)
       constants += "\n      " + port.name + ": " + repeated(value, instances_of(port));
     if (port.repeated && (port.kind == CHIMERA_IN_VAR || port.kind == CHIMERA_OUT_VAR)) {
-      std::string names;
-      for (std::uint32_t i = 0; i < instances_of(port); ++i) names += (i == 0 ? "" : ", ") + instance_name(port, i);
-      alias += "\n      " + port.name + ": [" + names + "]";
+      const auto name = [&port](std::size_t i) { return instance_name(port, static_cast<std::uint32_t>(i)); };
+      alias += "\n      " + port.name + ": [" + join_n(instances_of(port), ", ", name) + "]";
     }
     if (port.kind != CHIMERA_IN_VAR) continue;
     if (!port.repeated)

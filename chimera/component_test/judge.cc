@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/component_test/judge_values.h"
 #include "chimera/platform/forked_child.h"
 
@@ -13,11 +14,6 @@ namespace chimera::component_test {
 namespace {
 
 constexpr const char* kMethodNames[] = {"init", "reinit", "on", "cycle", "sync", "off", "kill", "error", "clear"};
-
-std::string times(std::uint64_t n, const char* one, const char* many) {
-  return std::to_string(n) + " " + (n == 1 ? one : many);
-}
-std::string quoted(const char* text) { return std::string("\"") + text + "\""; }
 
 // Mean of the middle half: as robust as the median, and finer than the steps of the clock.
 double middle_mean(std::vector<std::int64_t> times) {
@@ -59,8 +55,8 @@ struct Judge {
     if (record.stage < Stage::kRows) return fails("start", how_it_ended(trial.counted_end, record)), false;
     std::string methods;
     for (std::size_t m = 0; m < CHIMERA_METHODS; ++m)
-      if (about.component.methods[m]) methods += std::string(methods.empty() ? "" : " ") + kMethodNames[m];
-    ok("start", times(about.component.ports.size(), "port", "ports") + " as the descriptor says; methods " + methods);
+      if (about.component.methods[m]) append_joined(methods, " ", kMethodNames[m]);
+    ok("start", counted(about.component.ports.size(), "port") + " as the descriptor says; methods " + methods);
     return true;
   }
 
@@ -68,25 +64,26 @@ struct Judge {
     const Record& record = trial.counted.record();
     if (const std::string how = how_it_ended(trial.counted_end, record); !how.empty()) return fails("cycles", how);
     const std::size_t done = completed();
-    const std::string first = record.rejected == 0 ? ""
-                                                   : ", the first with " + quoted(record.first_text) + " in cycle " +
-                                                         std::to_string(record.first_rejected);
+    const std::string first = record.rejected == 0
+                                  ? ""
+                                  : ", the first with " + in_double_quotes(record.first_text) + " in cycle " +
+                                        std::to_string(record.first_rejected);
     if (record.rejected > 0 && about.inputs.are_recorded())
-      return fails("cycles", times(record.rejected, "cycle", "cycles") + " of " + std::to_string(about.inputs.rows()) +
+      return fails("cycles", counted(record.rejected, "cycle") + " of " + std::to_string(about.inputs.rows()) +
                                  " ended in a fault" + first);
     if (done == 0)
       return fails("cycles", "none of " + std::to_string(about.inputs.rows()) + " was completed" + first +
                                  "; NAME.test.yaml and --inputs give it something to work on");
     const std::string refused =
-        record.rejected == 0 ? "" : "; " + times(record.rejected, "was", "were") + " refused" + first;
-    ok("cycles", times(done, "cycle", "cycles") + " completed" + refused);
+        record.rejected == 0 ? "" : "; " + counted(record.rejected, "was", "were") + " refused" + first;
+    ok("cycles", counted(done, "cycle") + " completed" + refused);
   }
 
   void outputs() {
     const Record& record = trial.counted.record();
     if (record.unsafe > 0)
-      return fails("outputs", times(record.unsafe, "publication was", "publications were") +
-                                  " refused, the first with " + quoted(record.unsafe_text));
+      return fails("outputs", counted(record.unsafe, "publication was", "publications were") +
+                                  " refused, the first with " + in_double_quotes(record.unsafe_text));
     const auto rows = trial.counted.rows();
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (!is_completed(rows[i])) continue;
@@ -104,11 +101,11 @@ struct Judge {
       const MethodRecord& method = record.methods[m];
       if (method.allocations > 0)
         return fails("allocations", std::string(kMethodNames[m]) + " allocates: at most " +
-                                        times(method.most_allocations, "block", "blocks") + " in one call, " +
+                                        counted(method.most_allocations, "block") + " in one call, " +
                                         std::to_string(method.allocations) + " in " +
-                                        times(method.calls, "call", "calls"));
+                                        counted(method.calls, "call"));
     }
-    ok("allocations", "none in " + times(record.methods[CHIMERA_CYCLE].calls, "cycle", "cycles") + ", on and off");
+    ok("allocations", "none in " + counted(record.methods[CHIMERA_CYCLE].calls, "cycle") + ", on and off");
   }
 
   void system_calls() {
@@ -119,10 +116,10 @@ struct Judge {
     for (const std::uint32_t m : {CHIMERA_CYCLE, CHIMERA_SYNC, CHIMERA_ON, CHIMERA_OFF}) {
       const MethodRecord& method = record.methods[m];
       if (method.system_calls == 0) continue;
-      text += std::string(text.empty() ? "" : "; ") + kMethodNames[m] + ": at most " +
-              std::to_string(method.most_system_calls) + " in one call, " + std::to_string(method.system_calls) +
-              " in " + times(method.calls, "call", "calls") + ", the first " +
-              system_call_name(method.first_system_call);
+      append_joined(text, "; ", std::string(kMethodNames[m]) + ": at most " +
+                                    std::to_string(method.most_system_calls) + " in one call, " +
+                                    std::to_string(method.system_calls) + " in " + counted(method.calls, "call") +
+                                    ", the first " + system_call_name(method.first_system_call));
     }
     if (text.empty()) return ok("system calls", "none in a cycle, on and off");
     if (!has_resources()) return fails("system calls", text + "; and the component has no resource port");
@@ -171,10 +168,10 @@ struct Judge {
       if (trouble.refused_clear && m != CHIMERA_CLEAR)
         return fails("faults", after + " clear returns false although the cause is gone");
       if (trouble.how == Return::kNot)
-        return fails("faults", after + " it does not come back: " + quoted(trouble.text));
+        return fails("faults", after + " it does not come back: " + in_double_quotes(trouble.text));
       if (!trouble.is_finite) return fails("faults", after + " its outputs are not finite");
-      tried += std::string(tried.empty() ? "" : "; ") + kMethodNames[m] + ": " +
-               kReturns[static_cast<std::size_t>(trouble.how)];
+      append_joined(tried, "; ",
+                    std::string(kMethodNames[m]) + ": " + kReturns[static_cast<std::size_t>(trouble.how)]);
     }
     ok("faults", "came back after a fault in " + tried);
   }
@@ -191,9 +188,9 @@ struct Judge {
       if (trouble.how == Return::kNot) return fails("bad inputs", after + " it does not come back");
       if (!trouble.is_finite)
         return fails("bad inputs", after + " its outputs are still not finite 100 good cycles later");
-      tried += std::string(tried.empty() ? "" : "; ") + spoilt_name(kind) + ": " +
-               (trouble.is_rejected ? "refused, " + quoted(trouble.text)
-                                    : "accepted; good outputs again once the inputs are good");
+      append_joined(tried, "; ", std::string(spoilt_name(kind)) + ": " +
+                                     (trouble.is_rejected ? "refused, " + in_double_quotes(trouble.text)
+                                                          : "accepted; good outputs again once the inputs are good"));
     }
     if (tried.empty()) return not_judged("bad inputs", "it has no in-vars that could be bad");
     ok("bad inputs", tried);

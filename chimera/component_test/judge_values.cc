@@ -3,8 +3,8 @@
 #include "chimera/component_test/judge_values.h"
 
 #include <cmath>
-#include <cstdio>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/component_test/record.h"
 #include "chimera/task/number_at.h"
 
@@ -15,9 +15,7 @@ std::optional<std::string> why_unsound(double value, const PortSpec& spec, bool 
   if (std::isnan(value)) return "is NaN";
   if (std::isinf(value)) return "is infinite";
   if (!with_ranges || !spec.has_range || (value >= spec.min && value <= spec.max)) return std::nullopt;
-  char text[100];
-  std::snprintf(text, sizeof text, "is %g, outside %g to %g", value, spec.min, spec.max);
-  return text;
+  return formatted("is %g", value) + formatted(", outside %g", spec.min) + formatted(" to %g", spec.max);
 }
 
 std::optional<std::string> unsound_element(const std::byte* at, const PortSpec& spec, const PortDescriptor& port,

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/control/home.h"
 #include "chimera/control/listeners.h"
 #include "chimera/control/methods.h"
@@ -36,12 +37,6 @@ bool wait_for(Watched watched, Nanoseconds until) {
     if (n > 0) return true;
     if (n == 0 && now() >= until) return false;
   }
-}
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 Error refusal(const std::string& text, const std::string& where = {}) {
@@ -131,16 +126,16 @@ Result<Client> Client::connect(const std::string& subsystem, Nanoseconds limit) 
     return refusal("others may write to the folder of the sockets", folder);
   if (name.empty() && running.size() > 1) {
     const auto here = those_here(folder, running);
-    if (here.size() != 1) return refusal("several subsystems run: " + listed(running) + "; say --subsystem NAME");
+    if (here.size() != 1) return refusal("several subsystems run: " + join(running, ", ") + "; say --subsystem NAME");
     running = here;
   }
   const std::string wanted = name.empty() ? running[0] : name;
   if (std::find(running.begin(), running.end(), wanted) != running.end())
     return connect_to(socket_path(folder, wanted), limit);
   const std::string near = nearest(wanted, running);
-  const std::string hint = !near.empty()     ? "; did you mean '" + near + "'?"
+  const std::string hint = !near.empty()     ? did_you_mean(near)
                            : running.empty() ? "; start one with `chimera run FILE`"
-                                             : "; these run: " + listed(running);
+                                             : "; these run: " + join(running, ", ");
   return Message("no subsystem '" + wanted + "' runs" + hint).error(ErrorCode::kNotFound);
 }
 

@@ -107,7 +107,7 @@ bool Connection::is_read(Nanoseconds now) {
   if (unread < 0) return true;
   if (unread == 0 || unread < unread_) taken_at_ = now;
   unread_ = unread;
-  return now - taken_at_ < kPatience;
+  return now - taken_at_ < kStalledPeerLimit;
 }
 
 bool Connection::flush(Nanoseconds now) {
@@ -123,7 +123,7 @@ bool Connection::send(Nanoseconds now) {
     const std::int64_t sent = send_now(socket_.fd, std::string_view(output_).substr(sent_));
     if (sent < 0 && errno == EINTR) continue;
     if (sent < 0 && errno != EAGAIN) return false;
-    if (sent < 0) return now - moved_ < kPatience;
+    if (sent < 0) return now - moved_ < kStalledPeerLimit;
     sent_ += static_cast<std::size_t>(sent);
     moved_ = now;
   }

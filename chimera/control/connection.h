@@ -78,10 +78,10 @@ class Connection {
   bool has_output() const noexcept { return has_bytes() || !behind_.empty(); }
   /// The peer takes what it is sent, and no line is made piece by piece: more may be read from it and made for it.
   bool has_room() const noexcept { return behind_.empty() && output_.size() - sent_ < kMaxOutput; }
-  /// Has the peer read all that was sent, or some of it within the last kPatience?
+  /// Has the peer read all that was sent, or some of it within the last kStalledPeerLimit?
   bool is_read(Nanoseconds now);
   /// When flush() will find that the peer took nothing for too long; kNever: nothing waits.
-  Nanoseconds send_timeout() const noexcept { return has_bytes() ? moved_ + kPatience : kNever; }
+  Nanoseconds send_timeout() const noexcept { return has_bytes() ? moved_ + kStalledPeerLimit : kNever; }
   /// After what is queued the connection ends.
   void close_after() noexcept { is_closing_ = true; }
   bool is_closing() const noexcept { return is_closing_; }

@@ -95,8 +95,8 @@ TEST_F(ConnectionTest, ItsPatienceIsWithBytesThatWaitAndNotWithPiecesThatAreNotM
   EXPECT_EQ(connection_->send_timeout(), kNever);
   while (connection_->go_on(now_)) {
   }
-  EXPECT_EQ(connection_->send_timeout(), now_ + kPatience);
-  EXPECT_FALSE(connection_->flush(now_ + kPatience));
+  EXPECT_EQ(connection_->send_timeout(), now_ + kStalledPeerLimit);
+  EXPECT_FALSE(connection_->flush(now_ + kStalledPeerLimit));
 }
 
 TEST(Rights, AreTheHighestThatUserOrGroupsGive) {

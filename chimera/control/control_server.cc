@@ -161,7 +161,7 @@ const char* ControlServer::fault_of(Connection& connection, Nanoseconds now) con
   if (connection.is_closing() || connection.is_gone) return nullptr;
   if (connection.send_timeout() <= now) return "the client read nothing for 5 s";
   const Nanoseconds half = connection.has_line() ? kNever : connection.half_since();
-  return half != kNever && now - half >= kPatience ? "the client sent a line without its end for 5 s" : nullptr;
+  return half != kNever && now - half >= kStalledPeerLimit ? "the client sent a line without its end for 5 s" : nullptr;
 }
 
 void ControlServer::settle(Nanoseconds now) {
@@ -200,7 +200,8 @@ Nanoseconds ControlServer::next_due() const noexcept {
   Nanoseconds next = std::min({subscriptions_.next_due(), accepts_again_, closings_.next_due()});
   for (const auto& [number, connection] : connections_) {
     const bool has_half = connection->half_since() != kNever && !connection->has_line();
-    next = std::min({next, connection->send_timeout(), has_half ? connection->half_since() + kPatience : kNever});
+    const Nanoseconds half_due = has_half ? connection->half_since() + kStalledPeerLimit : kNever;
+    next = std::min({next, connection->send_timeout(), half_due});
   }
   return next;
 }

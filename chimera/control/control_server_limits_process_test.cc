@@ -143,7 +143,7 @@ TEST_F(DoorLimits, AnIdleServerIsDueWhenTheTimeOfAClientEnds) {
   say(fd, request("hello"));
   serve();
   EXPECT_GT(server->next_due(), now);
-  EXPECT_LE(server->next_due(), now + kPatience);
+  EXPECT_LE(server->next_due(), now + kStalledPeerLimit);
   server->serve(now = server->next_due());
   EXPECT_EQ(server->connections(), 0u);
   ::close(fd);

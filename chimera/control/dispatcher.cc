@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/control/turn.h"
 #include "chimera/text/json.h"
 #include "chimera/text/nearest.h"
@@ -31,9 +32,7 @@ std::shared_ptr<Pieces> pieces_of(const RpcResponse& answer) {
 }
 
 RpcResponse no_method(const std::string& name) {
-  std::vector<std::string> names;
-  for (const MethodRule& known : methods()) names.emplace_back(known.name);
-  const std::string near = name.size() < 40 ? nearest(name, names) : "";
+  const std::string near = name.size() < 40 ? nearest(name, names_of(methods(), &MethodRule::name)) : "";
   RpcResponse unknown = RpcResponse::unknown("no method '" + name.substr(0, 40) + "'", "method", near);
   unknown.code = kNoMethod;
   return unknown;

@@ -21,7 +21,9 @@ inline constexpr std::size_t kPlacesUpTo[] = {0, 32, 40, 48, kMaxConnections};
 inline constexpr std::size_t kMaxListenersOfUser = 12;  ///< connections with subscriptions: commands find a place
 inline constexpr std::size_t kMaxSubscriptions = 32;
 inline constexpr std::size_t kMaxOutput = std::size_t{1} << 20;  ///< beyond it nothing more is read from the peer
-inline constexpr Nanoseconds kPatience = seconds(5);  ///< with a peer that takes nothing, or does not end its line
+/// A connection is closed if its peer reads nothing, or leaves a line without its end, for this time. Programs write a
+/// line at once, and a slow network needs less.
+inline constexpr Nanoseconds kStalledPeerLimit = seconds(5);
 /// Length of one turn of ControlServer for questions, and of one for notifications. After it acts come first again, and
 /// the other work of the loop. One more question may be under way.
 inline constexpr Nanoseconds kTurn = milliseconds(4);

@@ -6,6 +6,7 @@
 #include <array>
 #include <sstream>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/task/signal.h"
 #include "chimera/text/json.h"
 #include "chimera/text/nearest.h"
@@ -94,8 +95,6 @@ const char* meaning(Kind kind) {
   return kWords[static_cast<unsigned>(kind)];
 }
 
-std::string in_quotes(std::string_view text) { return "'" + std::string(text) + "'"; }
-
 RpcResponse bad(std::string message, const std::string& where, const std::string& nearest = {}) {
   Json data{{"where", where}};
   if (!nearest.empty()) data["nearest"] = nearest;
@@ -114,8 +113,7 @@ RpcResponse check_word(const Parameter& parameter, const std::string& word) {
   std::istringstream in(parameter.words);
   for (std::string one; in >> one;) words.push_back(one);
   if (std::find(words.begin(), words.end(), word) != words.end()) return {};
-  std::string listed;
-  for (const std::string& one : words) listed += (&one == &words[0] ? "" : &one == &words.back() ? " or " : ", ") + one;
+  const std::string listed = join(words, ", ", {}, " or ");
   return bad(in_quotes(parameter.name) + " must be " + listed, parameter.name, near_of(word, words));
 }
 

@@ -3,6 +3,7 @@
 #include "chimera/control/rpc_response.h"
 
 #include "chimera/text/json.h"
+#include "chimera/text/nearest.h"
 
 namespace chimera::control {
 
@@ -33,6 +34,10 @@ RpcResponse RpcResponse::unknown(std::string message, const std::string& where, 
   Json data{{"where", where}};
   if (!nearest.empty()) data["nearest"] = nearest;
   return error(kUnknown, std::move(message), data);
+}
+
+RpcResponse RpcResponse::no_such(const char* what, const std::string& name, std::span<const std::string> names) {
+  return unknown(chimera::no_such(what, name, names), name, nearest(name, names));
 }
 
 std::string RpcResponse::detail(const char* key) const { return data == nullptr ? std::string() : text_at(*data, key); }

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "chimera/control/pieces.h"
@@ -51,6 +52,8 @@ struct RpcResponse {
                              const std::string& remedy = {});
   /// "no task 'pod'" with the nearest of `names` in the data, if one is near.
   static RpcResponse unknown(std::string message, const std::string& where, const std::string& nearest);
+  /// "no task 'pod'; did you mean 'pid'?" in the words of chimera::no_such.
+  static RpcResponse no_such(const char* what, const std::string& name, std::span<const std::string> names);
 
   bool is_good() const noexcept { return code == 0; }
   /// Text of `key` in the data, or "".

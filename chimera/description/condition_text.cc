@@ -46,7 +46,6 @@ std::optional<DraftCondition> read_condition(const Node& node, const std::string
                 .message = what + ' ' + said,
                 .found = node.text,
                 .expected = kForm,
-                .nearest = {},
                 .remedy = "write VARIABLE, one of < <= > >= == !=, and a value: 'speed < 0.1 rad/s', 'q[2] > 0'"});
     return std::nullopt;
   };

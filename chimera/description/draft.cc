@@ -60,7 +60,6 @@ std::optional<std::size_t> read_reaction(const Node& node, const std::array<std:
                 .message = what + ": 'switch' needs a configuration",
                 .found = "switch",
                 .expected = "{switch: CONFIGURATION}",
-                .nearest = {},
                 .remedy = "write {switch: NAME} with the name of a configuration"});
     return std::nullopt;
   }
@@ -86,9 +85,7 @@ std::optional<DraftOnFault> read_restart(const Node& node, const std::string& wh
     report.add({.rule = "key-missing",
                 .at = node.at,
                 .message = std::string(within == nullptr ? "'within'" : "'then'") + " in " + what + " is missing",
-                .found = {},
                 .expected = within == nullptr ? "within" : "then",
-                .nearest = {},
                 .remedy = "write {restart: 3, within: 10 s, then: flag}"});
   const auto window = within != nullptr ? read_duration(*within, "'within' in " + what, report) : std::nullopt;
   std::optional<std::size_t> reaction;
@@ -100,9 +97,7 @@ std::optional<DraftOnFault> read_restart(const Node& node, const std::string& wh
                 .at = window->at,
                 .message = "'within' in " + what + " is 0 ns; expected more than 0",
                 .found = "0 ns",
-                .expected = "more than 0",
-                .nearest = {},
-                .remedy = {}});
+                .expected = "more than 0"});
     return std::nullopt;
   }
   out.restart = {most->value, window->value, static_cast<OnFault>(*reaction)};
@@ -133,9 +128,7 @@ void read_standby(const Node& node, const std::string& what, DraftTask& task, Re
     report.add({.rule = "key-missing",
                 .at = node.at,
                 .message = "'task' in " + what + " is missing",
-                .found = {},
                 .expected = "task",
-                .nearest = {},
                 .remedy = "write {task: NAME, stale_after: 20 ms, hot: true}"});
   if (stale != nullptr) out.stale_after = read_duration(*stale, "'stale_after' in " + what, report);
   if (hot != nullptr)
@@ -174,9 +167,7 @@ void read_tolerate(const Node& node, const std::string& what, DraftTask& task, R
     report.add({.rule = "key-missing",
                 .at = node.at,
                 .message = inner + " is missing",
-                .found = {},
                 .expected = std::string(key),
-                .nearest = {},
                 .remedy = "write {misses: 1, of: 10}"});
     return std::nullopt;
   };
@@ -188,9 +179,7 @@ void read_tolerate(const Node& node, const std::string& what, DraftTask& task, R
                 .message = what + ": " + std::to_string(misses->value) + " misses in " + std::to_string(of->value) +
                            " cycles; expected fewer misses than cycles",
                 .found = std::to_string(misses->value),
-                .expected = "below " + std::to_string(of->value),
-                .nearest = {},
-                .remedy = {}});
+                .expected = "below " + std::to_string(of->value)});
     return;
   }
   task.tolerate = DraftTolerate{node.at, misses->value, of->value};
@@ -204,9 +193,7 @@ void read_server(const Node& node, const std::string& what, DraftTask& task, Rep
       report.add({.rule = "key-missing",
                   .at = node.at,
                   .message = "'" + std::string(key) + "' in " + what + " is missing",
-                  .found = {},
                   .expected = std::string(key),
-                  .nearest = {},
                   .remedy = "write {kind: deferrable, capacity: 1 ms, period: 10 ms}"});
   const Node *kind = node.find("kind"), *capacity = node.find("capacity"), *period = node.find("period");
   DraftServer server;
@@ -316,7 +303,6 @@ void check_count(std::size_t found, std::size_t most, const char* what, Place at
               .message = std::to_string(found) + ' ' + what + "; at most " + std::to_string(most) + " in one file",
               .found = std::to_string(found),
               .expected = "at most " + std::to_string(most),
-              .nearest = {},
               .remedy = "split the application into subsystems"});
 }
 
@@ -326,9 +312,7 @@ void read_version(const Node& node, Report& report) {
               .at = node.at,
               .message = "the version of the format is " + written(node) + "; this program reads version 1",
               .found = node.text,
-              .expected = "1",
-              .nearest = {},
-              .remedy = {}});
+              .expected = "1"});
 }
 
 void read_rtpus(const Node& node, Draft& draft, Report& report) {
@@ -397,9 +381,7 @@ void require(const Node& root, std::string_view key, const char* remedy, Report&
   report.add({.rule = "key-missing",
               .at = root.at,
               .message = "the key '" + std::string(key) + "' is missing",
-              .found = {},
               .expected = std::string(key),
-              .nearest = {},
               .remedy = remedy});
 }
 
@@ -425,13 +407,7 @@ Draft read_root(const Node& root, std::string_view file, Report& report) {
 
 ReadDescription unreadable(const std::string& path, std::string_view rule, std::string message, std::string remedy) {
   ReadDescription reading{std::nullopt, Report(path), {}};
-  reading.report.add({.rule = rule,
-                      .at = {},
-                      .message = std::move(message),
-                      .found = {},
-                      .expected = {},
-                      .nearest = {},
-                      .remedy = std::move(remedy)});
+  reading.report.add({.rule = rule, .message = std::move(message), .remedy = std::move(remedy)});
   return reading;
 }
 
@@ -442,11 +418,8 @@ ReadDescription read_description(std::string_view text, std::string_view file) {
   const std::optional<Node> root = read_yaml(text, reading.report);
   if (root && root->is_none())
     reading.report.add({.rule = "value-kind",
-                        .at = {},
                         .message = "the file is empty; a description starts with 'subsystem: NAME'",
-                        .found = {},
                         .expected = "a map",
-                        .nearest = {},
                         .remedy = "'chimera new app NAME' writes one"});
   else if (root && expect(*root, Node::Kind::kMap, "the file", reading.report))
     reading.draft = read_root(*root, file, reading.report);

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <vector>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/text/decimal.h"
 #include "chimera/text/nearest.h"
 
@@ -37,9 +38,7 @@ std::optional<std::uint64_t> whole(std::string_view text) {
 
 template <class Names>
 std::string list(const Names& names) {
-  std::string out;
-  for (const auto& name : names) out += (out.empty() ? "'" : ", '") + std::string(name) + "'";
-  return out.empty() ? "none" : out;
+  return names.empty() ? "none" : join(names, ", ", in_quotes);
 }
 
 /// Accepts a scalar without quotes, for numbers.
@@ -86,7 +85,6 @@ bool check_name(const Word& word, const std::string& what, Report& report) {
                          std::to_string(kMaxNameBytes),
               .found = shown,
               .expected = "a name",
-              .nearest = {},
               .remedy = glued ? "a space must follow the ':'" : ""});
   return false;
 }

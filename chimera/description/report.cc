@@ -8,6 +8,7 @@
 #include "chimera/base/hosted/terminal_text.h"
 #include "chimera/description/rule_ids.h"
 #include "chimera/text/json_text.h"
+#include "chimera/text/nearest.h"
 
 namespace chimera {
 namespace {
@@ -16,7 +17,7 @@ std::string_view word(Severity severity) { return severity == Severity::kError ?
 
 std::string remedy(const Fault& fault) {
   if (!fault.remedy.empty()) return fault.remedy;
-  return fault.nearest.empty() ? std::string{} : "did you mean '" + fault.nearest + "'?";
+  return fault.nearest.empty() ? std::string{} : did_you_mean(fault.nearest).substr(2);
 }
 
 }  // namespace

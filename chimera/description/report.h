@@ -25,12 +25,12 @@ enum class Severity : std::uint8_t { kError, kWarning };
 /// A breach of a rule.
 struct Fault {
   std::string_view rule;  ///< one of kRules (description/rule_ids.h); points at static text
-  Place at;
-  std::string message;   ///< what was found and what was expected, in one sentence
-  std::string found;     ///< the offending words as written; may be empty
-  std::string expected;  ///< the accepted values; may be empty
-  std::string nearest;   ///< the right name nearest to `found`; may be empty
-  std::string remedy;    ///< the action to take, in one line; empty: made from `nearest`, if there is one
+  Place at = {};
+  std::string message;        ///< what was found and what was expected, in one sentence
+  std::string found = {};     ///< the offending words as written; may be empty
+  std::string expected = {};  ///< the accepted values; may be empty
+  std::string nearest = {};   ///< the right name nearest to `found`; may be empty
+  std::string remedy = {};    ///< the action to take, in one line; empty: made from `nearest`, if there is one
   Severity severity = Severity::kError;
 };
 

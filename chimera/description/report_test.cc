@@ -12,8 +12,7 @@ Fault fault(Place at, std::string message) {
           .message = std::move(message),
           .found = "rat",
           .expected = "'rate'",
-          .nearest = "rate",
-          .remedy = {}};
+          .nearest = "rate"};
 }
 
 TEST(Report, ReadsLikeACompiler) {

@@ -38,7 +38,6 @@ void add_bad_byte(unsigned char byte, bool is_binary, Place at, Report& report) 
               .message = std::string("byte ") + found + (control ? " is a control character" : " is not valid UTF-8"),
               .found = found,
               .expected = "text in UTF-8",
-              .nearest = {},
               .remedy = is_binary ? "this is a binary file; a description is YAML text"
                                   : "save the file as plain UTF-8 text"});
 }
@@ -82,7 +81,6 @@ bool check_tabs(std::string_view text, Report& report) {
                   .message = "a tab in the indentation; YAML indents with spaces",
                   .found = "tab",
                   .expected = "spaces",
-                  .nearest = {},
                   .remedy = "replace the tab by spaces"});
     }
     start = end + 1;
@@ -107,11 +105,9 @@ bool check_text_limits(std::string_view text, Report& report) {
   if (text.size() > kMaxTextBytes && has_zero(text)) return check_bytes(text, report);  // not a text at all
   if (text.size() > kMaxTextBytes) {
     report.add({.rule = "text-size",
-                .at = {},
                 .message = "the file has more than " + std::to_string(kMaxTextBytes) + " bytes",
                 .found = std::to_string(text.size()),
                 .expected = std::to_string(kMaxTextBytes),
-                .nearest = {},
                 .remedy = "split the application into subsystems"});
     return false;
   }
@@ -119,12 +115,10 @@ bool check_text_limits(std::string_view text, Report& report) {
   const bool tabs = check_tabs(text, report);
   if (const std::size_t entries = count_entries(text); entries > kMaxEntries) {
     report.add({.rule = "text-entries",
-                .at = {},
                 .message = "the file has " + std::to_string(entries) + " entries; at most " +
                            std::to_string(kMaxEntries) + " are read",
                 .found = std::to_string(entries),
                 .expected = std::to_string(kMaxEntries),
-                .nearest = {},
                 .remedy = "split the application into subsystems"});
     return false;
   }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/description/draft_values.h"
 
 namespace chimera {
@@ -16,15 +17,12 @@ Fault fault(Place at, std::string message, std::string remedy) {
   return {.rule = "yaml-syntax",
           .at = at,
           .message = std::move(message),
-          .found = {},
-          .expected = {},
-          .nearest = {},
           .remedy = std::move(remedy)};
 }
 
 char closing(char open) { return open == '{' ? '}' : ']'; }
 
-std::string quoted(char c) { return std::string("'") + c + "'"; }
+std::string quoted(char c) { return in_quotes({&c, 1}); }
 
 struct Bracket {
   char open;

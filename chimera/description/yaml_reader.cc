@@ -82,9 +82,6 @@ class TreeBuilder : public YAML::EventHandler {
     report_.add({.rule = rule,
                  .at = place(mark),
                  .message = std::move(message),
-                 .found = {},
-                 .expected = {},
-                 .nearest = {},
                  .remedy = std::move(remedy)});
   }
   void refuse_marks(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
@@ -164,7 +161,6 @@ class NoMore : public TreeBuilder {
                  .message = "a second document begins here",
                  .found = "---",
                  .expected = "one document",
-                 .nearest = {},
                  .remedy = "put it into a file of its own"});
     throw Stop{};
   }
@@ -190,7 +186,6 @@ void refuse_duplicates(Node& node, Report& report) {
                            std::to_string(known->second.column),
                 .found = key.text,
                 .expected = "each key once",
-                .nearest = {},
                 .remedy = "take one of the two out"});
   }
   if (node.is_map() && kept.size() != node.keys.size()) {
@@ -234,9 +229,6 @@ bool parse(std::string_view text, TreeBuilder& builder, Report& report) {
       report.add({.rule = "yaml-alias",
                   .at = place(fault.mark),
                   .message = "an alias (*) is not accepted",
-                  .found = {},
-                  .expected = {},
-                  .nearest = {},
                   .remedy = "write the value out where it is used"});
     return false;
   }

@@ -2,28 +2,18 @@
 // Writes a graph of tasks in the language of Graphviz.
 #include <map>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/draw/graph.h"
 
 namespace chimera::draw {
 namespace {
-
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + "\"";
-}
 
 std::string label(const Box& box) {
   std::string all = box.name;
   if (!box.component.empty() && box.component != box.name) all += "\n" + box.component;
   if (!box.rate.empty()) all += "\n" + box.rate;
   if (!box.state.empty()) all += "\n" + box.state;
-  std::string out;
-  for (const char c : quoted(all)) out += c == '\n' ? std::string("\\n") : std::string(1, c);
-  return out;
+  return backslashed(all);
 }
 
 bool is_output(PortKind kind) { return kind == PortKind::kOut || kind == PortKind::kOutConst; }
@@ -41,7 +31,7 @@ std::map<std::string, VariableLine> lines_of(const Graph& graph) {
     for (const Port& port : box.ports) {
       if (port.kind == PortKind::kResource || port.variable.empty()) continue;
       VariableLine& line = lines[port.variable];
-      (is_output(port.kind) ? line.from : line.to).push_back(quoted(box.name));
+      (is_output(port.kind) ? line.from : line.to).push_back(backslashed(box.name));
       line.is_constant = is_constant(port.kind);
     }
   }
@@ -50,13 +40,13 @@ std::map<std::string, VariableLine> lines_of(const Graph& graph) {
 
 void append_line(std::string& out, const std::string& variable, const VariableLine& line) {
   const std::string style = line.is_constant ? ", style=dashed" : "";
-  const std::string name = quoted("var " + variable);
+  const std::string name = backslashed("var " + variable);
   if (line.from.size() == 1 && line.to.size() == 1) {
-    out += "  " + line.from[0] + " -> " + line.to[0] + " [label=" + quoted(variable) + style + "];\n";
+    out += "  " + line.from[0] + " -> " + line.to[0] + " [label=" + backslashed(variable) + style + "];\n";
     return;
   }
   // A dot where the line branches, or an open end if the variable has no writer or no reader.
-  out += "  " + name + " [shape=point, xlabel=" + quoted(variable) + "];\n";
+  out += "  " + name + " [shape=point, xlabel=" + backslashed(variable) + "];\n";
   for (const std::string& from : line.from) out += "  " + from + " -> " + name + " [arrowhead=none" + style + "];\n";
   for (const std::string& to : line.to) {
     out += "  " + name + " -> " + to + (line.is_constant ? " [style=dashed];\n" : ";\n");
@@ -66,15 +56,15 @@ void append_line(std::string& out, const std::string& variable, const VariableLi
 }  // namespace
 
 std::string dot(const Graph& graph) {
-  std::string out = "digraph " + quoted(graph.title) + " {\n  rankdir=LR;\n  node [shape=box, style=rounded];\n";
+  std::string out = "digraph " + backslashed(graph.title) + " {\n  rankdir=LR;\n  node [shape=box, style=rounded];\n";
   for (const Box& box : graph.boxes) {
-    out += "  " + quoted(box.name) + " [label=" + label(box) + "];\n";
+    out += "  " + backslashed(box.name) + " [label=" + label(box) + "];\n";
     for (const Port& port : box.ports) {
       if (port.kind != PortKind::kResource) continue;
-      const std::string node = quoted(box.name + " resource " + port.name);
-      out += "  " + node + " [shape=plaintext, label=" + quoted(port.variable) + "];\n";
-      out += "  " + quoted(box.name) + " -> " + node + " [dir=both, constraint=false, label=" + quoted(port.name) +
-             "];\n";
+      const std::string node = backslashed(box.name + " resource " + port.name);
+      out += "  " + node + " [shape=plaintext, label=" + backslashed(port.variable) + "];\n";
+      out += "  " + backslashed(box.name) + " -> " + node +
+             " [dir=both, constraint=false, label=" + backslashed(port.name) + "];\n";
     }
   }
   for (const auto& [variable, line] : lines_of(graph)) append_line(out, variable, line);

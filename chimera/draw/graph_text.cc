@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/draw/graph.h"
 #include "chimera/draw/layout.h"
 
@@ -35,7 +36,7 @@ std::string others(const Graph& graph, PortKind kind, const std::string& variabl
   std::string names;
   for (const Box& box : graph.boxes) {
     for (const Port& port : box.ports) {
-      if (port.kind == kind && port.variable == variable) names += (names.empty() ? "" : ", ") + box.name;
+      if (port.kind == kind && port.variable == variable) append_joined(names, ", ", box.name);
     }
   }
   return names;

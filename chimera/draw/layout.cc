@@ -6,6 +6,7 @@
 #include <functional>
 #include <set>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/draw/route.h"
 
 namespace chimera::draw {
@@ -113,7 +114,7 @@ std::vector<std::string> head_of(const Box& box) {
   std::vector<std::string> lines{box.name};
   if (!box.component.empty() && box.component != box.name) lines.push_back(box.component);
   std::string state = box.rate;
-  if (!box.state.empty()) state += (state.empty() ? "" : " ") + box.state;
+  if (!box.state.empty()) append_joined(state, " ", box.state);
   if (!state.empty()) lines.push_back(state);
   return lines;
 }

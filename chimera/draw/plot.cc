@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws curves as SVG panels with axes, linear or logarithmic.
+#include "chimera/base/hosted/wording.h"
 #include "chimera/draw/plot.h"
 #include "chimera/draw/svg_text.h"
 
@@ -37,19 +38,13 @@ struct Panel {
 };
 
 std::string number(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.2f", value);
-  std::string trimmed = text;
+  std::string trimmed = formatted("%.2f", value);
   trimmed.erase(trimmed.find_last_not_of('0') + 1);
   if (trimmed.back() == '.') trimmed.pop_back();
   return trimmed == "-0" ? "0" : trimmed;
 }
 
-std::string label(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
+std::string label(double value) { return formatted("%.6g", value); }
 
 ValueRange with_margin(ValueRange span, double share) {
   if (span.is_empty()) return {0, 1};

@@ -10,7 +10,7 @@
 namespace chimera {
 namespace {
 
-constexpr Nanoseconds kPatience = seconds(1);       // with a device that accepts nothing
+constexpr Nanoseconds kDeviceLimit = seconds(1);    // a frame is given up if its device accepts nothing for this time
 constexpr Nanoseconds kTryAgain = microseconds(500);
 
 }  // namespace
@@ -19,7 +19,7 @@ void SafeWrites::keep(std::uint32_t task, std::uint32_t frame, OwnedDescriptor d
   if (frame >= kSafeFrames || std::size_t{task} * kSafeFrames >= frames_.size()) return;
   Frame& kept = of(TaskId(task))[frame];
   kept.device = std::move(descriptor);
-  kept.pause = std::clamp(pause, Nanoseconds{0}, kPatience);
+  kept.pause = std::clamp(pause, Nanoseconds{0}, kDeviceLimit);
 }
 
 void SafeWrites::begin(TaskId task, const BlockView& block, Nanoseconds now) noexcept {
@@ -32,7 +32,7 @@ void SafeWrites::begin(TaskId task, const BlockView& block, Nanoseconds now) noe
     frame.put = 0;
     frame.stage = Stage::kWaits;
     frame.due = now + frame.pause;
-    frame.until = frame.due + kPatience;
+    frame.until = frame.due + kDeviceLimit;
     take_over_device(frame.device.fd);
   }
 }

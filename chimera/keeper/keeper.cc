@@ -13,7 +13,7 @@ namespace {
 
 constexpr Nanoseconds kQuickDeath = seconds(1), kLongestPause = milliseconds(500);
 constexpr int kMostRefusals = 10;               // starts of the manager that fail in a row: about 2 s
-constexpr Nanoseconds kLastLimit = seconds(1);  // for the manager to finish, and for SIGKILL to take effect
+constexpr Nanoseconds kLastLimit = seconds(1);  // for the manager to finish
 constexpr Nanoseconds kWatchEvery = milliseconds(250);
 constexpr Nanoseconds kManagerPatience = milliseconds(1500);  // a killed manager is replaced within 20 ms
 constexpr Nanoseconds kFacePatience = seconds(30);            // longer than the run client waits for an answer, 20 s
@@ -204,7 +204,7 @@ bool Keeper::advance() {
     enter(Phase::kRtpusFinish, plan_.ending_limit);
   } else if (phase_ == Phase::kRtpusFinish && (!peers_.any_rtpu_lives() || is_late)) {
     for (std::uint32_t index = 0; index < peers_.manager_index(); ++index) peers_[index].signal(SIGKILL);
-    enter(Phase::kRtpusDie, kLastLimit);
+    enter(Phase::kRtpusDie, kSigkillLimit);
   } else if (phase_ == Phase::kRtpusDie && (!peers_.any_rtpu_lives() || is_late)) {
     enter(Phase::kFaceFinishes, plan_.face_limit);
   } else if (phase_ == Phase::kFaceFinishes && (!face_.lives() || is_late)) {

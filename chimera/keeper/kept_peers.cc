@@ -12,7 +12,6 @@ using Kind = KeeperMessage::Kind;
 
 namespace {
 
-constexpr Nanoseconds kDyingLimit = seconds(1);    // for SIGKILL to take effect
 constexpr Nanoseconds kWritingLimit = seconds(3);  // longer than the guard waits for a device
 
 }  // namespace
@@ -24,11 +23,11 @@ KeptPeers::KeptPeers(PeerPlan plan) : plan_(std::move(plan)) {
 KeptPeers::~KeptPeers() { end_all(); }
 
 void KeptPeers::end_all() {
-  const Nanoseconds until = clock_.now() + kDyingLimit;
+  const Nanoseconds until = clock_.now() + kSigkillLimit;
   for (const KeptPeer& peer : peers_) peer.signal(SIGKILL);
   for (KeptPeer& peer : peers_) peer.wait(until - clock_.now());
   guard_.end(kWritingLimit);
-  orphans_.end_all(kDyingLimit);
+  orphans_.end_all(kSigkillLimit);
 }
 
 void KeptPeers::check_orphans(pid_t other) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/task/signal.h"
 
 namespace chimera {
@@ -14,13 +15,7 @@ constexpr std::string_view kKinds[] = {"in-var",   "out-var",   "in-const",  "ou
                                        "resource", "in-stream", "out-stream"};
 constexpr std::string_view kTypes[] = {"bool", "int32", "int64", "float32", "float64", "string", "struct", "any"};
 
-std::string quoted(std::string_view text) { return "\"" + std::string(text) + "\""; }
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
+std::string number(double value) { return formatted("%.17g", value); }
 
 std::string hex(const std::vector<std::byte>& bytes) {
   constexpr char kDigits[] = "0123456789abcdef";
@@ -58,11 +53,11 @@ std::string field_text(const FieldDescriptor& field) {
 std::vector<Saying> sayings(const PortDescriptor& port) {
   std::vector<Saying> all{{"kind", std::string(kind_name(port.kind))},
                           {"type", std::string(type_name(port.type))},
-                          {"type name", quoted(port.type_name)},
+                          {"type name", in_double_quotes(port.type_name)},
                           {"element size", std::to_string(port.element_size)},
-                          {"unit", quoted(port.unit)},
-                          {"shape", quoted(port.shape)},
-                          {"frame", quoted(port.frame)},
+                          {"unit", in_double_quotes(port.unit)},
+                          {"shape", in_double_quotes(port.shape)},
+                          {"frame", in_double_quotes(port.frame)},
                           {"safety", port.safety ? "yes" : "no"},
                           {"repeated", port.repeated ? "yes" : "no"},
                           {"maximum of instances", std::to_string(port.max_instances)},
@@ -76,13 +71,13 @@ std::vector<Saying> sayings(const PortDescriptor& port) {
 std::string methods_text(const Descriptor& descriptor) {
   std::string text;
   for (std::uint32_t m = 0; m < CHIMERA_METHODS; ++m) {
-    if (descriptor.methods[m]) text += (text.empty() ? "" : " ") + std::string(method_name(static_cast<Method>(m)));
+    if (descriptor.methods[m]) append_joined(text, " ", method_name(static_cast<Method>(m)));
   }
   return text;
 }
 
 std::vector<Saying> sayings(const Descriptor& descriptor) {
-  return {{"name", quoted(descriptor.name)},
+  return {{"name", in_double_quotes(descriptor.name)},
           {"ABI version", std::to_string(descriptor.abi_version)},
           {"default rate", number(descriptor.default_rate_hz) + " Hz"},
           {"methods", methods_text(descriptor)}};
@@ -144,8 +139,8 @@ Result<void> match(const Descriptor& file, const Descriptor& object) {
     const std::string port_place = place + ": port " + file.ports[i].name;
     if (i >= object.ports.size()) return differ(port_place, "port", "it exists", "nothing");
     if (file.ports[i].name != object.ports[i].name) {
-      return differ(place + ": port " + std::to_string(i + 1), "name", quoted(file.ports[i].name),
-                    quoted(object.ports[i].name));
+      return differ(place + ": port " + std::to_string(i + 1), "name", in_double_quotes(file.ports[i].name),
+                    in_double_quotes(object.ports[i].name));
     }
     if (const auto same = compare(port_place, sayings(file.ports[i]), sayings(object.ports[i])); !same) return same;
   }

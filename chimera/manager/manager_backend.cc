@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/control/receipt/switch_reason.h"
 #include "chimera/manager/act/operator_acts.h"
 #include "chimera/manager/answer/status_json.h"
@@ -12,7 +13,6 @@
 #include "chimera/runtime/hosted/asked_set.h"
 #include "chimera/text/json.h"
 #include "chimera/text/json_text.h"
-#include "chimera/text/nearest.h"
 
 namespace chimera::manager {
 namespace {
@@ -49,11 +49,7 @@ RpcResponse no_answer(const ManagerState& state, RtpuId rtpu, const std::string&
 std::variant<TaskBits, RpcResponse> named_set(const ApplicationSpec& spec, const std::string& name) {
   const auto set = std::ranges::find(spec.sets, std::string_view(name), &NamedSet::name);
   if (set != spec.sets.end()) return tasks_of(spec, static_cast<std::uint32_t>(set - spec.sets.begin()));
-  std::vector<std::string> names;
-  for (const NamedSet& one : spec.sets) names.emplace_back(one.name);
-  const std::string near = nearest(name, names);
-  const std::string hint = near.empty() ? "" : "; did you mean '" + near + "'?";
-  return RpcResponse::unknown("no configuration '" + name + "'" + hint, name, near);
+  return RpcResponse::no_such("configuration", name, names_of(spec.sets, &NamedSet::name));
 }
 
 /// The tasks that `switch` requests: a configuration, or the tasks that are ON plus `on` minus `off`.
@@ -167,9 +163,8 @@ Json plan_json(const ManagerState& state, const ForeseenSwitch& foreseen) {
 RpcResponse receipts_answer(const ReceiptArchive& archive, std::size_t n) {
   const auto or_null = [](const std::string& text) { return text.empty() ? "null" : json_string(text); };
   const std::deque<std::string>& kept = archive.kept();
-  std::string list;
-  for (std::size_t i = kept.size() - std::min(n, kept.size()); i < kept.size(); ++i)
-    list += (list.empty() ? "" : ", ") + kept[i];
+  const std::size_t n_given = std::min(n, kept.size()), first = kept.size() - n_given;
+  const std::string list = join_n(n_given, ", ", [&kept, first](std::size_t i) { return kept[first + i]; });
   return RpcResponse::ready(std::make_shared<const std::string>(
       "{\"receipts\": [" + list + "], \"file\": " + or_null(archive.path()) + ", \"unfiled\": " +
       std::to_string(archive.unfiled()) + ", \"fault\": " + or_null(archive.fault()) + "}"));
@@ -212,11 +207,8 @@ void ManagerBackend::analyse(Question::Kind kind, const Request& request) {
 void ManagerBackend::signal(const Request& request) {
   const std::string& name = request.parameters.at("signal").as_string();
   const auto at = std::ranges::find(kSignals, name);
-  if (at == std::end(kSignals)) {
-    const std::string near = nearest(name, std::vector<std::string>(std::begin(kSignals), std::end(kSignals)));
-    return request.reply(RpcResponse::unknown(
-        "no signal '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near));
-  }
+  if (at == std::end(kSignals))
+    return request.reply(RpcResponse::no_such("signal", name, names_of(kSignals, std::identity())));
   auto tasks = tasks_named(state(), control::texts(request.parameters, "tasks"));
   if (const auto* refused = std::get_if<RpcResponse>(&tasks)) return request.reply(*refused);
   if (state().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
@@ -322,13 +314,9 @@ void ManagerBackend::drill(const Request& request) {
   RtpuId to_kill;
   if (request.parameters.contains("kill")) {
     const std::string& name = request.parameters.at("kill").as_string();
-    std::vector<std::string> names;
-    for (const RtpuSpec& rtpu : state().spec().rtpus) names.emplace_back(rtpu.name);
+    const auto names = names_of(state().spec().rtpus, &RtpuSpec::name);
     const auto at = std::ranges::find(names, name);
-    const std::string near = nearest(name, names);
-    if (at == names.end())
-      return request.reply(RpcResponse::unknown(
-          "no rtpu '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near));
+    if (at == names.end()) return request.reply(RpcResponse::no_such("rtpu", name, names));
     to_kill = RtpuId(static_cast<std::size_t>(at - names.begin()));
   }
   loop_.drill().begin(wait, to_kill, now(), [this, reply = request.reply](const DrillOutcome& outcome) {

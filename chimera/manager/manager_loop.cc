@@ -14,7 +14,7 @@ namespace chimera::manager {
 namespace {
 
 constexpr Nanoseconds kCountersEvery = milliseconds(100);
-constexpr Nanoseconds kPatience = milliseconds(500);  // wait for rtpus that do not serve this manager yet
+constexpr Nanoseconds kServingLimit = milliseconds(500);  // then clients are served, even if an rtpu does not serve yet
 constexpr Nanoseconds kLookEvery = milliseconds(2);   // while an rtpu does not serve it yet: no bell rings for that
 
 }  // namespace
@@ -180,7 +180,7 @@ void ManagerLoop::look() {
   rtpu_links_->look(events);
   health_->look(now());  // before a task of a new rtpu is ON
   steps_->step(events);
-  if (!is_ready_ && (rtpu_links_->all_up() || now() - begun_ > kPatience)) become_ready();
+  if (!is_ready_ && (rtpu_links_->all_up() || now() - begun_ > kServingLimit)) become_ready();
 }
 
 void ManagerLoop::become_ready() {

@@ -11,8 +11,12 @@
 
 #include "chimera/base/message.h"
 #include "chimera/base/result.h"
+#include "chimera/base/time.h"
 
 namespace chimera {
+
+/// A process that was sent SIGKILL ends within this time. If it does not, the kernel holds it, and a caller goes on.
+inline constexpr Nanoseconds kSigkillLimit = seconds(1);
 
 /// How a process ended.
 struct ProcessEnd {

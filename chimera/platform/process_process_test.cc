@@ -17,14 +17,15 @@
 #include <string>
 #include <vector>
 
+#include "chimera/base/testing/await.h"
 #include "chimera/platform/descriptor.h"
 #include "chimera/platform/shared_memory.h"
 
 namespace chimera::process_process_test {
 namespace {
 
-constexpr std::int64_t kLimit = 60'000'000'000;  // ns
-constexpr int kPatienceMs = 60'000;
+constexpr std::int64_t kLimit = kHangLimit.count;
+constexpr int kLimitMs = static_cast<int>(kLimit / 1'000'000);
 
 Result<Process> shell(const std::string& script, std::span<const int> descriptors = {}) {
   const std::array<const char*, 3> words = {"sh", "-c", script.c_str()};
@@ -66,7 +67,7 @@ TEST(Process, PidfdIsReadableAfterTheEnd) {
   auto child = shell("kill -9 $$");
   ASSERT_TRUE(child.has_value());
   pollfd ended{child->pidfd(), POLLIN, 0};
-  ASSERT_EQ(::poll(&ended, 1, kPatienceMs), 1);
+  ASSERT_EQ(::poll(&ended, 1, kLimitMs), 1);
   ProcessEnd end;
   ASSERT_TRUE(child->has_ended(end));
   EXPECT_TRUE(end.by_signal);
@@ -173,7 +174,7 @@ TEST(Process, ChildFollowsItsParent) {
   ::waitpid(parent, &status, 0);
   EXPECT_EQ(status, 0);
   pollfd ended{ends[0], POLLIN, 0};
-  EXPECT_EQ(::poll(&ended, 1, kPatienceMs), 1) << "the grandchild lives on";
+  EXPECT_EQ(::poll(&ended, 1, kLimitMs), 1) << "the grandchild lives on";
   ::close(ends[0]);
 }
 
@@ -261,20 +262,20 @@ class MemoryHolder : public ::testing::Test {
 TEST_F(MemoryHolder, OutlivesItsProcessAndEndsSoonAfterwards) {
   EXPECT_FALSE(has_ended(0));
   kill_it();
-  EXPECT_TRUE(has_ended(kPatienceMs));
+  EXPECT_TRUE(has_ended(kLimitMs));
 }
 
 TEST_F(MemoryHolder, LetsDescriptorsCloseAtTheDeathOfItsProcess) {
   kill_it();
   char byte;
   EXPECT_EQ(::read(ends_[0], &byte, 1), 0) << "closed although the memory holder may still live";
-  EXPECT_TRUE(has_ended(kPatienceMs));
+  EXPECT_TRUE(has_ended(kLimitMs));
 }
 
 TEST_F(MemoryHolder, KeepsThePidfdOnly) {
   const std::string folder = "/proc/" + std::to_string(holder_) + "/fd/";
   const auto is_open = [&](int fd) { return ::access((folder + std::to_string(fd)).c_str(), F_OK) == 0; };
-  for (int left = kPatienceMs; is_open(ends_[1]) && left > 0; --left) pause_ms(1);
+  for (int left = kLimitMs; is_open(ends_[1]) && left > 0; --left) pause_ms(1);
   EXPECT_TRUE(is_open(0));
   for (int fd = 1; fd < 64; ++fd) EXPECT_FALSE(is_open(fd)) << fd;
 }
@@ -285,7 +286,7 @@ TEST_F(MemoryHolder, IsEndedBySigkillOnly) {
   EXPECT_FALSE(has_ended(50));
   EXPECT_EQ(::kill(pid_, 0), 0) << "the signals reached no other process";
   send(SIGKILL);
-  EXPECT_TRUE(has_ended(kPatienceMs));
+  EXPECT_TRUE(has_ended(kLimitMs));
   EXPECT_EQ(::waitpid(pid_, nullptr, WNOHANG), 0) << "the process survives its memory holder";
 }
 

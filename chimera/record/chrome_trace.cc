@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/task/signal.h"
 #include "chimera/task/state_machine.h"
 
@@ -12,16 +13,6 @@ namespace {
 
 constexpr Nanoseconds kHeldBack = seconds(2);
 constexpr std::uint32_t kFirst = 1;  // of rtpus and tasks: viewers take process 0 and thread 0 for those of an idle CPU
-
-// Names are identifiers of a verified description; whatever else comes must not break the JSON.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return out + "\"";
-}
 
 std::string argument(const char* name, std::int64_t value) {
   return ", \"" + std::string(name) + "\": " + std::to_string(value);
@@ -66,7 +57,7 @@ ChromeTrace::ChromeTrace(std::FILE* file, std::string subsystem, std::span<const
 
 void ChromeTrace::metadata(const char* what, std::size_t pid, std::size_t tid, const std::string& name) {
   std::fprintf(file_, "%s{\"ph\": \"M\", \"name\": \"%s\", \"pid\": %zu, \"tid\": %zu, \"args\": {\"name\": %s}}",
-               is_first_ ? "" : ",\n", what, pid, tid, quoted(name).c_str());
+               is_first_ ? "" : ",\n", what, pid, tid, backslashed(name).c_str());
   is_first_ = false;
 }
 
@@ -81,7 +72,7 @@ void ChromeTrace::event(const TapRecord& record, const char* phase, const std::s
   constexpr const char* kEvent =
       "%s{\"ph\": \"%s\", \"name\": %s, \"pid\": %u, \"tid\": %u, \"ts\": %s%s, \"args\": {\"ns\": %lld%s}}";
   std::fprintf(file_, kEvent,
-               is_first_ ? "" : ",\n", phase, quoted(name).c_str(), pid, tid,
+               is_first_ ? "" : ",\n", phase, backslashed(name).c_str(), pid, tid,
                microseconds_text(at).c_str(), shape.c_str(), static_cast<long long>(at.count), more.c_str());
   is_first_ = false;
 }
@@ -134,7 +125,7 @@ bool ChromeTrace::end(std::uint64_t lost, std::uint64_t missed) {
   std::fprintf(file_,
                "\n], \"displayTimeUnit\": \"ns\", \"otherData\": {\"subsystem\": %s, \"lost_records\": %llu, "
                "\"missed_records\": %llu}}\n",
-               quoted(subsystem_).c_str(), static_cast<unsigned long long>(lost),
+               backslashed(subsystem_).c_str(), static_cast<unsigned long long>(lost),
                static_cast<unsigned long long>(missed));
   return std::fflush(file_) == 0 && std::ferror(file_) == 0;
 }

@@ -7,7 +7,7 @@
 namespace chimera {
 namespace {
 
-constexpr Nanoseconds kPatience = milliseconds(500);  // the guard has the highest priority: it reads a message at once
+constexpr Nanoseconds kGuardReadLimit = milliseconds(500);  // ample: the highest priority lets the guard read at once
 
 }  // namespace
 
@@ -26,7 +26,7 @@ bool GuardLink::send(GuardMessage message, int passed) noexcept {
   message.incarnation = incarnation_;
   if (line_.send(bytes_of(message), passed)) return true;
   Watched room{.descriptor = line_.descriptor(), .for_room = true};
-  return await_ready({&room, 1}, kPatience) > 0 && line_.send(bytes_of(message), passed);
+  return await_ready({&room, 1}, kGuardReadLimit) > 0 && line_.send(bytes_of(message), passed);
 }
 
 }  // namespace chimera

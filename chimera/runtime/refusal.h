@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "chimera/base/time.h"
+
 namespace chimera {
 
 /// Why a signal was refused.
@@ -15,5 +17,7 @@ enum class Refusal : std::uint8_t {
   kRival        ///< of spawn: another task that is created has its resource (runtime/plan/rivals.h)
 };
 inline constexpr Refusal kLastRefusal = Refusal::kRival;
+/// A task whose `on` answers not yet is asked again for at most this time: a device may need seconds to start.
+inline constexpr Nanoseconds kReadyLimit = seconds(10);
 
 }  // namespace chimera

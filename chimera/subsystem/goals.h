@@ -12,8 +12,6 @@ namespace chimera::subsystem {
 inline constexpr std::uint32_t kGoalGone = 4;
 /// Time after which a started rtpu that does not serve is given up.
 inline constexpr Nanoseconds kStartLimit = seconds(10);
-/// Time for which a task that is not ready is asked again for `on`.
-inline constexpr Nanoseconds kReadyLimit = seconds(10);
 
 /// Context: setup.
 class Goals {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "chimera/base/hosted/wording.h"
+
 namespace chimera::subsystem {
 
 bool OnTransaction::has(TaskId task) const noexcept {
@@ -194,9 +196,8 @@ void OnTransaction::refuse(const OnRequest& request, TaskId task, const SignalRe
 
 void OnTransaction::report_done(std::vector<TaskOutcome> outcomes) const {
   if (request_.id != 0) return state_.emit(CommandAnswer{request_.id, {}, TaskId{}, std::move(outcomes)});
-  std::string names;
-  for (const TaskOutcome& outcome : outcomes) names += (names.empty() ? "" : " ") + state_.name(outcome.task);
-  names += outcomes.size() == 1 ? " is ON" : " are ON";
+  const auto name = [this](const TaskOutcome& outcome) { return state_.name(outcome.task); };
+  const std::string names = join(outcomes, " ", name) + (outcomes.size() == 1 ? " is ON" : " are ON");
   if (request_.is_goals) return state_.log("started", TaskId{}, RtpuId{}, names);
   const TaskId task = request_.tasks.front();
   state_.log("signal", task, state_.observed.rtpu(task), "on sent by " + state_.name(request_.from) + ": " + names);

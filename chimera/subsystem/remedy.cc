@@ -2,6 +2,8 @@
 // Makes the commands of a remedy: `spawn` for absent tasks, `clear` for tasks in ERROR, then the signal itself.
 #include "chimera/subsystem/remedy.h"
 
+#include "chimera/base/hosted/wording.h"
+
 namespace chimera::subsystem {
 namespace {
 
@@ -14,12 +16,7 @@ void add(std::vector<std::string>& commands, const SubsystemState& subsystem, co
   commands.push_back(command + "`");
 }
 
-std::string joined(const std::vector<std::string>& commands) {
-  std::string text;
-  for (std::size_t i = 0; i < commands.size(); ++i)
-    text += (i == 0 ? "" : i + 1 == commands.size() ? ", then " : ", ") + commands[i];
-  return text;
-}
+std::string in_turn(const std::vector<std::string>& commands) { return join(commands, ", ", {}, ", then "); }
 
 }  // namespace
 
@@ -41,20 +38,20 @@ std::string remedy(const SubsystemState& subsystem, Signal signal, std::span<con
   add(commands, subsystem, "spawn", spawn);
   add(commands, subsystem, "clear", clear);
   add(commands, subsystem, signal_name(signal), rest);
-  return joined(commands);
+  return in_turn(commands);
 }
 
 std::string way_back(const SubsystemState& subsystem, std::span<const TaskId> lost, std::span<const TaskId> were_on) {
   std::vector<std::string> commands;
   add(commands, subsystem, "clear", lost);
   add(commands, subsystem, "on", were_on);
-  return joined(commands);
+  return in_turn(commands);
 }
 
 std::string spawning(const SubsystemState& subsystem, std::span<const TaskId> absent) {
   std::vector<std::string> commands;
   add(commands, subsystem, "spawn", absent);
-  return joined(commands);
+  return in_turn(commands);
 }
 
 }  // namespace chimera::subsystem

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/subsystem/remedy.h"
 
 namespace chimera::subsystem {
@@ -148,8 +149,8 @@ std::string SubsystemState::missing() const {
     std::string who;
     for (const PortOf& port : variable.producers)
       if (fault == SetFault::kNoProducer || is_on(port.task))
-        who += (who.empty() ? "" : ", ") + name(port.task) + " is " + state_name(observed.state(port.task));
-    text += (text.empty() ? "" : "; ") + std::string(variable.name) + (who.empty() ? "" : " (" + who + ")");
+        append_joined(who, ", ", name(port.task) + " is " + state_name(observed.state(port.task)));
+    append_joined(text, "; ", std::string(variable.name) + (who.empty() ? "" : " (" + who + ")"));
   }
   return text;
 }

@@ -12,6 +12,8 @@
 #include <tuple>
 #include <vector>
 
+#include "chimera/base/hosted/wording.h"
+
 namespace chimera {
 namespace {
 
@@ -139,7 +141,7 @@ std::set<std::string> stories_of_the_papers() {
   for (std::string line; std::getline(lines, line);) {
     std::istringstream words(line);
     std::string story, word;
-    while (words >> word) story += (story.empty() ? "" : " ") + word;
+    while (words >> word) append_joined(story, " ", word);
     if (!story.empty()) stories.insert(story);
   }
   return stories;

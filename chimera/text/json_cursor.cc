@@ -6,18 +6,19 @@
 #include <limits>
 #include <vector>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/text/json.h"
 #include "chimera/text/nearest.h"
 
 namespace chimera {
 namespace {
 
-std::string in_quotes(std::string_view text) { return "\"" + std::string(text.substr(0, 60)) + "\""; }
+std::string shown(std::string_view text) { return in_double_quotes(text.substr(0, 60)); }
 
 std::string kind(const Json& value) {
   if (value.is_whole()) return "a whole number";
   if (value.is_number()) return "a fraction";
-  if (value.is_string()) return in_quotes(value.as_string());
+  if (value.is_string()) return shown(value.as_string());
   if (value.is_bool()) return value.as_bool() ? "true" : "false";
   return value.is_null() ? "null" : value.is_array() ? "a list" : "an object";
 }
@@ -50,11 +51,10 @@ void JsonCursor::expect_keys(std::initializer_list<std::string_view> required,
   known.insert(known.end(), optional.begin(), optional.end());
   for (const auto& [key, unused] : value_.items()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    const std::string near = nearest(key, known);
-    refuse("unknown key " + in_quotes(key) + (near.empty() ? "" : "; did you mean \"" + near + "\"?"));
+    refuse("unknown key " + shown(key) + did_you_mean(nearest(key, known), '"'));
   }
   for (const std::string_view key : required) {
-    if (!value_.contains(key)) refuse("the key " + in_quotes(key) + " is missing");
+    if (!value_.contains(key)) refuse("the key " + shown(key) + " is missing");
   }
 }
 
@@ -106,7 +106,7 @@ Json read_json(std::string_view text, std::size_t bytes, std::size_t nesting) {
   std::optional<std::string> twice;
   try {
     Json tree = Json::parse(text, &twice);
-    if (twice) throw JsonRefusal{"$: the key " + in_quotes(*twice) + " comes twice in one object"};
+    if (twice) throw JsonRefusal{"$: the key " + shown(*twice) + " comes twice in one object"};
     return tree;
   } catch (const JsonError& error) {
     throw JsonRefusal{"$: " + std::string(error.what()).substr(0, 200)};

@@ -6,6 +6,8 @@
 #include <cctype>
 #include <vector>
 
+#include "chimera/base/hosted/wording.h"
+
 namespace chimera {
 namespace {
 
@@ -58,6 +60,14 @@ std::string nearest(std::string_view wrong, std::span<const std::string> names) 
     return name.size() > wrong.size() && name.starts_with(wrong);
   });
   return longer == names.end() ? "" : *longer;
+}
+
+std::string did_you_mean(std::string_view near, char quote) {
+  return near.empty() ? "" : std::string("; did you mean ") + quote + std::string(near) + quote + "?";
+}
+
+std::string no_such(std::string_view what, std::string_view wrong, std::span<const std::string> names) {
+  return "no " + std::string(what) + " " + in_quotes(wrong) + did_you_mean(nearest(wrong, names));
 }
 
 }  // namespace chimera

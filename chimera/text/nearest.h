@@ -16,4 +16,11 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 /// in case alone is near. Context: setup; may block.
 std::string nearest(std::string_view wrong, std::span<const std::string> names);
 
+/// "; did you mean 'near'?" for the end of a message, with double quotes where the message has them; "" if `near` is
+/// empty. Context: setup; may block.
+std::string did_you_mean(std::string_view near, char quote = '\'');
+
+/// "no task 'pdi'; did you mean 'pid'?": `what` is the kind of thing. Context: setup; may block.
+std::string no_such(std::string_view what, std::string_view wrong, std::span<const std::string> names);
+
 }  // namespace chimera

@@ -47,5 +47,12 @@ TEST(Nearest, TakesHostileLengthsInStride) {
   EXPECT_EQ(nearest(std::string(1 << 20, 'b'), names), "");
 }
 
+TEST(Nearest, EndsAMessageOnlyIfANameIsNear) {
+  const std::vector<std::string> names = {"pid", "lqr"};
+  EXPECT_EQ(no_such("task", "pdi", names), "no task 'pdi'; did you mean 'pid'?");
+  EXPECT_EQ(no_such("task", "arm", names), "no task 'arm'");
+  EXPECT_EQ(did_you_mean("N.m", '"'), "; did you mean \"N.m\"?");
+}
+
 }  // namespace
 }  // namespace chimera

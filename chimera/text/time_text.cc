@@ -2,7 +2,7 @@
 // A time as people read it.
 #include "chimera/text/time_text.h"
 
-#include <cstdio>
+#include "chimera/base/hosted/wording.h"
 
 namespace chimera {
 
@@ -13,9 +13,7 @@ std::string time_text(Nanoseconds time) {
   } kUnits[] = {{1e9, "s"}, {1e6, "ms"}, {1e3, "us"}};
   for (const auto& unit : kUnits) {
     if (static_cast<double>(time.count) < unit.ns) continue;
-    char text[48];
-    std::snprintf(text, sizeof text, "%.4g %s", static_cast<double>(time.count) / unit.ns, unit.name);
-    return text;
+    return formatted("%.4g ", static_cast<double>(time.count) / unit.ns) + unit.name;
   }
   return std::to_string(time.count) + " ns";
 }

@@ -2,9 +2,9 @@
 // Writes the bytes of a value as text or JSON, one number after the other.
 #include "chimera/text/value_renderer.h"
 
-#include <cstdio>
 #include <cstring>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/task/number_at.h"
 #include "chimera/text/json_text.h"
 
@@ -29,9 +29,7 @@ std::string plain(std::uint32_t type, const std::byte* at, std::uint32_t bytes, 
   if (type == CHIMERA_INT32) return std::to_string(read<std::int32_t>(at));
   if (type == CHIMERA_INT64) return std::to_string(read<std::int64_t>(at));
   if (is_json) return json_number(number_at(type, at));
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", number_at(type, at));
-  return text;
+  return formatted("%.6g", number_at(type, at));
 }
 
 void append_unit(std::string& text, const std::string& unit) {

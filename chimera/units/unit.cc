@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "chimera/base/hosted/wording.h"
 
 namespace chimera {
 namespace {
@@ -13,11 +14,7 @@ constexpr const char* kBaseNames[kBaseUnits] = {"m", "kg", "s", "A", "K", "mol",
 constexpr double kRounding = 1e-12;
 bool nearly(double a, double b) { return a == b || std::abs(a - b) <= kRounding * std::max(std::abs(a), std::abs(b)); }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.12g", value);
-  return text;
-}
+std::string number(double value) { return formatted("%.12g", value); }
 
 void append(std::string& text, const char* name, int exponent) {
   if (!text.empty()) text += '.';

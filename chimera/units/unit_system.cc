@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "chimera/base/hosted/ordinary_file.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/platform/shared_memory.h"
 #include "chimera/text/nearest.h"
 #include "chimera/units/unit_text.h"
@@ -148,10 +149,9 @@ struct UnitSystem::Content {
   }
 
   std::string unknown(std::string_view word) const {
-    const std::string text = "\"" + std::string(word) + "\" is no known unit";
     const auto slip = slips().find(word);
     const std::string near = slip != slips().end() ? slip->second : nearest(word, names);
-    return near.empty() ? text : text + "; did you mean \"" + near + "\"?";
+    return in_double_quotes(word) + " is no known unit" + did_you_mean(near, '"');
   }
 };
 

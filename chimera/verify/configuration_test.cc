@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/catalogue/library.h"
 #include "chimera/units/testing/unit_samples.h"
 #include "chimera/verify/verify.h"
@@ -78,9 +79,7 @@ std::vector<double> numbers(std::span<const std::byte> bytes) {
 }
 
 std::vector<std::string> names(const Configuration& made, std::span<const TaskId> order) {
-  std::vector<std::string> out;
-  for (const TaskId id : order) out.push_back(made.tasks()[id.index].name);
-  return out;
+  return names_of(order, [&made](TaskId id) { return made.tasks()[id.index].name; });
 }
 
 using Names = std::vector<std::string>;

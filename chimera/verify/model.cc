@@ -55,9 +55,6 @@ void Model::warn(std::string_view rule, Place at, std::string message, std::stri
   report.add({.rule = rule,
               .at = at,
               .message = std::move(message),
-              .found = {},
-              .expected = {},
-              .nearest = {},
               .remedy = std::move(remedy),
               .severity = Severity::kWarning});
 }

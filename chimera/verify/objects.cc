@@ -31,7 +31,6 @@ Report faulty_objects(const Configuration& configuration, const Library& library
                            "': " + std::string(why.substr(0, why.size() - (has_remedy ? kRebuild.size() : 0))),
                 .found = entry->object_file,
                 .expected = "the shared object of '" + task.component + "'",
-                .nearest = {},
                 .remedy = "rebuild the component: " + entry->object_file + " is what would be loaded"});
   }
   report.sort();

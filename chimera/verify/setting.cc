@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/catalogue/library.h"
 #include "chimera/description/yaml_reader.h"
 #include "chimera/text/nearest.h"
@@ -20,21 +21,13 @@ std::string spread_unit(const std::string& text) {
   if (text.empty() || text[0] != '[' || end == std::string::npos) return text;
   const std::size_t unit = text.find_first_not_of(' ', end + 1);
   if (unit == std::string::npos && text.find(',') != std::string::npos) return text;
-  std::string out = "[";
-  for (std::size_t at = 1; at < end;) {
-    const std::size_t next = std::min(text.find_first_of(" ,", at), end);
-    if (next > at) {
-      out += (out.size() == 1 ? "" : ", ") + text.substr(at, next - at);
-      if (unit != std::string::npos) out += " " + text.substr(unit);
-    }
-    at = next + 1;
+  const std::string with = unit == std::string::npos ? "" : " " + text.substr(unit);
+  std::string items;
+  for (std::size_t at = 1, next = 0; at < end; at = next + 1) {
+    next = std::min(text.find_first_of(" ,", at), end);
+    if (next > at) append_joined(items, ", ", text.substr(at, next - at) + with);
   }
-  return out + "]";
-}
-
-std::string did_you_mean(const std::string& name, std::span<const std::string> names) {
-  const std::string near = nearest(name, names);
-  return near.empty() ? "" : "; did you mean '" + near + "'?";
+  return "[" + items + "]";
 }
 
 void place(Node& node, Place at) {
@@ -91,7 +84,7 @@ class AppliedSettings {
     for (const Fault& fault : report.faults()) {
       if (fault.severity != Severity::kError) continue;
       if (text.empty()) first = fault.at;
-      text += (text.empty() ? "" : "; ") + authors(fault.at) + ": " + sentence(fault);
+      append_joined(text, "; ", authors(fault.at) + ": " + sentence(fault));
     }
     return {ErrorCode::kBadInput, {text}, {where(first)}};
   }
@@ -104,8 +97,8 @@ class AppliedSettings {
   std::string authors(Place at) const {
     std::string those, all;
     for (std::size_t i = 0; i < settings_.size(); ++i) {
-      if (places_[i] == at) those += (those.empty() ? "" : ", ") + settings_[i].said;
-      all += (all.empty() ? "" : ", ") + settings_[i].said;
+      if (places_[i] == at) append_joined(those, ", ", settings_[i].said);
+      append_joined(all, ", ", settings_[i].said);
     }
     return those.empty() ? all : those;
   }
@@ -145,7 +138,7 @@ class AppliedSettings {
       target = &known.constants.back();
       return {};
     }
-    return refuse(setting, "no task '" + task + "'" + did_you_mean(task, names), {});
+    return refuse(setting, chimera::no_such("task", task, names), {});
   }
 
   Error no_such(const Setting& setting) const {
@@ -161,7 +154,7 @@ class AppliedSettings {
     std::vector<std::string> names;
     for (const auto* list : {&draft_.operators, &draft_.constants})
       for (const NamedNode& known : *list) names.push_back(known.name.text);
-    std::string hint = did_you_mean(setting.name, names);
+    std::string hint = did_you_mean(nearest(setting.name, names));
     for (const ConfiguredTask& task : configuration_.tasks())
       for (const ConfiguredPort& port : task.ports)
         if (hint.empty() && port.kind == CHIMERA_IN_CONST && port.name == setting.name)
@@ -212,9 +205,8 @@ Node in_unit(Node value, const std::string& unit, const UnitSystem& units) {
   if (!quantity || !wanted || quantity->unit_text == unit) return value;
   const auto number = value_in(*quantity, *wanted, unit);
   if (!number && number.error().code != ErrorCode::kRefused) return value;
-  char text[40] = "inf";  // not finite in this unit: the rules report it
-  if (number) std::snprintf(text, sizeof text, "%.17g", *number);
-  value.text = unit == "1" ? text : text + (" " + unit);
+  // If the value is not finite in this unit, the rules report it.
+  value.text = with_unit(number ? formatted("%.17g", *number) : "inf", unit);
   return value;
 }
 

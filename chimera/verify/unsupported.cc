@@ -25,9 +25,6 @@ class Refusals {
     report_.add({.rule = "not-built",
                  .at = at,
                  .message = what + ": run cannot do this yet",
-                 .found = {},
-                 .expected = {},
-                 .nearest = {},
                  .remedy = std::move(remedy)});
   }
   void refuse_key(Place at, const char* key, const DraftTask& task) {

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/description/draft_values.h"
 #include "chimera/description/text_limits.h"
 #include "chimera/runtime/plan/task_lists.h"
@@ -129,8 +130,7 @@ class ValueWriter {
 
   void fields(const Node& node, std::byte* to) {
     const PortDescriptor& declared = *port_.declared;
-    std::vector<std::string> names;
-    for (const FieldDescriptor& field : declared.fields) names.push_back(field.name);
+    const auto names = names_of(declared.fields, &FieldDescriptor::name);
     if (!node.is_map()) {
       refuse("value-type", node.at,
              "found " + written(node) + "; expected a map of the fields of " + declared.type_name, written(node),
@@ -201,8 +201,7 @@ class ValueWriter {
   }
 
   bool is_configuration(const Node& node) {
-    std::vector<std::string> names;
-    for (const SetModel& set : model_.sets) names.push_back(set.name);
+    const auto names = names_of(model_.sets, &SetModel::name);
     if (std::ranges::find(names, node.text) != names.end()) return true;
     refuse("configuration-unknown", node.at, "found " + written(node) + "; expected a configuration: " + listed(names),
            node.text, listed(names), nearest(node.text, names));
@@ -218,8 +217,7 @@ class ValueWriter {
     TaskLists lists;
     const ListsFault fault = read_lists(node.text, find, lists);
     if (fault.kind == ListsFault::Kind::kUnknownTask) {
-      std::vector<std::string> names;
-      for (const TaskModel& task : model_.tasks) names.push_back(task.name());
+      const auto names = names_of(model_.tasks, &TaskModel::name);
       const std::string word(fault.word);
       refuse("task-unknown", node.at, "found " + written(node) + ", and there is no task '" + word + "'", word,
              listed(names), nearest(word, names));
@@ -281,8 +279,7 @@ class ValueWriter {
       return false;
     }
     if (!cell.has_range || target_.is_step || (value >= cell.min && value <= cell.max)) return true;
-    const std::string range =
-        text(cell.min) + " to " + text(cell.max) + (cell.unit_text == "1" ? "" : " " + cell.unit_text);
+    const std::string range = with_unit(text(cell.min) + " to " + text(cell.max), cell.unit_text);
     refuse("value-range", node.at, "found " + written(node) + "; expected " + range, node.text, range);
     return false;
   }

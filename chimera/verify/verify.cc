@@ -52,9 +52,7 @@ Verdict judge(const Draft& draft, const Library& library, Report report, Overloa
     verdict.report.add({.rule = "key-missing",
                         .at = draft.subsystem.at,
                         .message = "there is no task",
-                        .found = {},
                         .expected = "tasks",
-                        .nearest = {},
                         .remedy = "write 'tasks:' and a line 'NAME: {component: COMPONENT, rate: 100 Hz}' for each"});
   Model model(draft, library, verdict.report);
   model.overload = overload;

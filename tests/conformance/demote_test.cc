@@ -6,6 +6,8 @@
 
 #include "tests/conformance/runner.h"
 
+#include "chimera/base/hosted/wording.h"
+
 namespace chimera::toy {
 namespace {
 
@@ -31,8 +33,8 @@ class Demote : public ::testing::Test {
     for (const TapRecord& r : runner->records()) {
       if (r.kind != TapKind::kRun) continue;
       const std::int64_t from = r.at.count / 1'000'000;
-      text += std::string(text.empty() ? "" : ", ") + (r.task == app.id("bad") ? "bad " : "a ") + std::to_string(from) +
-              "-" + std::to_string(from + r.b / 1'000'000);
+      append_joined(text, ", ", (r.task == app.id("bad") ? "bad " : "a ") + std::to_string(from) + "-" +
+                                    std::to_string(from + r.b / 1'000'000));
     }
     return text;
   }

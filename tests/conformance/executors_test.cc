@@ -2,6 +2,7 @@
 // Rules for every executor of one context, in real and in virtual time.
 #include <gtest/gtest.h>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/runtime/hosted/tap_rows.h"
 #include "tests/conformance/runner.h"
 
@@ -20,8 +21,7 @@ std::string story(const Application& app, const std::string& task) {
   std::string text;
   for (const Call& call : app.calls) {
     if (call.task != task || call.method == Method::kInit) continue;
-    text += (text.empty() ? "" : " ") + std::string(method_name(call.method)) + "@" +
-            std::to_string(call.now.count / 1'000'000);
+    append_joined(text, " ", std::string(method_name(call.method)) + "@" + std::to_string(call.now.count / 1'000'000));
   }
   return text;
 }

@@ -6,6 +6,8 @@
 
 #include "tests/conformance/runner.h"
 
+#include "chimera/base/hosted/wording.h"
+
 namespace chimera::toy {
 namespace {
 
@@ -54,11 +56,9 @@ std::string missed(const std::vector<TapRecord>& records) {
     if (r.kind == TapKind::kMiss && r.at < milliseconds(60)) misses.emplace_back(r.at.count / 1'000'000, r.task.index);
   }
   std::sort(misses.begin(), misses.end());
-  std::string text;
-  for (const auto& [at, task] : misses) {
-    text += (text.empty() ? "" : " ") + std::string(1, static_cast<char>('A' + task)) + "@" + std::to_string(at);
-  }
-  return text;
+  return join(misses, " ", [](const auto& miss) {
+    return std::string(1, static_cast<char>('A' + miss.second)) + "@" + std::to_string(miss.first);
+  });
 }
 
 class Timelines : public ::testing::TestWithParam<bool> {};

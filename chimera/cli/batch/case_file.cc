@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "chimera/base/hosted/ordinary_file.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/description/draft_values.h"
 #include "chimera/description/yaml_reader.h"
 
@@ -16,9 +17,9 @@ constexpr std::array<std::string_view, 2> kTruth = {"true", "false"};
 /// A value of `set` in the words of a command line.
 std::string flow_text(const Node& node) {
   if (node.is_scalar()) return node.text;
-  std::string text;
-  for (std::size_t i = 0; i < node.items.size(); ++i)
-    text += (text.empty() ? "" : ", ") + (node.is_map() ? node.keys[i].text + ": " : "") + flow_text(node.items[i]);
+  const std::string text = join_n(node.items.size(), ", ", [&node](std::size_t i) {
+    return (node.is_map() ? node.keys[i].text + ": " : "") + flow_text(node.items[i]);
+  });
   return node.is_map() ? "{" + text + "}" : "[" + text + "]";
 }
 
@@ -60,9 +61,7 @@ class CaseReader {
     report_.add({.rule = "key-missing",
                  .at = at_,
                  .message = what_ + ": the key '" + key + "' is missing",
-                 .found = {},
                  .expected = key,
-                 .nearest = {},
                  .remedy = remedy});
   }
   void duration(const Node& node, const char* key, Nanoseconds& to) {
@@ -75,10 +74,7 @@ class CaseReader {
     report_.add({.rule = "quantity-bad",
                  .at = value->at,
                  .message = std::string("'") + key + "' of " + what_ + " must be longer than 0",
-                 .found = value->text,
-                 .expected = {},
-                 .nearest = {},
-                 .remedy = {}});
+                 .found = value->text});
   }
   void truth(const Node& node, const char* key, bool& to) {
     if (const Node* value = node.find(key))
@@ -129,9 +125,7 @@ CaseFile read_case_text(std::string_view text, const std::string& file, Report& 
     report.add({.rule = "key-missing",
                 .at = root->at,
                 .message = "there is no case",
-                .found = {},
                 .expected = "cases",
-                .nearest = {},
                 .remedy = "write 'cases:' and a line 'NAME: {for: 5 s, expect: [error <= 2 mrad]}' for "
                           "each"});
   for (std::size_t i = 0; has_cases && i < cases->keys.size(); ++i)
@@ -146,12 +140,8 @@ CaseFile read_case_file(const std::string& path, Report& report) {
   const auto text = read_ordinary(path, kMaxTextBytes + 1);
   if (text && text->size() <= kMaxTextBytes) return read_case_text(*text, path, report);
   report.add({.rule = text ? "text-size" : "file-unreadable",
-              .at = {},
               .message = "the file " + (text ? "has more than " + std::to_string(kMaxTextBytes) + " bytes"
                                              : std::string(text.error().message.view())),
-              .found = {},
-              .expected = {},
-              .nearest = {},
               .remedy = text ? "split it into several files" : "check the path and its rights"});
   return {path, described_by(path), {}};
 }

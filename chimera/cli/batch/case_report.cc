@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/run/run_verdict.h"
 #include "chimera/draw/svg_text.h"
 #include "chimera/text/json_text.h"
@@ -15,7 +16,6 @@ using draw::escaped;
 
 std::string said_by(const RunReport::Judged& judged) { return judged.text + " (" + judged.said + ")"; }
 
-std::string count_text(std::size_t n, const char* noun) { return std::to_string(n) + " " + noun + (n == 1 ? "" : "s"); }
 
 Json json_of(const CaseOutcome& one) {
   Json expectations = Json::array();
@@ -118,19 +118,16 @@ std::string text(const CaseReport& report) {
       for (const std::string& complaint : complaints) all += "           " + complaint + "\n";
     }
   }
-  return all + count_text(report.passed() + report.failed(), "case") + " in " +
-         count_text(report.files.size(), "file") + ": " + std::to_string(report.passed()) + " passed, " +
-         std::to_string(report.failed()) + " failed\n";
+  return all + counted(report.passed() + report.failed(), "case") + " in " + counted(report.files.size(), "file") +
+         ": " + std::to_string(report.passed()) + " passed, " + std::to_string(report.failed()) + " failed\n";
 }
 
 std::string json(const CaseReport& report) {
-  std::string files;
-  for (const CaseFileOutcome& file : report.files) {
+  const std::string files = join(report.files, ",\n", [](const CaseFileOutcome& file) {
     Json cases = Json::array();
     for (const CaseOutcome& one : file.cases) cases.push_back(json_of(one));
-    files += (files.empty() ? "" : ",\n") +
-             spaced_json({{"file", file.file}, {"description", file.description}, {"cases", std::move(cases)}});
-  }
+    return spaced_json({{"file", file.file}, {"description", file.description}, {"cases", std::move(cases)}});
+  });
   return "{\"passed\": " + std::to_string(report.passed()) + ", \"failed\": " + std::to_string(report.failed()) +
          ", \"files\": [\n" + files + "]}\n";
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/files/blanks.h"
 #include "chimera/cli/run/probe_numbers.h"
 #include "chimera/text/nearest.h"
@@ -21,9 +22,7 @@ Error wrong(const std::string& text, const std::string& why) {
 }
 
 std::string number_text(double value, const std::string& unit) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return unit == "1" ? text : text + (" " + unit);
+  return with_unit(formatted("%.6g", value), unit);
 }
 
 bool is_of(const std::string& number, const std::string& chosen) {
@@ -56,9 +55,8 @@ Result<Measure> Measure::read(const std::string& text, const Configuration& conf
   made.variable_ = name.substr(0, name.find_first_of("[."));
   if (name.find(' ') != std::string::npos) {
     const std::vector<std::string> words(kWords.begin(), kWords.end());
-    const std::string word = name.substr(0, name.find(' ')), near = nearest(word, words);
-    return wrong(made.text_, "no measure '" + word + "'; " + (near.empty() ? "" : "did you mean '" + near + "'? ") +
-                                 "There are end, min, max, mean, rms, settling");
+    const std::string unknown = no_such("measure", name.substr(0, name.find(' ')), words);
+    return wrong(made.text_, unknown + (unknown.ends_with("?") ? " There are " : "; There are ") + join(words, ", "));
   }
   const auto found = find_variable(configuration, made.variable_);
   if (!found) return wrong(made.text_, found.error().message.c_str());
@@ -196,8 +194,8 @@ bool Measure::holds(std::string& said) const {
   Seen seen{true, {}, {}};
   for (const Number& number : numbers()) {
     if (said.size() < 200)
-      said += (said.empty() ? "" : ", ") + number.name + " is " +
-              (number.value ? number_text(*number.value, number.unit) : "not a number");
+      append_joined(said, ", ", number.name + " is " +
+                                    (number.value ? number_text(*number.value, number.unit) : "not a number"));
     seen.numbers.push_back(number.value.value_or(NAN));
   }
   std::string ignored;

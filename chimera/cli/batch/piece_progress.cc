@@ -2,6 +2,7 @@
 // Prints and wipes a line with the number of finished pieces.
 #include "chimera/cli/batch/piece_progress.h"
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/platform/standard_streams.h"
 
 namespace chimera::cli {
@@ -9,10 +10,8 @@ namespace chimera::cli {
 std::string pieces_text(std::size_t done, std::size_t all, const std::string& noun, Nanoseconds wall) {
   std::string line = std::to_string(done) + " of " + std::to_string(all) + " " + noun;
   if (done == 0 || done >= all) return line;
-  char text[60];
-  std::snprintf(text, sizeof text, ", about %.0f s to go",
-                to_seconds(wall) * static_cast<double>(all - done) / static_cast<double>(done));
-  return line + text;
+  const double left = to_seconds(wall) * static_cast<double>(all - done) / static_cast<double>(done);
+  return line + formatted(", about %.0f s to go", left);
 }
 
 PieceProgress::PieceProgress(std::size_t all, std::string noun, std::FILE* err)

@@ -16,6 +16,7 @@
 #include <cstring>
 #include <thread>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/run/own_process.h"
 #include "chimera/cli/run/run.h"
 #include "chimera/cli/run/under_way.h"
@@ -144,13 +145,8 @@ class Crowd {
     }
     const bool has_returned = child.place == nullptr || child.place->has_returned;
     std::string& why = child.end.failure;
-    if (child.is_late) {
-      char text[60];
-      std::snprintf(text, sizeof text, "did not end within %.6g s", to_seconds(plan_.limit));
-      why = text;
-    } else if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !has_returned) {
-      why = end_text(status);
-    }
+    if (child.is_late) why = formatted("did not end within %.6g s", to_seconds(plan_.limit));
+    else if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || !has_returned) why = end_text(status);
     const std::string what = why.empty() || child.place == nullptr ? "" : child.place->text();
     if (!what.empty()) why += " " + what;
     if (const std::string last = why.empty() ? "" : last_line(child.errors); !last.empty()) why += ": " + last;

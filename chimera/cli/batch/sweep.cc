@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "chimera/base/hosted/terminal_text.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/batch/piece_progress.h"
 #include "chimera/cli/batch/side_by_side.h"
 #include "chimera/cli/batch/sweep_table.h"
@@ -27,10 +28,8 @@ Result<std::vector<ValueList>> lists_of(const SweepRequest& request) {
     lists.push_back(*std::move(list));
   }
   if (runs <= static_cast<double>(kMostRuns)) return lists;
-  char count[40];
-  std::snprintf(count, sizeof count, "%.0f", runs);
   return Error{ErrorCode::kRefused,
-               {std::string("these lists make ") + count + " runs, all combinations; at most " +
+               {"these lists make " + formatted("%.0f", runs) + " runs, all combinations; at most " +
                 std::to_string(kMostRuns) + ": take wider steps, or fewer lists"},
                {}};
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/files/blanks.h"
 #include "chimera/text/json_text.h"
 
@@ -38,12 +39,6 @@ const Measure::Number* number_of(const MeasuredRun& run, const std::string& name
   return nullptr;
 }
 
-std::string shown(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
 std::string failure_of(const MeasuredRun& run) { return run.failure.empty() ? "" : "FAILED: " + run.failure; }
 
 Cells head(const SweepTable& table) {
@@ -65,14 +60,14 @@ Cells row(const SweepTable& table, std::size_t r, const std::vector<Column>& col
     if (number == nullptr || !number->value)
       cells.push_back(nothing);
     else
-      cells.push_back(exact ? json_number(*number->value) : shown(*number->value));
+      cells.push_back(exact ? json_number(*number->value) : formatted("%.6g", *number->value));
   }
   for (std::size_t e = 0; e < table.expectations.size(); ++e)
     cells.push_back(!run.failure.empty() ? nothing : run.expectations[e].holds ? "holds" : "FAILS");
   return cells;
 }
 
-std::string quoted(const std::string& cell) {
+std::string csv_cell(const std::string& cell) {
   if (cell.find_first_of(",\"\n") == std::string::npos) return cell;
   std::string out = "\"";
   for (const char c : cell) out += c == '"' ? "\"\"" : std::string(1, c);
@@ -80,9 +75,9 @@ std::string quoted(const std::string& cell) {
 }
 
 std::string line_of(const Cells& cells, const std::vector<std::size_t>& widths, const std::string& failure) {
-  std::string line;
-  for (std::size_t i = 0; i < cells.size(); ++i)
-    line += (i == 0 ? "" : "  ") + std::string(widths[i] - std::min(widths[i], cells[i].size()), ' ') + cells[i];
+  const std::string line = join_n(cells.size(), "  ", [&](std::size_t i) {
+    return std::string(widths[i] - std::min(widths[i], cells[i].size()), ' ') + cells[i];
+  });
   return line + (failure.empty() ? "" : "  " + failure) + "\n";
 }
 
@@ -137,11 +132,7 @@ std::string text(const SweepTable& table) {
 
 std::string csv(const SweepTable& table) {
   const std::vector<Column> known = columns(table);
-  const auto line = [](const Cells& cells) {
-    std::string text;
-    for (std::size_t i = 0; i < cells.size(); ++i) text += (i == 0 ? "" : ",") + quoted(cells[i]);
-    return text + "\n";
-  };
+  const auto line = [](const Cells& cells) { return join(cells, ",", csv_cell) + "\n"; };
   Cells cells = head(table);
   cells.emplace_back("failure");
   std::string all = line(cells);
@@ -154,8 +145,8 @@ std::string csv(const SweepTable& table) {
 }
 
 std::string json(const SweepTable& table) {
-  std::string rows;
-  for (std::size_t r = 0; r < table.runs.size(); ++r) rows += (r == 0 ? "" : ",\n") + spaced_json(json_of(table, r));
+  const auto row = [&table](std::size_t r) { return spaced_json(json_of(table, r)); };
+  const std::string rows = join_n(table.runs.size(), ",\n", row);
   return "{\"subsystem\": " + json_string(table.subsystem) + ", \"runs\": [\n" + rows + "]}\n";
 }
 
@@ -184,8 +175,8 @@ draw::Plot plot(const SweepTable& table) {
   for (const MeasuredRun& run : table.runs) failed += run.failure.empty() ? 0 : 1;
   if (failed > 0) made.note = std::to_string(failed) + " of " + std::to_string(table.runs.size()) + " runs failed";
   if (wanted > kMostCurves)
-    made.note += (made.note.empty() ? "" : "; ") + std::string("the first ") + std::to_string(kMostCurves) + " of " +
-                 std::to_string(wanted) + " curves";
+    append_joined(made.note, "; ",
+                  "the first " + std::to_string(kMostCurves) + " of " + std::to_string(wanted) + " curves");
   return made;
 }
 

@@ -76,8 +76,7 @@ Result<void> choose(const std::vector<std::string>& only, std::vector<CaseFile>&
     for (const Case& one : file.cases) names.push_back(one.name);
   for (const std::string& name : only) {
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    const std::string near = nearest(name, names);
-    return refusal("--case: no case '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?"));
+    return refusal("--case: " + no_such("case", name, names));
   }
   if (only.empty()) return {};
   for (CaseFile& file : files)

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "chimera/base/hosted/ordinary_file.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/base/message.h"
 #include "chimera/catalogue/descriptor_json.h"
 #include "chimera/component_test/judge.h"
@@ -22,7 +23,7 @@ constexpr std::size_t kMostRecordingBytes = std::size_t{256} << 20;
 
 namespace fs = std::filesystem;
 
-constexpr Nanoseconds kPartnerPatience = seconds(5);
+constexpr Nanoseconds kPartnerStartLimit = seconds(5);  // a partner that answers its first request
 constexpr std::size_t kMostMemory = 64u * 1024 * 1024;  // of rows and their outputs
 constexpr std::size_t kFewest = 20;                     // cycles of a short recording
 
@@ -92,7 +93,7 @@ class OneTest {
   Result<void> start_partner(component_test::Setup& setup) {
     const std::string program = beside(entry_, ".test.partner");
     if (program.empty()) return {};
-    auto partner = component_test::Partner::start(program, kPartnerPatience);
+    auto partner = component_test::Partner::start(program, kPartnerStartLimit);
     if (!partner) return partner.error();
     partner_.emplace(*std::move(partner));
     setup.partner_text = partner_->line();
@@ -138,11 +139,8 @@ const char* word(component_test::Finding finding) {
 }
 
 std::string short_text(double ns) {
-  char text[32];
   if (ns < 10) return "less than 10 ns";  // the steps of a processor's counter
-  if (ns < 1000) std::snprintf(text, sizeof text, "%.0f ns", ns);
-  else std::snprintf(text, sizeof text, "%.1f us", ns * 1e-3);
-  return text;
+  return ns < 1000 ? formatted("%.0f ns", ns) : formatted("%.1f us", ns * 1e-3);
 }
 
 std::string text_of(const component_test::TrialReport& report) {
@@ -164,10 +162,10 @@ std::string text_of(const component_test::TrialReport& report) {
 }
 
 std::string json_of(const component_test::TrialReport& report) {
-  std::string rows;
-  for (const component_test::JudgedProperty& one : report.judgements)
-    rows += std::string(rows.empty() ? "" : ", ") + "{\"name\": " + json_string(one.name) + ", \"finding\": \"" +
-            word(one.verdict) + "\", \"text\": " + json_string(one.text) + "}";
+  const std::string rows = join(report.judgements, ", ", [](const component_test::JudgedProperty& one) {
+    return "{\"name\": " + json_string(one.name) + ", \"finding\": \"" + word(one.verdict) + "\", \"text\": " +
+           json_string(one.text) + "}";
+  });
   return "{\"component\": " + json_string(report.component) + ", \"passes\": " + (report.passes() ? "true" : "false") +
          ", \"inputs\": " + json_string(report.inputs) + ", \"judgements\": [" + rows +
          "], \"measured_cycles\": " + std::to_string(report.measured.cycles) +
@@ -205,7 +203,7 @@ CommandResult test_components(const TestOptions& options, const Workplace& workp
     const auto report = OneTest(options, entry, library->units()).run();
     if (!report) return file_refusal(report.error(), options.json);
     if (!report->passes()) output.code = kRefused;
-    if (options.json) rows += (rows.empty() ? "" : ", ") + json_of(*report);
+    if (options.json) append_joined(rows, ", ", json_of(*report));
     else output.out += text_of(*report);
   }
   if (options.json) output.out = "{\"reports\": [" + rows + "]}\n";

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/files/blanks.h"
 #include "chimera/text/decimal.h"
 
@@ -75,10 +76,8 @@ Result<void> spread(const std::string& text, const Item& item, std::vector<Item>
   if (steps >= static_cast<double>(kMostRuns))
     return wrong_list(text, "the range " + item.value + " has more than " + std::to_string(kMostRuns) + " values");
   for (double i = 0; i <= std::floor(steps + 1e-9); ++i) {
-    char value[40];
     const double exact = *from + i * *step;
-    std::snprintf(value, sizeof value, "%.12g", std::fabs(exact) < 1e-12 * std::fabs(*step) ? 0.0 : exact);
-    to.push_back({value, item.unit, false});
+    to.push_back({formatted("%.12g", std::fabs(exact) < 1e-12 * std::fabs(*step) ? 0.0 : exact), item.unit, false});
   }
   return {};
 }

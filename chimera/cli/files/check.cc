@@ -2,9 +2,8 @@
 // Reads and verifies a description and prints its verdict, its order of tasks, its picture, or its switches.
 #include "chimera/cli/files/check.h"
 
-#include <cstdio>
-
 #include "chimera/analysis/mode_report.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/files/graph_of.h"
 #include "chimera/cli/files/modes_text.h"
 #include "chimera/draw/graph.h"
@@ -12,14 +11,8 @@
 namespace chimera::cli {
 namespace {
 
-std::string count(std::size_t n, const char* one, const char* many) {
-  return std::to_string(n) + " " + (n == 1 ? one : many);
-}
-
 std::string order_text(const Configuration& configuration, const ConfiguredSet& set) {
-  std::string text;
-  for (TaskId id : set.order) text += (text.empty() ? "" : " -> ") + configuration.tasks()[id.index].name;
-  return text;
+  return join(set.order, " -> ", [&](TaskId task) { return configuration.tasks()[task.index].name; });
 }
 
 CommandResult check_modes(const CheckOptions& options, const Verdict& verdict, const Library& library) {
@@ -41,10 +34,9 @@ CommandResult check_modes(const CheckOptions& options, const Verdict& verdict, c
 std::string verdict_text(const Configuration& configuration) {
   std::size_t states = 0, constants = 0;
   for (const ConfiguredVariable& variable : configuration.variables()) ++(variable.is_constant ? constants : states);
-  std::string text = configuration.subsystem() + ": legal. " + count(configuration.tasks().size(), "task", "tasks") +
-                     ", " + count(states, "state variable", "state variables") + ", " +
-                     count(constants, "constant", "constants") + ", " +
-                     count(configuration.sets().size(), "configuration", "configurations") + "\n";
+  std::string text = configuration.subsystem() + ": legal. " + counted(configuration.tasks().size(), "task") + ", " +
+                     counted(states, "state variable") + ", " + counted(constants, "constant") + ", " +
+                     counted(configuration.sets().size(), "configuration") + "\n";
   for (std::size_t s = 0; s < configuration.sets().size(); ++s) {
     const ConfiguredSet& set = configuration.sets()[s];
     text +=
@@ -52,15 +44,10 @@ std::string verdict_text(const Configuration& configuration) {
   }
   const auto loads = configuration.utilisation();
   for (std::size_t r = 0; r < loads.size(); ++r) {
-    char line[160];
     const RtpuSpec& rtpu = configuration.rtpus()[r];
-    if (loads[r] > 0)
-      std::snprintf(line, sizeof line, "  rtpu %.*s on cpu %u: budgets take %.3f of at most 0.93\n",
-                    static_cast<int>(rtpu.name.size()), rtpu.name.data(), rtpu.cpu, loads[r]);
-    else
-      std::snprintf(line, sizeof line, "  rtpu %.*s on cpu %u: no budgets stated, so the load is not judged\n",
-                    static_cast<int>(rtpu.name.size()), rtpu.name.data(), rtpu.cpu);
-    text += line;
+    text += "  rtpu " + std::string(rtpu.name) + " on cpu " + std::to_string(rtpu.cpu) + ": " +
+            (loads[r] > 0 ? formatted("budgets take %.3f of at most 0.93\n", loads[r])
+                          : "no budgets stated, so the load is not judged\n");
   }
   return text;
 }
@@ -85,7 +72,7 @@ CommandResult check(const CheckOptions& options, const Workplace& workplace) {
   }
   output.err = verdict.report.text();
   if (!verdict.report.is_legal()) {
-    output.err += count(verdict.report.errors(), "error", "errors") + "\n";
+    output.err += counted(verdict.report.errors(), "error") + "\n";
     return output;
   }
   if (options.graph.empty()) {

@@ -10,6 +10,7 @@
 
 #include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/base/hosted/terminal_text.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/files/blanks.h"
 #include "chimera/task/signal.h"
 #include "chimera/text/value_text.h"
@@ -24,11 +25,7 @@ std::string type_text(const PortDescriptor& port) {
   return base + port.shape;
 }
 
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
+std::string number_text(double value) { return formatted("%g", value); }
 
 std::string initial_text(const PortDescriptor& port) {
   const std::size_t count = port.initial.size() / port.element_size;
@@ -38,14 +35,12 @@ std::string initial_text(const PortDescriptor& port) {
 
 std::string remarks(const PortDescriptor& port) {
   std::string text;
-  const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
+  const auto add = [&text](const std::string& part) { append_joined(text, "; ", part); };
   if (!port.doc.empty()) add(plain_line(port.doc.substr(0, port.doc.find_last_not_of('.') + 1)));
   if (!port.frame.empty()) add("frame " + port.frame);
   if (port.has_range) add("from " + number_text(port.min) + " to " + number_text(port.max));
   if (!port.at_least.empty()) add("at least " + port.at_least);
-  std::string words;
-  for (const std::string& word : port.one_of) words += (words.empty() ? "one of " : " ") + word;
-  if (!words.empty()) add(words);
+  if (!port.one_of.empty()) add("one of " + join(port.one_of, " "));
   if (port.names_configuration) add("names a configuration");
   if (port.shared) add("shared");
   if (port.safe_state) add(port.kind == CHIMERA_RESOURCE ? "never moves" : "safe state");

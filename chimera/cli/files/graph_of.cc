@@ -2,17 +2,15 @@
 // Makes the graph of a configuration: a box a task, a line a variable.
 #include "chimera/cli/files/graph_of.h"
 
-#include <cstdio>
 #include <optional>
+
+#include "chimera/base/hosted/wording.h"
 
 namespace chimera::cli {
 namespace {
 
 std::string rate_text(double hz) {
-  char text[32];
-  if (hz >= 1000) std::snprintf(text, sizeof text, "%g kHz", hz / 1000);
-  else std::snprintf(text, sizeof text, "%g Hz", hz);
-  return text;
+  return hz >= 1000 ? formatted("%g kHz", hz / 1000) : formatted("%g Hz", hz);
 }
 
 std::optional<draw::PortKind> kind_of(std::uint32_t kind) {

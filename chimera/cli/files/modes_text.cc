@@ -2,6 +2,7 @@
 // Writes what is known of each switch between configurations, a paragraph for each.
 #include "chimera/cli/files/modes_text.h"
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/text/time_text.h"
 
 namespace chimera::cli {
@@ -42,9 +43,7 @@ class ModeLines {
   }
 
   std::string names(const std::vector<std::size_t>& tasks) const {
-    std::string text;
-    for (const std::size_t task : tasks) text += (text.empty() ? "" : ", ") + name(task);
-    return text;
+    return join(tasks, ", ", [this](std::size_t task) { return name(task); });
   }
 
   std::string cpu(const CpuTransition& cpu) const {

@@ -3,13 +3,12 @@
 #include "chimera/cli/files/new.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <string_view>
 #include <vector>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/base/message.h"
 #include "chimera/load/descriptor.h"
 
@@ -53,18 +52,6 @@ std::string without_licence(const std::string& text) {
   for (std::string line; std::getline(lines, line);)
     if (line.find("SPDX-License-Identifier") == std::string::npos) kept += line + "\n";
   return kept;
-}
-
-/// `path` in quotes where a shell would else cut or change it.
-std::string shell_word(const std::string& path) {
-  constexpr std::string_view kPlain = "_./+-";
-  const auto is_plain = [kPlain](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || kPlain.find(c) != std::string_view::npos;
-  };
-  if (std::all_of(path.begin(), path.end(), is_plain)) return path;
-  std::string word = path;
-  replace(word, "'", "'\\''");
-  return "'" + word + "'";
 }
 
 std::string template_name(NewKind kind) {

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "chimera/analysis/schedule_words.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/description/criticality.h"
 #include "chimera/draw/timeline.h"
 #include "chimera/schedule/utilisation.h"
@@ -17,18 +18,6 @@ namespace {
 
 constexpr double kWindowLetters = 60;  // approximate letters of a picture
 constexpr std::size_t kMostUnseen = 6;  // names in a line
-
-std::string number(const char* pattern, double value) {
-  char text[48];
-  std::snprintf(text, sizeof text, pattern, value);
-  return text;
-}
-
-std::string list(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
 
 /// 1, 2 or 5 times a power of ten, so that `length` takes about kWindowLetters of it.
 Nanoseconds unit_for(Nanoseconds length) {
@@ -50,17 +39,17 @@ class ScheduleLines {
     const std::string kind = report.dispatch_name();
     if (kind == "preemptive") return ", preemptive";
     if (kind == "executive") return ", executives: a running job is not preempted";
-    std::vector<std::string> names;
+    std::string names;
     for (std::size_t r = 0; r < report.dispatch.size(); ++r)
-      if (report.dispatch[r] == Dispatch::kPreemptive) names.push_back(rtpu(r));
-    return ", preemptive in " + list(names) + "; in the other rtpus a running job is not preempted";
+      if (report.dispatch[r] == Dispatch::kPreemptive) append_joined(names, ", ", rtpu(r));
+    return ", preemptive in " + names + "; in the other rtpus a running job is not preempted";
   }
 
   std::string cpu(const CpuSchedule& cpu) const {
     std::string text = "CPU " + std::to_string(cpu.verdict.cpu) + ": " + policies(cpu) + "; load " +
-                       number("%.3f", cpu.verdict.utilisation) + " of at most " + number("%.2f", kMaxUtilisation) +
-                       "; rate monotonic bound " + number("%.3f", cpu.verdict.rate_monotonic_bound) +
-                       ", product of (1 + load) " + number("%.3f", cpu.verdict.hyperbolic) + ", enough up to 2\n";
+                       formatted("%.3f of at most ", cpu.verdict.utilisation) + formatted("%.2f", kMaxUtilisation) +
+                       "; rate monotonic bound " + formatted("%.3f", cpu.verdict.rate_monotonic_bound) +
+                       ", product of (1 + load) " + formatted("%.3f", cpu.verdict.hyperbolic) + ", enough up to 2\n";
     return text + table(cpu) + verdict(cpu) + unstated(cpu) + remedies(cpu) + window(cpu);
   }
 
@@ -74,20 +63,20 @@ class ScheduleLines {
               : cpu.scale > 0 ? ", with no time to spare"
                               : "") +
              "\n";
-    std::vector<std::string> kept, lost, giving;
+    std::string kept, lost;
     for (const ScheduleRow& row : cpu.rows) {
-      if (row.verdict.guarantee == Guarantee::kYes) kept.push_back(name(row.task));
-      else if (row.verdict.guarantee != Guarantee::kNotStated) lost.push_back(name(row.task));
+      if (row.verdict.guarantee == Guarantee::kNotStated) continue;
+      append_joined(row.verdict.guarantee == Guarantee::kYes ? kept : lost, ", ", name(row.task));
     }
-    for (const std::size_t i : cpu.give_way) giving.push_back(name(cpu.rows[i].task));
+    const std::string giving = join(cpu.give_way, ", ", [&](std::size_t i) { return name(cpu.rows[i].task); });
     std::string text = "  does not fit" + std::string(lost.empty() ? ": the load is too high" : "") + "\n";
-    if (!kept.empty()) text += "  guaranteed: " + list(kept) + "\n";
-    if (!lost.empty()) text += "  not guaranteed: " + list(lost) + "\n";
+    if (!kept.empty()) text += "  guaranteed: " + kept + "\n";
+    if (!lost.empty()) text += "  not guaranteed: " + lost + "\n";
     const Demand& demand = cpu.verdict.demand;
     if (demand.within.count > 0)
       text += "  processor demand: jobs due within " + time_text(demand.within) + " are not done in time" +
               (demand.ends == kNever ? "" : ", but after " + time_text(demand.ends)) + "\n";
-    if (!giving.empty()) text += "  first to give way: " + list(giving) + "\n";
+    if (!giving.empty()) text += "  first to give way: " + giving + "\n";
     return text;
   }
 
@@ -102,9 +91,8 @@ class ScheduleLines {
   }
 
   std::string path(const PathAge& path) const {
-    std::string text;
-    for (const std::size_t task : path.tasks) text += (text.empty() ? "" : " -> ") + name(task);
-    return text + ": " + (path.age == kNever ? "no bound, a task on it is not guaranteed" : time_text(path.age));
+    return join(path.tasks, " -> ", [this](std::size_t task) { return name(task); }) + ": " +
+           (path.age == kNever ? "no bound, a task on it is not guaranteed" : time_text(path.age));
   }
 
  private:
@@ -115,7 +103,7 @@ class ScheduleLines {
       const std::string one = "rtpu " + std::string(spec.name) + ", " + std::string(policy_name(spec.policy));
       if (std::find(said.begin(), said.end(), one) == said.end()) said.push_back(one);
     }
-    return list(said);
+    return join(said, ", ");
   }
 
   std::vector<std::string> cells(const ScheduleRow& row) const {
@@ -163,20 +151,19 @@ class ScheduleLines {
   }
 
   std::string unstated(const CpuSchedule& cpu) const {
-    std::vector<std::string> names;
+    std::string names;
     for (const ScheduleRow& row : cpu.rows)
-      if (row.source == TimeSource::kNone) names.push_back(name(row.task));
+      if (row.source == TimeSource::kNone) append_joined(names, ", ", name(row.task));
     if (names.empty()) return "";
-    return "  no budget given for " + list(names) +
+    return "  no budget given for " + names +
            ": ignored in this proof; write 'budget:', or record one: "
            "chimera profile --save FILE, then --profile FILE\n";
   }
 
   std::string window(const CpuSchedule& cpu) const {
     if (cpu.runs.empty()) return "";
-    std::vector<std::string> names;
+    const auto names = names_of(cpu.rows, [this](const ScheduleRow& row) { return name(row.task); });
     std::vector<TapRecord> records;
-    for (const ScheduleRow& row : cpu.rows) names.push_back(name(row.task));
     for (const WindowRun& run : cpu.runs) {
       const auto row = std::find_if(cpu.rows.begin(), cpu.rows.end(),
                                     [&run](const ScheduleRow& r) { return r.task == run.task; });
@@ -204,7 +191,7 @@ class ScheduleLines {
     if (unseen.empty()) return text;
     const std::size_t more = unseen.size() > kMostUnseen ? unseen.size() - kMostUnseen : 0;
     unseen.resize(unseen.size() - more);
-    return text + "          too short to be seen here: " + list(unseen) +
+    return text + "          too short to be seen here: " + join(unseen, ", ") +
            (more > 0 ? " and " + std::to_string(more) + " more" : "") + "\n";
   }
 
@@ -251,7 +238,7 @@ std::vector<draw::Gantt> schedule_pictures(const Configuration& configuration, c
       draw::Gantt picture;
       picture.title = configuration.subsystem() + ", CPU " + std::to_string(cpu.verdict.cpu) + ": worst window";
       picture.note =
-          "load " + number("%.3f", cpu.verdict.utilisation) + "; all released at once" +
+          "load " + formatted("%.3f", cpu.verdict.utilisation) + "; all released at once" +
           (has_blocker(report, cpu) ? ", the longest job of an executive just begun; " : ", ") +
           "each as long as stated";
       picture.length = cpu.window.length;

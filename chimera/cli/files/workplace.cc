@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "chimera/text/nearest.h"
 #include "chimera/units/unit_system.h"
 
 namespace chimera::cli {
@@ -35,7 +36,7 @@ Error no_component(const std::string& name, const Library& library) {
   std::string message = "no component '" + name + "' is installed";
   if (library.is_unbuilt(name))
     message = "the component '" + name + "' is not built: run './dev install' in the checkout";
-  else if (!nearest.empty()) message += "; did you mean '" + nearest + "'?";
+  else if (!nearest.empty()) message += did_you_mean(nearest);
   else message += "; `chimera list` names those that are, CHIMERA_PATH says where to look";
   return {ErrorCode::kNotFound, {message}, {}};
 }

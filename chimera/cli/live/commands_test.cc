@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/control/methods.h"
 
 namespace chimera::cli {
@@ -99,7 +100,7 @@ TEST(Command, ControlMdNamesEveryMethodAndEveryAct) {
   std::string acts;
   for (const RunningCommand& row : running_commands()) {
     EXPECT_NE(text.str().find(std::string("| `") + row.method + "` |"), std::string::npos) << row.method;
-    if (row.words.is_act) acts += std::string(acts.empty() ? "" : " ") + row.words.name;
+    if (row.words.is_act) append_joined(acts, " ", row.words.name);
     for (const Option& option : row.words.options) {
       const std::string act = std::string("`") + row.words.name + " " + option.name + "`";
       EXPECT_EQ(text.str().find(act) != std::string::npos, option.is_act) << act;

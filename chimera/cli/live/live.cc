@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "chimera/base/hosted/terminal_text.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/live/terminal.h"
 #include "chimera/cli/live/top.h"
 #include "chimera/cli/live/watch.h"
@@ -53,10 +54,7 @@ const char* style(TopLine::Look look) {
 }
 
 std::string drawn(const std::vector<TopLine>& lines) {
-  std::string text;
-  for (std::size_t i = 0; i < lines.size(); ++i)
-    text += (i == 0 ? "" : "\r\n") + std::string(style(lines[i].look)) + lines[i].text + "\x1b[0m";
-  return text;
+  return join(lines, "\r\n", [](const TopLine& line) { return style(line.look) + line.text + "\x1b[0m"; });
 }
 
 /// One screen for what is no terminal: without the keys and what is empty at its end.

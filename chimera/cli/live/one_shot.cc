@@ -8,6 +8,7 @@
 
 #include "chimera/analysis/recorded_profile.h"
 #include "chimera/base/hosted/terminal_text.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/base/message.h"
 #include "chimera/cli/live/save_file.h"
 #include "chimera/cli/live/words.h"
@@ -61,13 +62,9 @@ CommandResult pid(Session& session, const Call& call) {
   if (found != pids.end() && found->second > 0)
     return {call.json ? json_line({{"name", name}, {"pid", found->second}})
                       : std::to_string(found->second) + "\n", "", kOk};
-  std::vector<std::string> names;
-  for (const auto& [one, number] : pids) names.push_back(one);
-  const std::string near = nearest(name, names);
-  const std::string why = found != pids.end() ? "--pid: the process of '" + name + "' is dead"
-                                              : "--pid: no rtpu '" + name + "'" +
-                                                    (near.empty() ? "" : "; did you mean '" + near + "'?");
-  return refused(Error{ErrorCode::kNotFound, std::string_view(why), {}}, call.json);
+  const auto names = chimera::names_of(pids, [](const auto& pid) { return pid.first; });
+  const std::string why = found != pids.end() ? "the process of '" + name + "' is dead" : no_such("rtpu", name, names);
+  return refused(Error{ErrorCode::kNotFound, {"--pid: " + why}, {}}, call.json);
 }
 
 /// `parameters` with the option --wait of the call.

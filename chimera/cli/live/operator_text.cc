@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/description/draft.h"
 #include "chimera/description/yaml_reader.h"
 #include "chimera/text/json.h"
@@ -113,9 +114,9 @@ bool is_in_brackets(std::string_view text, const Draft& draft) {
 
 std::string written(const Node& value) {
   if (value.is_scalar()) return value.quoted ? Json(value.text).dump() : value.text;
-  std::string words;
-  for (std::size_t i = 0; i < value.items.size(); ++i)
-    words += (i == 0 ? "" : ", ") + (value.is_map() ? value.keys[i].text + ": " : "") + written(value.items[i]);
+  const std::string words = join_n(value.items.size(), ", ", [&value](std::size_t i) {
+    return (value.is_map() ? value.keys[i].text + ": " : "") + written(value.items[i]);
+  });
   return value.is_map() ? "{" + words + "}" : "[" + words + "]";
 }
 

@@ -7,6 +7,7 @@
 #include <ctime>
 #include <filesystem>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/print/answer_text.h"
 #include "chimera/cli/print/columns.h"
 #include "chimera/cli/print/fields.h"
@@ -50,11 +51,7 @@ std::string asked_by(const Json& receipt) {
   return task.empty() ? text_of(by, "script") : "task " + task;
 }
 
-std::string short_figure(const Json& number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", number.as_double());
-  return text;
-}
+std::string short_figure(const Json& number) { return formatted("%.4g", number.as_double()); }
 
 /// "wanted 2 of 3 m/s, tau 0.1 N.m": the limit where there is one.
 std::string moves(const Json& receipt) {
@@ -62,10 +59,9 @@ std::string moves(const Json& receipt) {
   for (const Json& variable : receipt["variables"]) {
     const Json &step = variable["step"], &limit = variable["limit"];
     if (!step.is_number()) continue;
-    const std::string unit = text_of(variable, "unit");
-    text += (text.empty() ? "" : ", ") + text_of(variable, "variable") + " " + short_figure(step) +
-            (limit.is_number() ? " of " + short_figure(limit) : "") + (unit == "1" ? "" : " " + unit) +
-            (truth_at(variable, "beyond") ? " (beyond)" : "");
+    const std::string move = short_figure(step) + (limit.is_number() ? " of " + short_figure(limit) : "");
+    append_joined(text, ", ", text_of(variable, "variable") + " " + with_unit(move, text_of(variable, "unit")) +
+                                  (truth_at(variable, "beyond") ? " (beyond)" : ""));
   }
   return text;
 }

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/print/fields.h"
 #include "chimera/text/json.h"
 
@@ -30,10 +31,6 @@ std::vector<ChannelNumber> numbers_in_row(const Json& row, const std::vector<std
 }
 
 bool is_row(const Json& row) { return row.is_array() && row.size() >= 2 && row[0].is_whole() && row[1].is_whole(); }
-
-std::string plural(std::uint64_t n, const char* word) {
-  return std::to_string(n) + " " + word + (n == 1 ? "" : "s");
-}
 
 }  // namespace
 
@@ -165,10 +162,10 @@ std::size_t Scope::gaps() const {
 }
 
 std::string Scope::summary() const {
-  std::string text = plural(rows(), "row");
-  text += gaps() == 0 ? ", no gap" : "; " + plural(gaps(), "gap") + ", " + plural(lost_rows(), "row") + " lost";
+  std::string text = counted(rows(), "row");
+  text += gaps() == 0 ? ", no gap" : "; " + counted(gaps(), "gap") + ", " + counted(lost_rows(), "row") + " lost";
   if (is_full_) text += "; cut at " + std::to_string(kScopeRows) + " rows";
-  if (early_edges_ > 0) text += "; " + plural(early_edges_, "edge") + " before the pre-trigger was full ignored";
+  if (early_edges_ > 0) text += "; " + counted(early_edges_, "edge") + " before the pre-trigger was full ignored";
   return text;
 }
 
@@ -265,7 +262,7 @@ draw::Plot Scope::plot(const std::string& title, const std::string& note) const 
       const Nanoseconds from = before.value_or(*begin_ - request_.pre);
       if (row.lost > 0)
         plot.gaps.push_back({seconds_between(*begin_, from), seconds_between(*begin_, row.at),
-                             plural(row.lost, "row") + " of " + stream.task + " lost"});
+                             counted(row.lost, "row") + " of " + stream.task + " lost"});
       before = row.at;
     }
   }

@@ -51,9 +51,7 @@ Result<Known> known(const Json& described, const std::string& name) {
     if (truth_at(variable, "constant")) return wrong("'" + name + "' is a constant: no task publishes it");
     return Known{text_of(variable, "unit"), text_of(variable, "shape").empty()};
   }
-  const std::string near = nearest(name, names);
-  const std::string hint = near.empty() ? "" : "; did you mean '" + near + "'?";
-  return Error{ErrorCode::kNotFound, {"no state variable '" + name + "'" + hint}, {}};
+  return Error{ErrorCode::kNotFound, {no_such("state variable", name, names)}, {}};
 }
 
 struct Asked {

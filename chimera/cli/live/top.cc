@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/print/columns.h"
 #include "chimera/cli/print/fields.h"
 #include "chimera/cli/print/figures.h"
@@ -56,7 +56,7 @@ std::string remarks_on(const Json& task) {
       {"partial", "partial"},   {"tolerated", "tolerated"},       {"preempted", "preempted"}};
   for (const auto& [key, word] : kSeldom)
     if (const std::int64_t n = whole_of(task, key); n > 0)
-      text += (text.empty() ? "" : ", ") + count_text(n) + " " + word;
+      append_joined(text, ", ", count_text(n) + " " + word);
   return text;
 }
 
@@ -139,8 +139,7 @@ std::string cells(const std::vector<std::string>& cell, std::size_t width) {
 }
 
 TopLine task_line(const Row& row, std::size_t width) {
-  char used[32] = "-";
-  if (row.budget_ns > 0 && row.has_run) std::snprintf(used, sizeof used, "%.0f%%", 100 * row.used());
+  const std::string used = row.budget_ns > 0 && row.has_run ? formatted("%.0f%%", 100 * row.used()) : "-";
   const bool is_wide = width >= kNarrow + 12;
   std::string input = row.oldest.variable.empty() ? "-"
                       : row.oldest.age_ns < 0     ? "never"

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/print/columns.h"
 #include "chimera/cli/print/fields.h"
 #include "chimera/cli/print/sparkline.h"
@@ -15,25 +15,16 @@
 namespace chimera::cli {
 namespace {
 
-std::string number_text(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
+std::string number_text(double value) { return formatted("%.4g", value); }
 
 /// The text of a reading; of a part its numbers with the unit.
 std::string text_of_part(const Json& reading, const std::string& part, const std::vector<ChannelNumber>& numbers) {
   if (part.empty() || !truth_at(reading, "valid")) return text_of(reading, "text");
   if (numbers.empty()) return "no such element";
-  std::string text;
-  char number[40];
-  for (const ChannelNumber& n : numbers) {
-    std::snprintf(number, sizeof number, "%.6g", n.value);
-    text += (text.empty() ? "" : " ") + std::string(number);
-  }
+  std::string text = join(numbers, " ", [](const ChannelNumber& n) { return formatted("%.6g", n.value); });
   if (numbers.size() > 1) text = "[" + text + "]";
   const std::string unit = text_of(reading, "unit");
-  return unit == "1" || unit.empty() ? text : text + " " + unit;
+  return unit.empty() ? text : with_unit(text, unit);
 }
 
 std::string range_text(const std::deque<double>& course) {
@@ -87,11 +78,10 @@ std::vector<std::string> Watch::lines(std::size_t width, bool unicode) const {
 }
 
 std::string Watch::plain() const {
-  std::string text;
-  for (const Watched& watched : watched_)
-    text += (text.empty() ? "" : "  ") + watched.name.variable + watched.name.part + " = " + watched.text +
-            (watched.remark.empty() ? "" : " (" + watched.remark + ")");
-  return text;
+  return join(watched_, "  ", [](const Watched& watched) {
+    return watched.name.variable + watched.name.part + " = " + watched.text +
+           (watched.remark.empty() ? "" : " (" + watched.remark + ")");
+  });
 }
 
 }  // namespace chimera::cli

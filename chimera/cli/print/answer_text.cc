@@ -3,15 +3,16 @@
 #include "chimera/cli/print/answer_text.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <vector>
 
 #include "chimera/base/hosted/terminal_text.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/print/columns.h"
 #include "chimera/cli/print/fields.h"
 #include "chimera/cli/print/figures.h"
 #include "chimera/cli/print/status_text.h"
 #include "chimera/text/json.h"
+#include "chimera/text/nearest.h"
 
 namespace chimera::cli {
 namespace {
@@ -31,11 +32,7 @@ std::string producer_of(const Json& link) {
   return component.empty() || component == producer ? producer : producer + " (" + component + ")";
 }
 
-std::string figure(const Json& number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", number.as_double());
-  return text;
-}
+std::string figure(const Json& number) { return formatted("%.6g", number.as_double()); }
 
 bool is_well(const Json& link) { return text_of(link, "verdict") == "ok"; }
 
@@ -52,8 +49,7 @@ std::string why_head(const Json& link) {
   if (text_of(link, "producer") != "operator") text += ", " + text_of(link, "state");
   text += "\n  published    " + (age_of(link) == "-" ? "never" : age_of(link) + " ago");
   if (const std::int64_t period = whole_of(link, "period_ns"); period > 0) text += ", every " + duration_text(period);
-  std::string inputs;
-  for (const std::string& input : texts_of(link, "inputs")) inputs += (inputs.empty() ? "" : ", ") + input;
+  const std::string inputs = join(texts_of(link, "inputs"), ", ");
   if (const std::string timing = text_of(link, "timing"); !timing.empty()) text += "\n  in time      " + timing;
   return text + "\n  from         " + (inputs.empty() ? "no inputs" : inputs) + "\n";
 }
@@ -119,9 +115,8 @@ std::string switch_text(const Json& answer) {
     leave += text_of(task, "move") == "leaves" ? 1 : 0;
     lost += whole_of(task, "lost");
   }
-  text += ": " + std::to_string(arrive) + (arrive == 1 ? " task arrives, " : " tasks arrive, ") +
-          std::to_string(leave) + (leave == 1 ? " leaves, " : " leave, ") + std::to_string(lost) +
-          (lost == 1 ? " cycle lost\n" : " cycles lost\n");
+  text += ": " + counted(arrive, "task arrives", "tasks arrive") + ", " + counted(leave, "leaves", "leave") + ", " +
+          counted(lost, "cycle lost", "cycles lost") + "\n";
   for (const Json& variable : answer["variables"]) {
     const Json& step = variable["step"];
     if (!step.is_number()) continue;
@@ -174,8 +169,7 @@ std::string plan_text(const Json& answer) {
                      (is_slow ? "the slow way, for " + text_of(answer, "slow_why") : std::string("the fast way")) +
                      "; it is expected to take " + expected + "\n";
   for (const char* move : {"arrives", "leaves", "stays"}) {
-    std::string names;
-    for (const std::string& task : texts_of(answer, move)) names += (names.empty() ? "" : ", ") + task;
+    const std::string names = join(texts_of(answer, move), ", ");
     if (!names.empty()) text += "  " + std::string(move) + ": " + names + "\n";
   }
   for (const Json& variable : answer["variables"]) {
@@ -223,7 +217,7 @@ std::string refusal_text(const std::string& message, const Json& data) {
   const auto says = [&](const std::string& words) { return text.find(words) != std::string::npos; };
   if (!where.empty() && !says(where)) text = where + ": " + text;
   if (!remedy.empty() && !says(remedy)) text += "; " + remedy;
-  if (!nearest.empty() && !says("'" + nearest + "'")) text += "; did you mean '" + nearest + "'?";
+  if (!says(in_quotes(nearest))) text += did_you_mean(nearest);
   return text;
 }
 

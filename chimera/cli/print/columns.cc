@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "chimera/base/assert.h"
+#include "chimera/base/hosted/wording.h"
 
 namespace chimera::cli {
 
@@ -46,8 +47,8 @@ std::string Columns::text() const {
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
   std::string all;
   for (const auto& row : rows_) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) line += (i == 0 ? "" : "  ") + fitted(row[i], widths[i], is_right_[i]);
+    std::string line =
+        join_n(row.size(), "  ", [&](std::size_t i) { return fitted(row[i], widths[i], is_right_[i]); });
     line.erase(line.find_last_not_of(' ') + 1);
     all += line + "\n";
   }

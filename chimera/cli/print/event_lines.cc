@@ -8,6 +8,7 @@
 #include <ctime>
 #include <utility>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/base/time.h"
 #include "chimera/cli/print/columns.h"
 #include "chimera/cli/print/fields.h"
@@ -70,10 +71,9 @@ std::string EventLines::line_of(const std::vector<Event>& incident) {
     if (!event.who.empty() && std::ranges::find(tasks, event.who) == tasks.end()) tasks.push_back(event.who);
   const auto cause = std::ranges::find(incident, "blame", &Event::kind);
   const Event &first = incident.front(), &last = incident.back();
-  std::string text;
-  for (const std::string& task : tasks) text += (text.empty() ? "" : ", ") + task;
-  text += ": " + (cause == incident.end() ? first : *cause).text + "; " + std::to_string(incident.size()) +
-          " events to number " + std::to_string(last.number) + ", within " + duration_text(last.at_ns - first.at_ns);
+  const std::string text = join(tasks, ", ") + ": " + (cause == incident.end() ? first : *cause).text + "; " +
+                           std::to_string(incident.size()) + " events to number " + std::to_string(last.number) +
+                           ", within " + duration_text(last.at_ns - first.at_ns);
   return line(first.number, first.wall_ns, "miss x" + std::to_string(incident.size()), text);
 }
 
@@ -87,12 +87,9 @@ Result<std::vector<std::string>> read_kinds(std::string_view text) {
     kinds.emplace_back(text.substr(at, end - at));
     at = end + 1;
     if (std::ranges::find(known, kinds.back()) != known.end()) continue;
-    const std::string near = nearest(kinds.back(), known);
-    std::string said = "--kind: no kind '" + kinds.back() + "'";
-    if (!near.empty()) return Error{ErrorCode::kBadInput, {said + "; did you mean '" + near + "'?"}, {}};
-    said += "; there are";
-    for (const std::string& kind : known) said += (kind == known.front() ? " " : ", ") + kind;
-    return Error{ErrorCode::kBadInput, std::string_view(said), {}};
+    const bool has_near = !nearest(kinds.back(), known).empty();
+    const std::string there_are = has_near ? "" : "; there are " + join(known, ", ");
+    return Error{ErrorCode::kBadInput, {"--kind: " + no_such("kind", kinds.back(), known) + there_are}, {}};
   }
   return kinds;
 }

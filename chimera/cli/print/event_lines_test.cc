@@ -8,6 +8,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/base/testing/tree_path.h"
 #include "chimera/text/json.h"
 
@@ -74,8 +75,7 @@ TEST(EventLines, AFilterByKindLeavesOutOtherKinds) {
 TEST(EventLines, KnowTheKindsOfTheProtocol) {
   std::ostringstream page;
   page << std::ifstream(source_path("docs/formats/control.md")).rdbuf();
-  std::string kinds;
-  for (const std::string_view kind : event_kinds()) kinds += (kinds.empty() ? "" : " ") + std::string(kind);
+  const std::string kinds = join(event_kinds(), " ");
   EXPECT_NE(page.str().find("`kind` (" + kinds + ")"), std::string::npos) << kinds;
 }
 

@@ -3,18 +3,17 @@
 #include "chimera/cli/print/figures.h"
 
 #include <cmath>
-#include <cstdio>
 #include <iterator>
+
+#include "chimera/base/hosted/wording.h"
 
 namespace chimera::cli {
 namespace {
 
 /// Three significant digits: "1.20", "12.3", "123".
 std::string three_digits(double value) {
-  char text[32];
   const double size = std::fabs(value);
-  std::snprintf(text, sizeof text, "%.*f", size < 9.995 ? 2 : size < 99.95 ? 1 : 0, value);
-  return text;
+  return formatted(size < 9.995 ? "%.2f" : size < 99.95 ? "%.1f" : "%.0f", value);
 }
 
 }  // namespace
@@ -37,11 +36,8 @@ std::string duration_text(std::optional<std::int64_t> ns) {
 
 std::string rate_text(double hz) {
   if (!(hz > 0)) return "-";
-  char text[32];
-  if (hz < 999.5) std::snprintf(text, sizeof text, "%.3g Hz", hz);
-  else if (hz < 999.5e3) std::snprintf(text, sizeof text, "%.3g kHz", hz * 1e-3);
-  else std::snprintf(text, sizeof text, "%.3g MHz", hz * 1e-6);
-  return text;
+  if (hz < 999.5) return formatted("%.3g Hz", hz);
+  return hz < 999.5e3 ? formatted("%.3g kHz", hz * 1e-3) : formatted("%.3g MHz", hz * 1e-6);
 }
 
 std::string count_text(std::int64_t count) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/print/columns.h"
 #include "chimera/cli/print/sparkline.h"
 
@@ -33,7 +34,7 @@ std::string range_text(const draw::Curve& curve) {
   if (range.empty()) return "nothing";
   char text[80];
   std::snprintf(text, sizeof text, "%.4g .. %.4g", range.low, range.high);
-  return curve.unit == "1" ? text : text + (" " + curve.unit);
+  return with_unit(text, curve.unit);
 }
 
 /// The value at each of `count` instants of `time`, the last that was there.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/print/columns.h"
 #include "chimera/cli/print/fields.h"
 #include "chimera/cli/print/figures.h"
@@ -59,11 +60,7 @@ std::vector<std::string> that_count(const Json& answer, std::initializer_list<co
   return found;
 }
 
-std::string percent(double part) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f %%", 100 * part);
-  return text;
-}
+std::string percent(double part) { return formatted("%.2f %%", 100 * part); }
 
 bool has_server(const Json& answer) {
   for (const Json& task : answer["tasks"])
@@ -199,15 +196,14 @@ static std::string face_text(const Json& face) {
   if (const std::string lost = text_of(face, "lost_output"); !lost.empty())
     text += "standard output of the run is lost: " + lost + "\n";
   if (const std::int64_t deaths = whole_of(face, "deaths"); deaths > 0)
-    text += "the process that prints and ends the run was replaced " + std::to_string(deaths) +
-            (deaths == 1 ? " time" : " times") + "; last end: " + text_of(face, "last_end") + "\n";
+    text += "the process that prints and ends the run was replaced " + counted(deaths, "time") +
+            "; last end: " + text_of(face, "last_end") + "\n";
   return text;
 }
 
 std::string flag_words(const Json& flag) {
-  std::string by;
-  for (const std::string& who : texts_of(flag, "by")) by += (by.empty() ? " by " : ", ") + who;
-  return (truth_at(flag, "up") ? "flag UP" : "flag down") + by;
+  const std::string by = join(texts_of(flag, "by"), ", ");
+  return (truth_at(flag, "up") ? "flag UP" : "flag down") + (by.empty() ? by : " by " + by);
 }
 
 double share_of_server(const Json& server, double load) {

@@ -11,6 +11,7 @@
 
 #include "chimera/analysis/task_profile.h"
 #include "chimera/base/hosted/terminal_text.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/files/blanks.h"
 #include "chimera/cli/files/file_refusal.h"
 #include "chimera/cli/run/control_line.h"
@@ -38,11 +39,7 @@ constexpr std::size_t kEventsAtOnce = 1000;
 constexpr Nanoseconds kLastOutput = seconds(1);  // half of the time that the keeper waits for the run client to finish
 constexpr Nanoseconds kEndLimit = seconds(600);  // the keeper ends a process that takes too long: not judged here
 
-std::string limit_text(Nanoseconds time) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g s", to_seconds(time));
-  return text;
-}
+std::string limit_text(Nanoseconds time) { return formatted("%g s", to_seconds(time)); }
 
 Nanoseconds instant(const Json& json) { return json.is_number() ? Nanoseconds{json.as_int64()} : kNever; }
 
@@ -213,10 +210,9 @@ void RemoteTarget::print_grants(const Json& status) {
   const Json& rtpus = status["rtpus"];
   for (const Json& rtpu : rtpus) {
     const std::string grant = for_terminal(text_at(rtpu, "grant"));
-    grants_ +=
-        (grants_.empty() ? "" : "; ") + (rtpus.size() == 1 ? "" : text_at(rtpu, "name") + ": ") + in_one_line(grant);
-    if (run_.json || is_resumed_) continue;
-    std::fprintf(out_, "%s%s\n", rtpus.size() == 1 ? "" : (text_at(rtpu, "name") + ": ").c_str(), grant.c_str());
+    const std::string name = rtpus.size() == 1 ? "" : text_at(rtpu, "name") + ": ";
+    append_joined(grants_, "; ", name + in_one_line(grant));
+    if (!run_.json && !is_resumed_) std::fprintf(out_, "%s%s\n", name.c_str(), grant.c_str());
   }
   if (!run_.json && is_resumed_)
     std::fprintf(out_, "(the process that prints this died of %s and was replaced)\n",
@@ -421,8 +417,7 @@ void RemoteTarget::judge_end(RunReport& report, const Json& before) {
   }
   report.verdict = judge_run({report.profiles, faults, rtpus, report.is_flag_up, run_.strict, not_off_});
   if (page_.deaths > 0)
-    report.verdict.remarks.push_back("the process that prints and ends the run died " + std::to_string(page_.deaths) +
-                                     (page_.deaths == 1 ? " time" : " times"));
+    report.verdict.remarks.push_back("the process that prints and ends the run died " + counted(page_.deaths, "time"));
   if (const std::uint32_t lost = page_.acts_begun - page_.acts_done; lost > 0)
     report.verdict.failures.push_back(
         "it is not known whether " + std::to_string(lost) +
@@ -449,7 +444,8 @@ void RemoteTarget::add_receipts(const Json& origin_ns, RunReport& report) {
   std::uint64_t n = 0, last = 0;
   for (const Json& receipt : (*answer)["receipts"]) {
     if (receipt["origin_ns"] != origin_ns) continue;
-    report.receipts += (n++ == 0 ? "" : ", ") + receipt.dump();
+    append_joined(report.receipts, ", ", receipt.dump());
+    ++n;
     last = std::max(last, receipt["number"].as_uint64());
   }
   report.receipts_left_out = last - n;

@@ -36,10 +36,7 @@ Result<const ConfiguredVariable*> find_variable(const Configuration& configurati
     if (variable.name == name) return &variable;
     names.push_back(variable.name);
   }
-  const std::string near(nearest(name, names));
-  return Error{ErrorCode::kNotFound,
-               {"no state variable '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?")},
-               {configuration.file()}};
+  return Error{ErrorCode::kNotFound, {no_such("state variable", name, names)}, {configuration.file()}};
 }
 
 Result<Expectation> Expectation::with_bound(const std::string& text, double bound) {

@@ -5,16 +5,15 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "chimera/base/hosted/wording.h"
+
 namespace chimera::cli {
 namespace {
 
 std::string spread_text(Nanoseconds t) {
-  char text[32];
   const double us = static_cast<double>(t.count) * 1e-3;
-  if (us < 1000) std::snprintf(text, sizeof text, "%.1f us", us);
-  else if (us < 1e6) std::snprintf(text, sizeof text, "%.2f ms", us * 1e-3);
-  else std::snprintf(text, sizeof text, "%.2f s", us * 1e-6);
-  return text;
+  if (us < 1000) return formatted("%.1f us", us);
+  return us < 1e6 ? formatted("%.2f ms", us * 1e-3) : formatted("%.2f s", us * 1e-6);
 }
 
 std::string max_text(const Spread& spread) { return spread.count == 0 ? "-" : spread_text(spread.max); }
@@ -42,7 +41,7 @@ constexpr Seldom kSeldom[] = {{"over budget", &Profile::overrun},
 std::string seldom_line(const TaskProfile& task) {
   std::string text;
   const auto add = [&text](std::uint64_t n, const char* name) {
-    if (n > 0) text += (text.empty() ? "" : ", ") + std::to_string(n) + " " + name;
+    if (n > 0) append_joined(text, ", ", std::to_string(n) + " " + name);
   };
   for (const Seldom& kind : kSeldom) add(task.profile.*kind.count, kind.name);
   add(task.profile.restarts, task.profile.restarts == 1 ? "restart" : "restarts");

@@ -11,6 +11,7 @@
 #include <map>
 #include <utility>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/run/profile_report.h"
 #include "chimera/cli/run/progress.h"
 #include "chimera/cli/run/run_loop.h"
@@ -216,7 +217,7 @@ void LocalTarget::finish(RunReport& report) {
     const ApplicationSpec& spec = application_.spec();
     report.switches += control::receipt_text(receipt, spec, loop_->origin());
     const std::string json = control::receipt_json(receipt, spec, loop_->origin());
-    report.receipts += (report.receipts.empty() || json.empty() ? "" : ", ") + json;
+    if (!json.empty()) append_joined(report.receipts, ", ", json);
   }
   report.receipts_left_out = loop_->receipts().left_out();
   // The profiles contain the cost and the faults of `off` and `kill`, too.

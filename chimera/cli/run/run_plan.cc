@@ -6,6 +6,7 @@
 
 #include "chimera/analysis/schedule_report.h"
 #include "chimera/base/hosted/terminal_text.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/files/check.h"
 #include "chimera/cli/run/run.h"
 #include "chimera/cli/run/script_text.h"
@@ -27,15 +28,10 @@ Executor executor_of(const RunRequest& request) {
 }
 
 Result<void> judge_task_names(const RunRequest& request, const Configuration& configuration) {
-  std::vector<std::string> names;
-  for (const ConfiguredTask& task : configuration.tasks()) names.push_back(task.name);
-  for (const std::string& name : request.may_miss) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-    const std::string near = nearest(name, names);
-    return Error{ErrorCode::kNotFound,
-                 {"--may-miss: no task '" + name + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?")},
-                 {}};
-  }
+  const auto names = names_of(configuration.tasks(), &ConfiguredTask::name);
+  for (const std::string& name : request.may_miss)
+    if (std::ranges::find(names, name) == names.end())
+      return Error{ErrorCode::kNotFound, {"--may-miss: " + no_such("task", name, names)}, {}};
   return {};
 }
 

@@ -6,6 +6,7 @@
 
 #include "chimera/analysis/recorded_profile.h"
 #include "chimera/base/hosted/terminal_text.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/files/file_refusal.h"
 #include "chimera/cli/run/profile_report.h"
 #include "chimera/text/json_text.h"
@@ -36,13 +37,13 @@ std::string sentence(const RunReport& report) {
 }
 
 void print_json(const RunReport& report, std::FILE* out) {
-  std::string variables, expectations;
-  for (const RunReport::Watched& v : report.variables)
-    variables += (variables.empty() ? "" : ", ") + json_string(v.name) + ": {\"unit\": " + json_string(v.unit) +
-                 ", \"value\": " + v.value + "}";
-  for (const RunReport::Judged& e : report.expectations)
-    expectations += (expectations.empty() ? "" : ", ") + std::string("{\"text\": ") + json_string(e.text) +
-                    ", \"holds\": " + (e.holds ? "true" : "false") + ", \"said\": " + json_string(e.said) + "}";
+  const std::string variables = join(report.variables, ", ", [](const RunReport::Watched& v) {
+    return json_string(v.name) + ": {\"unit\": " + json_string(v.unit) + ", \"value\": " + v.value + "}";
+  });
+  const std::string expectations = join(report.expectations, ", ", [](const RunReport::Judged& e) {
+    return "{\"text\": " + json_string(e.text) + ", \"holds\": " + (e.holds ? "true" : "false") +
+           ", \"said\": " + json_string(e.said) + "}";
+  });
   std::fprintf(out,
                "{\"subsystem\": %s, \"executor\": %s, \"ran_ns\": %lld, \"ended\": \"%s\", \"flag\": %s, "
                "\"tasks\": %s, \"variables\": {%s}, \"expectations\": [%s], \"receipts\": [%s], "

@@ -5,15 +5,12 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/text/json_text.h"
 #include "chimera/text/not_off.h"
 
 namespace chimera::cli {
 namespace {
-
-std::string counted(std::uint64_t n, const char* one, const char* many) {
-  return std::to_string(n) + " " + (n == 1 ? one : many);
-}
 
 /// Adds what `count` says of every task, with the tasks by name where it is not 0.
 template <class Count>
@@ -23,7 +20,7 @@ std::uint64_t add_up(RunVerdict& verdict, std::span<const TaskProfile> tasks, co
   std::string who;
   for (const TaskProfile& task : tasks) {
     const std::uint64_t n = count(task);
-    if (n > 0) who += (who.empty() ? "" : ", ") + task.task + " " + std::to_string(n);
+    if (n > 0) append_joined(who, ", ", task.task + " " + std::to_string(n));
     sum += n;
   }
   if (sum > 0) verdict.remarks.push_back(counted(sum, one, many) + " (" + who + ")");
@@ -110,13 +107,12 @@ RunVerdict judge_run(const RunFacts& facts) {
 }
 
 std::string RunVerdict::text() const {
-  std::string text, listed;
+  std::string text;
   for (const std::string& line : since) text += line + "\n";
-  for (const std::string& remark : remarks) listed += (listed.empty() ? "" : ", ") + remark;
   if (is_clean())
     text += "clean: no deadline missed, no release dropped, no fault, no restart\n";
-  else if (!listed.empty())
-    text += "not clean: " + listed + "\n";
+  else if (!remarks.empty())
+    text += "not clean: " + join(remarks, ", ") + "\n";
   for (const std::string& failure : failures) text += "FAILED: " + failure + "\n";
   if (failures.empty() && is_failure()) text += "FAILED: not clean, and --strict makes that a failure\n";
   return text;

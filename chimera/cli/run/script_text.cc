@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/files/blanks.h"
 #include "chimera/task/signal.h"
 #include "chimera/text/nearest.h"
@@ -16,9 +17,12 @@ Error wrong_act(const std::string& text, const std::string& why) {
   return {ErrorCode::kBadInput, {"--at '" + text + "': " + why}, {}};
 }
 
-std::string unknown(const char* what, const std::string& found, std::span<const std::string> names) {
-  const std::string near = nearest(found, names);
-  return std::string("no ") + what + " '" + found + "'" + (near.empty() ? "" : "; did you mean '" + near + "'?");
+/// Index of the item of that name; `what` is the kind of item.
+template <class Items>
+Result<std::size_t> index_of(const Items& items, const char* what, const std::string& name, const std::string& text) {
+  for (std::size_t i = 0; i < items.size(); ++i)
+    if (items[i].name == name) return i;
+  return wrong_act(text, no_such(what, name, names_of(items, [](const auto& item) { return item.name; })));
 }
 
 Result<ScriptAct> parse_flag(const std::string& text, const std::string& which, ScriptAct act) {
@@ -28,11 +32,9 @@ Result<ScriptAct> parse_flag(const std::string& text, const std::string& which, 
 }
 
 Result<TaskId> task_named(const std::string& text, const std::string& name, const ApplicationSpec& spec) {
-  std::vector<std::string> names;
-  for (const TaskSpec& t : spec.tasks) names.emplace_back(t.name);
-  const TaskId task(static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin()));
-  if (task.index < names.size()) return task;
-  return wrong_act(text, unknown("task", name, names));
+  const auto index = index_of(spec.tasks, "task", name, text);
+  if (!index) return index.error();
+  return TaskId(*index);
 }
 
 Result<ScriptAct> parse_signal(const std::string& text, const std::string& word, const std::string& task, ScriptAct act,
@@ -43,7 +45,7 @@ Result<ScriptAct> parse_signal(const std::string& text, const std::string& word,
   words.insert(words.end(), {"flag", "set", "switch", "die"});
   const auto signals = words.end() - 4;
   const auto found = std::find(words.begin(), signals, word);
-  if (found == signals) return wrong_act(text, unknown("signal", word, words));
+  if (found == signals) return wrong_act(text, no_such("signal", word, words));
   act.signal = static_cast<Signal>(found - words.begin());
   const auto named = task_named(text, task, spec);
   if (!named) return named.error();
@@ -62,8 +64,7 @@ Result<TimedAct> parse_set(const std::string& text, const std::string& object, S
 Result<TimedAct> parse_lists(const std::string& text, const std::string& lists, ScriptAct act,
                              const ApplicationSpec& spec) {
   TimedAct made{act, text, {}, {}, {}};
-  std::vector<std::string> names;
-  for (const TaskSpec& t : spec.tasks) names.emplace_back(t.name);
+  const auto names = names_of(spec.tasks, &TaskSpec::name);
   const auto find = [&names](std::string_view name) {
     const auto found = std::ranges::find(names, name);
     return found == names.end() ? TaskId{} : TaskId(static_cast<std::size_t>(found - names.begin()));
@@ -78,26 +79,24 @@ Result<TimedAct> parse_lists(const std::string& text, const std::string& lists, 
       return wrong_act(text, "found '" + word + "'; write 'switch --on TASK... --off TASK...'");
     case ListsFault::Kind::kUnknownTask: break;
   }
-  return wrong_act(text, unknown("task", word, names));
+  return wrong_act(text, no_such("task", word, names));
 }
 
 Result<ScriptAct> parse_switch(const std::string& text, const std::string& name, ScriptAct act,
                                const ApplicationSpec& spec) {
-  std::vector<std::string> names;
-  for (const NamedSet& set : spec.sets) names.emplace_back(set.name);
-  act.set = static_cast<std::uint32_t>(std::find(names.begin(), names.end(), name) - names.begin());
-  if (act.set < names.size()) return act;
-  return wrong_act(text, unknown("configuration", name, names));
+  const auto index = index_of(spec.sets, "configuration", name, text);
+  if (!index) return index.error();
+  act.set = static_cast<std::uint32_t>(*index);
+  return act;
 }
 
 Result<ScriptAct> parse_death(const std::string& text, const std::string& name, ScriptAct act,
                               const ApplicationSpec& spec) {
   act.kind = ScriptAct::Kind::kDie;
-  std::vector<std::string> names;
-  for (const RtpuSpec& rtpu : spec.rtpus) names.emplace_back(rtpu.name);
-  act.rtpu = RtpuId(static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin()));
-  if (act.rtpu.index < names.size()) return act;
-  return wrong_act(text, unknown("rtpu", name, names));
+  const auto index = index_of(spec.rtpus, "rtpu", name, text);
+  if (!index) return index.error();
+  act.rtpu = RtpuId(*index);
+  return act;
 }
 
 // At one instant deaths come first.

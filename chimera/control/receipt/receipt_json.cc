@@ -3,9 +3,9 @@
 #include "chimera/control/receipt/receipt_json.h"
 
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/control/receipt/receipt_parts.h"
 #include "chimera/control/receipt/switch_reason.h"
 #include "chimera/text/json_text.h"
@@ -36,10 +36,7 @@ std::string json_instant(Nanoseconds instant, Nanoseconds origin) {
 }
 
 std::string json_number(bool is_known, double value) {
-  if (!is_known || !std::isfinite(value)) return "null";
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
+  return is_known && std::isfinite(value) ? formatted("%.17g", value) : "null";
 }
 
 std::string json_name(bool is_there, std::string_view name) {
@@ -79,17 +76,14 @@ std::string json_durations(const SwitchReceipt& receipt) {
 
 template <class Parts>
 std::string json_list(const Parts& parts, const ApplicationSpec& spec) {
-  std::string json;
-  for (const auto& part : parts) json += (json.empty() ? "" : ", ") + json_of(part, spec);
-  return "[" + json + "]";
+  return "[" + join(parts, ", ", [&spec](const auto& part) { return json_of(part, spec); }) + "]";
 }
 
 std::string json_way(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
   const bool is_slow = receipt.way.slow != 0;
-  std::string reasons, list;
-  for (const std::string& word : slow_words(receipt.way)) reasons += (reasons.empty() ? "\"" : ", \"") + word + "\"";
-  for (const TaskId task : receipt.reinitialised)
-    list += (list.empty() ? "" : ", ") + json_string(std::string(spec.tasks[task.index].name));
+  const std::string reasons = join(slow_words(receipt.way), ", ", json_string);
+  const auto name = [&spec](TaskId task) { return json_string(spec.tasks[task.index].name); };
+  const std::string list = join(receipt.reinitialised, ", ", name);
   const bool is_back = !receipt.not_back.is_valid();
   const char* const way = receipt.cause == SwitchCause::kStandby ? "takeover" : is_slow ? "slow" : "fast";
   return std::string("\"way\": \"") + way + "\", \"slow_because\": [" + reasons +

@@ -2,17 +2,11 @@
 // Names, units, steps and words of receipts.
 #include "chimera/control/receipt/receipt_parts.h"
 
-#include <cstdio>
+#include "chimera/base/hosted/wording.h"
 
 namespace chimera::control {
 
-std::string quoted(std::string_view name) { return "'" + std::string(name) + "'"; }
-
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
+std::string number_text(double value) { return formatted("%.6g", value); }
 
 const char* word(SwitchEnd end) {
   switch (end) {

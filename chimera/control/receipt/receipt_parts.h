@@ -9,9 +9,7 @@
 
 namespace chimera::control {
 
-/// "'pid'". Context of everything: setup.
-std::string quoted(std::string_view name);
-/// Six digits.
+/// Six digits. Context of everything: setup.
 std::string number_text(double value);
 const char* word(SwitchEnd end);
 const char* word(TaskMove move);

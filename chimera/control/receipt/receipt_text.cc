@@ -2,8 +2,7 @@
 // Puts receipts into lines.
 #include "chimera/control/receipt/receipt_text.h"
 
-#include <cstdio>
-
+#include "chimera/base/hosted/wording.h"
 #include "chimera/control/receipt/receipt_parts.h"
 #include "chimera/control/receipt/switch_reason.h"
 #include "chimera/text/time_text.h"
@@ -11,11 +10,7 @@
 namespace chimera::control {
 namespace {
 
-std::string at(Nanoseconds instant, Nanoseconds origin) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.3f s", to_seconds(instant - origin));
-  return text;
-}
+std::string at(Nanoseconds instant, Nanoseconds origin) { return formatted("%.3f s", to_seconds(instant - origin)); }
 
 /// "switch 3", "takeover 4".
 std::string what(const SwitchReceipt& receipt) {
@@ -28,20 +23,12 @@ std::size_t count(const SwitchReceipt& receipt, TaskMove move) {
   return n;
 }
 
-std::string counted(std::size_t n, const char* one, const char* many) {
-  return std::to_string(n) + " " + (n == 1 ? one : many);
-}
-
 std::string names(std::span<const TaskId> tasks, const ApplicationSpec& spec) {
-  std::string text;
-  for (const TaskId task : tasks) text += (text.empty() ? "" : ", ") + std::string(spec.tasks[task.index].name);
-  return text;
+  return join(tasks, ", ", [&spec](TaskId task) { return spec.tasks[task.index].name; });
 }
 
 std::string after_text(const SwitchReceipt& receipt) {
-  char took[40];
-  std::snprintf(took, sizeof took, " after %.3f ms", to_seconds(receipt.at - receipt.asked) * 1e3);
-  return took;
+  return formatted(" after %.3f ms", to_seconds(receipt.at - receipt.asked) * 1e3);
 }
 
 std::string moves_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
@@ -73,7 +60,7 @@ std::string bumps(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
 }
 
 std::string takeover_text(const SwitchReceipt& receipt, const ApplicationSpec& spec, Nanoseconds origin) {
-  const auto name = [&](TaskId task) { return quoted(spec.tasks[task.index].name); };
+  const auto name = [&](TaskId task) { return in_quotes(spec.tasks[task.index].name); };
   const std::string text = what(receipt) + " at " + at(receipt.asked, origin) + " by " + name(receipt.by) + " from " +
                            name(receipt.in_place_of) +
                            (receipt.was_death ? ", whose rtpu died," : ", which is in ERROR,");
@@ -91,7 +78,7 @@ std::string rolled_back(const SwitchReceipt& receipt, const ApplicationSpec& spe
   if (receipt.way.slow == 0 || receipt.end != SwitchEnd::kAborted || receipt.flag == Nanoseconds{}) return "";
   std::string text = "; rolled back, " + time_text(receipt.flag) + " under the flag";
   if (receipt.not_back.is_valid())
-    text += "; task " + quoted(spec.tasks[receipt.not_back.index].name) + " did not come back";
+    text += "; task " + in_quotes(spec.tasks[receipt.not_back.index].name) + " did not come back";
   return text;
 }
 
@@ -103,8 +90,8 @@ std::vector<std::string> bump_lines(const SwitchReceipt& receipt, const Applicat
   for (const VariablePart& part : receipt.variables) {
     const ValueStep& step = is_takeover ? seen(part) : part.step_of_cycle;
     if (!step.is_beyond) continue;
-    const std::string task = quoted(spec.tasks[part.handover.to.task.index].name);
-    const std::string variable = quoted(spec.variables[part.handover.variable.index].name);
+    const std::string task = in_quotes(spec.tasks[part.handover.to.task.index].name);
+    const std::string variable = in_quotes(spec.variables[part.handover.variable.index].name);
     lines.push_back("bump: after " + what(receipt) + " the first " + (part.step_of_cycle.is_known ? "cycle" : "value") +
                     " of task " + task + " moved " + variable + " by " + step_text(step, unit_text(part, spec)));
   }
@@ -118,7 +105,7 @@ std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& sp
   if (receipt.end == SwitchEnd::kNothingToDo)
     return "switch" + when + ": " + (receipt.after == kNoSet ? "these tasks are" : to + " is") +
            " in force, nothing to do\n";
-  const std::string from = receipt.before == kNoSet ? "" : "from " + quoted(spec.sets[receipt.before].name) + " ";
+  const std::string from = receipt.before == kNoSet ? "" : "from " + in_quotes(spec.sets[receipt.before].name) + " ";
   const SwitchRequest request{receipt.after, receipt.cause, receipt.by};
   const std::string by = receipt.cause == SwitchCause::kScript ? "" : "by " + asked_by(request, spec) + " ";
   const bool is_slow = receipt.way.slow != 0 && receipt.end != SwitchEnd::kRefused;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/control/receipt/receipt_parts.h"
 #include "chimera/text/time_text.h"
 
@@ -28,11 +29,11 @@ std::string not_schedulable(const SwitchReceipt& receipt, const ApplicationSpec&
   const TaskId late = receipt.way.deadline.task;
   if (!late.is_valid()) return reason_word(NoSwitch::kNotSchedulable);
   const TaskSpec& task = spec.tasks[late.index];
-  const std::string from = receipt.before == kNoSet ? "what is ON" : quoted(spec.sets[receipt.before].name);
+  const std::string from = receipt.before == kNoSet ? "what is ON" : in_quotes(spec.sets[receipt.before].name);
   const Nanoseconds takes = receipt.way.deadline.takes;
   return "the transition from " + from + " to " + set_text(receipt.after, spec) +
          " is not schedulable on CPU " + std::to_string(spec.rtpus[task.rtpu.index].cpu) + ": a cycle of task " +
-         quoted(task.name) + " may take " +
+         in_quotes(task.name) + " may take " +
          (takes == kNever ? "longer than its deadline of " + time_text(task.deadline)
                           : time_text(takes) + ", its deadline is " + time_text(task.deadline));
 }
@@ -48,21 +49,21 @@ std::string waited_text(const SwitchReceipt& receipt) {
 
 std::string gapless_text(const SwitchWay& way, const ApplicationSpec& spec) {
   if (!way.gapless.is_valid()) return "on of an arriving task fits no gap";
-  return "on of task " + quoted(spec.tasks[way.gapless.index].name) + " needs a gap of " + time_text(way.needed) +
+  return "on of task " + in_quotes(spec.tasks[way.gapless.index].name) + " needs a gap of " + time_text(way.needed) +
          ", and its rtpu has none";
 }
 
 std::string absent_text(const SwitchWay& way, const ApplicationSpec& spec) {
   if (!way.absent.is_valid()) return "an arriving task has the resource of another one";
-  const std::string text = "task " + quoted(spec.tasks[way.absent.index].name) + " is NOT-CREATED";
+  const std::string text = "task " + in_quotes(spec.tasks[way.absent.index].name) + " is NOT-CREATED";
   if (!way.rival.is_valid()) return text;
-  return text + ": task " + quoted(spec.tasks[way.rival.index].name) + " has its resource";
+  return text + ": task " + in_quotes(spec.tasks[way.rival.index].name) + " has its resource";
 }
 
 }  // namespace
 
 std::string set_text(std::uint32_t set, const ApplicationSpec& spec) {
-  return set == kNoSet ? "other tasks" : quoted(spec.sets[set].name);
+  return set == kNoSet ? "other tasks" : in_quotes(spec.sets[set].name);
 }
 
 std::vector<std::string> slow_words(const SwitchWay& way) {
@@ -78,10 +79,10 @@ std::vector<std::string> slow_words(const SwitchWay& way) {
 std::string slow_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
   const SwitchWay& way = receipt.way;
   std::string text;
-  const auto add = [&text](const std::string& why) { text += (text.empty() ? "" : "; ") + why; };
+  const auto add = [&text](const std::string& why) { append_joined(text, "; ", why); };
   if ((way.slow & kSlowForConstants) != 0 && way.constant.task.is_valid())
-    add("constant " + quoted(spec.constants[way.constant.constant.index].name) + " of task " +
-        quoted(spec.tasks[way.constant.task.index].name) + ", which stays, changes");
+    add("constant " + in_quotes(spec.constants[way.constant.constant.index].name) + " of task " +
+        in_quotes(spec.tasks[way.constant.task.index].name) + ", which stays, changes");
   if ((way.slow & kSlowForGap) != 0) add(gapless_text(way, spec));
   if ((way.slow & kSlowForDeadlines) != 0) add(not_schedulable(receipt, spec));
   if ((way.slow & kSlowForResource) != 0) add(absent_text(way, spec));
@@ -132,8 +133,9 @@ const char* reason_word(NoSwitch why) noexcept {
 }
 
 std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
-  const std::string task = receipt.task.is_valid() ? quoted(spec.tasks[receipt.task.index].name) : "";
-  const std::string variable = receipt.variable.is_valid() ? quoted(spec.variables[receipt.variable.index].name) : "";
+  const std::string task = receipt.task.is_valid() ? in_quotes(spec.tasks[receipt.task.index].name) : "";
+  const VariableId moved = receipt.variable;
+  const std::string variable = moved.is_valid() ? in_quotes(spec.variables[moved.index].name) : "";
   switch (receipt.why) {
     case NoSwitch::kInError: return "task " + task + " is in ERROR: clear it first";
     case NoSwitch::kNotCreated: return "task " + task + " is not there: spawn it first";
@@ -164,8 +166,8 @@ std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spe
       return by.empty() ? "cancelled" : "cancelled by " + by;
     }
     case NoSwitch::kBadConstant:
-      return "task " + task + " cannot be initialised with the constants of " + quoted(spec.sets[receipt.after].name) +
-             ": " + std::string(receipt.said.view());
+      return "task " + task + " cannot be initialised with the constants of " +
+             in_quotes(spec.sets[receipt.after].name) + ": " + std::string(receipt.said.view());
     case NoSwitch::kStepFailed: return "a method of task " + task + " failed: " + std::string(receipt.said.view());
     case NoSwitch::kNotReady:
       return (task.empty() ? "an rtpu" : "task " + task) + " was not ready" + waited_text(receipt);

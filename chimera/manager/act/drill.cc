@@ -6,17 +6,14 @@
 #include <cstdio>
 
 #include "chimera/base/assert.h"
+#include "chimera/base/hosted/wording.h"
 
 namespace chimera::manager {
 namespace {
 
 constexpr Nanoseconds kDrillLooksEvery = milliseconds(1);
 
-std::string in_ms(Nanoseconds time) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f ms", static_cast<double>(time.count) / 1e6);
-  return text;
-}
+std::string in_ms(Nanoseconds time) { return formatted("%.1f ms", static_cast<double>(time.count) / 1e6); }
 
 }  // namespace
 

@@ -2,28 +2,19 @@
 // Resolves names, judges acts other than signals, and carries them out on the operator variables and the flag.
 #include "chimera/manager/act/operator_acts.h"
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/manager/act/operator_values.h"
 #include "chimera/manager/answer/status_json.h"
 #include "chimera/manager/answer/value_json.h"
 #include "chimera/text/json.h"
-#include "chimera/text/nearest.h"
 
 namespace chimera::manager {
 namespace {
 
 using control::RpcResponse;
 
-RpcResponse unknown(const char* what, const std::string& name, const std::vector<std::string>& names) {
-  const std::string near = nearest(name, names);
-  const std::string message = std::string("no ") + what + " '" + name + "'";
-  return RpcResponse::unknown(message + (near.empty() ? "" : "; did you mean '" + near + "'?"), name, near);
-}
-
 std::vector<std::string> variable_names(const ManagerState& state) {
-  std::vector<std::string> names;
-  if (state.readings)
-    for (const Variable& variable : state.readings->variables().all()) names.emplace_back(variable.name);
-  return names;
+  return state.readings ? names_of(state.readings->variables().all(), &Variable::name) : std::vector<std::string>();
 }
 
 /// Elements in a row of an operator variable; 0 if it has one dimension.
@@ -50,7 +41,7 @@ std::variant<std::vector<VariableId>, RpcResponse> variables_named(const Manager
   std::vector<bool> is_named(state.readings ? state.readings->size() : 0);
   for (const std::string& name : names) {
     const auto variable = state.readings ? state.readings->find(name) : std::nullopt;
-    if (!variable) return unknown("state variable", name, variable_names(state));
+    if (!variable) return RpcResponse::no_such("state variable", name, variable_names(state));
     if (!is_named[variable->index]) found.push_back(*variable);
     is_named[variable->index] = true;
   }
@@ -62,11 +53,10 @@ std::variant<std::vector<TaskId>, RpcResponse> tasks_named(const ManagerState& s
   if (names.empty())
     return RpcResponse::error(control::kBadParameters, "'tasks' must name at least one", {{"where", "tasks"}});
   std::vector<TaskId> found;
-  std::vector<std::string> known;
-  for (const TaskSpec& task : state.spec().tasks) known.emplace_back(task.name);
+  const auto known = names_of(state.spec().tasks, &TaskSpec::name);
   for (const std::string& name : names) {
     const auto at = std::find(known.begin(), known.end(), name);
-    if (at == known.end()) return unknown("task", name, known);
+    if (at == known.end()) return RpcResponse::no_such("task", name, known);
     found.emplace_back(static_cast<std::size_t>(at - known.begin()));
   }
   return found;

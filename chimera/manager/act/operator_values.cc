@@ -3,8 +3,8 @@
 #include "chimera/manager/act/operator_values.h"
 
 #include <algorithm>
-#include <functional>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/catalogue/descriptor_value.h"
 #include "chimera/text/json.h"
 #include "chimera/text/json_text.h"
@@ -20,10 +20,6 @@ Node scalar(std::string text, bool quoted = false) {
   node.text = std::move(text);
   node.quoted = quoted;
   return node;
-}
-
-std::string with_unit(const std::string& text, const std::string& unit) {
-  return unit == "1" ? text : text + " " + unit;
 }
 
 Node node_of(const Json& json, const ValueForm& form, const std::string& unit, std::uint32_t type);
@@ -98,7 +94,7 @@ std::string words(const Report& report) {
   std::string text;
   for (const Fault& fault : report.faults()) {
     if (fault.severity != Severity::kError) continue;
-    text += (text.empty() ? "" : "; ") + sentence(fault);
+    append_joined(text, "; ", sentence(fault));
   }
   return text;
 }
@@ -114,22 +110,19 @@ std::string plain(std::uint32_t type, std::span<const std::byte> at, const std::
   return with_unit(finite == "null" ? (number > 0 ? "inf" : "-inf") : finite, unit);
 }
 
-std::string listed(std::size_t count, const std::function<std::string(std::size_t)>& item) {
-  std::string text;
-  for (std::size_t i = 0; i < count; ++i) text += (i == 0 ? "" : ", ") + item(i);
-  return "[" + text + "]";
+template <class Item>
+std::string listed(std::size_t count, const Item& item) {
+  return "[" + join_n(count, ", ", item) + "]";
 }
 
 std::string element(const ValueForm& form, std::span<const std::byte> at) {
   if (form.type != CHIMERA_STRUCT) return plain(form.type, at, form.unit);
-  std::string text;
-  for (const FieldDescriptor& field : form.fields) {
+  return "{" + join(form.fields, ", ", [at](const FieldDescriptor& field) {
     const auto item = [&](std::size_t i) {
       return plain(field.type, at.subspan(field.offset + i * field.size, field.size), field.unit);
     };
-    text += (text.empty() ? "" : ", ") + field.name + ": " + (field.count == 1 ? item(0) : listed(field.count, item));
-  }
-  return "{" + text + "}";
+    return field.name + ": " + (field.count == 1 ? item(0) : listed(field.count, item));
+  }) + "}";
 }
 
 }  // namespace

@@ -210,7 +210,7 @@ void RtpuLinks::look_at_counters(Nanoseconds at) {
     for (const TaskId task : links_[r].tasks) count(task, at);
     const std::uint64_t lost = state_.peers[RtpuId(r)].block().head().lost_posts;
     if (lost > links_[r].lost)
-      state_.tell("lost", TaskId{}, RtpuId(r), counted("event", "lost for lack of room", lost - links_[r].lost, lost),
+      state_.tell("lost", TaskId{}, RtpuId(r), tally("event", "lost for lack of room", lost - links_[r].lost, lost),
                   at);
     links_[r].lost = lost;
   }
@@ -226,11 +226,11 @@ void RtpuLinks::count(TaskId task, Nanoseconds at) {
     return;
   }
   if (p.missed > before.missed)
-    state_.tell("miss", task, rtpu, counted("deadline", "missed", p.missed - before.missed, p.missed), at);
+    state_.tell("miss", task, rtpu, tally("deadline", "missed", p.missed - before.missed, p.missed), at);
   if (p.overrun > before.overrun)
-    state_.tell("overrun", task, rtpu, counted("cycle", "over budget", p.overrun - before.overrun, p.overrun), at);
+    state_.tell("overrun", task, rtpu, tally("cycle", "over budget", p.overrun - before.overrun, p.overrun), at);
   if (p.stale > before.stale)
-    state_.tell("stale", task, rtpu, counted("input", "kept stale", p.stale - before.stale, p.stale), at);
+    state_.tell("stale", task, rtpu, tally("input", "kept stale", p.stale - before.stale, p.stale), at);
   before = {p.missed, p.overrun, p.stale};
 }
 

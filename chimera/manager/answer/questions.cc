@@ -18,8 +18,6 @@ namespace {
 
 using control::RpcResponse;
 
-constexpr Nanoseconds kPatienceWithEnd = seconds(1);  // until a process that was sent SIGKILL has ended
-
 RpcResponse too_many(const char* what) { return RpcResponse::error(control::kTooFast, what, {{"retry_ms", 100}}); }
 
 RpcResponse given_up(const std::string& why) {
@@ -165,7 +163,7 @@ std::string Questions::how_it_ended() {
   ProcessEnd end;
   channel_ = Channel();
   is_under_way_ = false;
-  const bool is_known = analyst_.wait(end, kPatienceWithEnd.count);
+  const bool is_known = analyst_.wait(end, kSigkillLimit.count);
   analyst_ = Process();
   if (!is_known) return "hangs";
   if (!end.by_signal) return "ended with status " + std::to_string(end.code);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/catalogue/descriptor_value.h"
 #include "chimera/manager/answer/status_json.h"
 #include "chimera/text/json.h"
@@ -69,7 +70,7 @@ std::string timing_text(const Profile& p) {
       {p.tolerated, "tolerated"}};
   std::string text;
   for (const auto& [count, word] : counts)
-    if (count > 0) text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + word;
+    if (count > 0) append_joined(text, ", ", std::to_string(count) + " " + word);
   return text;
 }
 
@@ -87,7 +88,7 @@ void add_producer(const ManagerState& state, TaskId task, VariableFacts& facts) 
     const Profile profile = segment.block().profile(task);
     facts.timing = timing_text(profile);
     if (rtpu.is_alive && !rtpu.lost_rights.empty())
-      facts.timing += (facts.timing.empty() ? "" : ", ") + facts.rtpu + ": " + rtpu.lost_rights;
+      append_joined(facts.timing, ", ", facts.rtpu + ": " + rtpu.lost_rights);
     facts.waits_for_events = spec.server && profile.events == 0;
   }
   for (const PortSpec& port : spec.ports)

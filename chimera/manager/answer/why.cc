@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "chimera/base/hosted/wording.h"
+
 namespace chimera::manager {
 namespace {
 
@@ -20,12 +22,9 @@ VariableTrouble trouble_of(const VariableFacts& facts) {
 }
 
 std::string short_time(Nanoseconds t) {
-  char text[32];
   const auto ns = static_cast<double>(t.count);
-  if (t < milliseconds(1)) std::snprintf(text, sizeof text, "%.3g us", ns * 1e-3);
-  else if (t < seconds(1)) std::snprintf(text, sizeof text, "%.3g ms", ns * 1e-6);
-  else std::snprintf(text, sizeof text, "%.3g s", ns * 1e-9);
-  return text;
+  if (t < milliseconds(1)) return formatted("%.3g us", ns * 1e-3);
+  return t < seconds(1) ? formatted("%.3g ms", ns * 1e-6) : formatted("%.3g s", ns * 1e-9);
 }
 
 std::string producer_text(const VariableFacts& facts) {

@@ -113,8 +113,7 @@ Verdict verify(const Bundle& bundle) {
     return verdict;
   }
   verdict.configuration.reset();
-  verdict.report.add({.rule = "quantity-bad", .at = {}, .message = std::string(set.error().message.view()),
-                      .found = {}, .expected = {}, .nearest = {}, .remedy = {}});
+  verdict.report.add({.rule = "quantity-bad", .message = std::string(set.error().message.view())});
   return verdict;
 }
 

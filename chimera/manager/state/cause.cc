@@ -2,8 +2,7 @@
 // Writes why a process ended: signal, exit code, and the method that ran.
 #include "chimera/manager/state/cause.h"
 
-#include <cstdio>
-
+#include "chimera/base/hosted/wording.h"
 #include "chimera/platform/descriptor.h"
 #include "chimera/platform/process.h"
 #include "chimera/runtime/task_word.h"
@@ -23,9 +22,8 @@ std::string running_text(const ApplicationSpec& spec, std::uint32_t running) {
 std::string hung_text(const ApplicationSpec& spec, const BlockHead& left) {
   const std::string method = running_text(spec, left.hung);
   const auto limit = static_cast<double>(left.hung_limit.load());
-  char within[48];
-  std::snprintf(within, sizeof within, " did not return within %.3g s", limit * 1e-9);
-  return method.empty() ? "" : method + (limit > 0 ? within : " ended its thread");
+  const std::string why = limit > 0 ? formatted(" did not return within %.3g s", limit * 1e-9) : " ended its thread";
+  return method.empty() ? "" : method + why;
 }
 
 std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, const BlockView& left,

@@ -2,6 +2,7 @@
 // Writes the messages of rtpus as sentences of the event log.
 #include "chimera/manager/state/post_text.h"
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/runtime/refusal.h"
 #include "chimera/text/time_text.h"
 
@@ -116,8 +117,8 @@ std::string event_text(const ApplicationSpec& spec, const Post& post, const std:
   return "stopped by its reaction: all tasks of this rtpu go OFF";
 }
 
-std::string counted(const char* what, const char* how, std::uint64_t more, std::uint64_t all) {
-  const std::string first = std::to_string(more) + " " + what + (more == 1 ? " " : "s ") + how;
+std::string tally(const char* what, const char* how, std::uint64_t more, std::uint64_t all) {
+  const std::string first = counted(more, what) + " " + how;
   return more == all ? first : first + " (" + std::to_string(all) + " in all)";
 }
 

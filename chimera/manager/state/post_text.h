@@ -15,6 +15,6 @@ const char* event_kind(EventKind happening) noexcept;
 /// `fault`: the last words of the task, "" if there are none.
 std::string event_text(const ApplicationSpec& spec, const Post& post, const std::string& fault);
 /// "1 deadline missed", "3 deadlines missed (17 in all)".
-std::string counted(const char* what, const char* how, std::uint64_t more, std::uint64_t all);
+std::string tally(const char* what, const char* how, std::uint64_t more, std::uint64_t all);
 
 }  // namespace chimera::manager

@@ -49,7 +49,7 @@ void ReceiptArchive::add(std::uint32_t number, std::string receipt, Nanoseconds 
     unfiled_.erase(oldest);
   }
   unfiled_.push_back({number, std::move(receipt)});
-  waiting_.push_back({number, now + kPatience, std::move(then)});
+  waiting_.push_back({number, now + kDiskLimit, std::move(then)});
   tries_again_ = now;
   file_next(now);
 }

@@ -19,8 +19,8 @@ class ReceiptArchive {
  public:
   static constexpr std::size_t kKept = 200;              // receipts that clients can get
   static constexpr std::size_t kMostUnfiled = 1000;
-  static constexpr Nanoseconds kPatience = milliseconds(100);  // for the disk, before an answer
-  static constexpr Nanoseconds kTryAgain = seconds(10);        // after a fault
+  static constexpr Nanoseconds kDiskLimit = milliseconds(100);  // an answer waits for the disk, but no longer than this
+  static constexpr Nanoseconds kTryAgain = seconds(10);         // after a fault
 
   /// Takes over the receipts that a predecessor has not filed. `folder`: for the files; "": there is none. Refuses if
   /// ReceiptWriter::start refuses. `state` outlives it.
@@ -29,7 +29,7 @@ class ReceiptArchive {
   ReceiptArchive& operator=(const ReceiptArchive&) = delete;
 
   /// Keeps the receipt of that number, one line of JSON, and files it. Calls `then` when it is on the disk, when it
-  /// cannot be filed, or after kPatience; maybe at once.
+  /// cannot be filed, or after kDiskLimit; maybe at once.
   void add(std::uint32_t number, std::string receipt, Nanoseconds now, std::function<void()> then);
   /// Readable when look() has a finished job; -1: never.
   int descriptor() const noexcept { return writer_ ? writer_->descriptor() : -1; }

@@ -70,10 +70,10 @@ TEST_F(ReceiptArchiveTest, AStalledDiskIsWaitedForATenthOfASecond) {
   std::optional<Result<LineFile>> lock(LineFile::open(control::ReceiptFile(folder()).path()));
   const Nanoseconds at = now();
   archive->add(1, receipt(1), at, [this] { answered += "1 "; });
-  archive->look(at + ReceiptArchive::kPatience - milliseconds(1));
+  archive->look(at + ReceiptArchive::kDiskLimit - milliseconds(1));
   EXPECT_EQ(answered, "");
-  EXPECT_LE(archive->next_due(), at + ReceiptArchive::kPatience);
-  archive->look(at + ReceiptArchive::kPatience);
+  EXPECT_LE(archive->next_due(), at + ReceiptArchive::kDiskLimit);
+  archive->look(at + ReceiptArchive::kDiskLimit);
   EXPECT_EQ(answered, "1 ");
   EXPECT_EQ(archive->unfiled(), 1u);
   lock.reset();

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/manager/state/manager_state.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/standard_streams.h"
@@ -22,8 +23,8 @@ void FaceWatch::look(ManagerState& state, Nanoseconds at) {
   const std::uint32_t deaths = state.keeper.face_deaths.load(std::memory_order_acquire);
   if (deaths > deaths_)
     state.tell("face-died", TaskId{}, RtpuId{},
-               "the process that prints and ends the run " + last_end(state) + ", " + std::to_string(deaths) +
-                   (deaths == 1 ? " time in all" : " times in all"),
+               "the process that prints and ends the run " + last_end(state) + ", " + counted(deaths, "time") +
+                   " in all",
                at);
   deaths_ = deaths;
   const std::int32_t lost = state.keeper.lost_output.load(std::memory_order_acquire);

@@ -2,23 +2,20 @@
 // Writes the guard's reports as sentences.
 #include "chimera/manager/watch/guard_news.h"
 
-#include <cstdio>
+#include <algorithm>
+
+#include "chimera/base/hosted/wording.h"
 
 namespace chimera::manager {
 namespace {
 
 std::string frames_text(const KeeperMessage& message) {
-  char text[128];
-  std::snprintf(text, sizeof text, "%d safe %s written", message.code, message.code == 1 ? "frame" : "frames");
-  std::string words = text;
-  if (message.code > 0) {
-    const double ms = static_cast<double>((message.at - message.silent).count) / 1e6;
-    std::snprintf(text, sizeof text, ", the last byte %.3f ms after the guard saw the death", ms);
-    words += text;
-  }
-  if (message.letter == 0) return words;
-  std::snprintf(text, sizeof text, "; %u COULD NOT BE WRITTEN: the device took nothing for 1 s", message.letter);
-  return words + text;
+  const auto n_written = static_cast<std::uint64_t>(std::max(message.code, 0));
+  std::string text = counted(n_written, "safe frame") + " written";
+  const double ms = static_cast<double>((message.at - message.silent).count) / 1e6;
+  if (n_written > 0) text += formatted(", the last byte %.3f ms after the guard saw the death", ms);
+  if (message.letter == 0) return text;
+  return text + "; " + std::to_string(message.letter) + " COULD NOT BE WRITTEN: the device took nothing for 1 s";
 }
 
 }  // namespace

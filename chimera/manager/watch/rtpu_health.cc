@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/platform/process_state.h"
 #include "chimera/platform/realtime.h"
 
@@ -79,7 +80,7 @@ GrantedRights GrantedRights::of(std::string_view report) {
 std::string lost_rights(const GrantedRights& granted, bool preemptive, const std::vector<ThreadRights>& threads,
                         bool is_locked) {
   std::string text;
-  const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  const auto add = [&text](const std::string& part) { append_joined(text, ", ", part); };
   const std::string due = granted.level > 0 ? policy_text(kPolicyFifo, granted.level) : policy_text(kPolicyOther, 0);
   for (const ThreadRights& now : threads) {
     const std::string who = "thread " + std::to_string(now.thread);

@@ -3,8 +3,8 @@
 #include "chimera/manager/watch/rtpu_watch.h"
 
 #include <algorithm>
-#include <cstdio>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/manager/state/cause.h"
 #include "chimera/runtime/task_word.h"
 
@@ -15,9 +15,7 @@ constexpr Nanoseconds kWatchEvery = milliseconds(250);
 constexpr Nanoseconds kStartPatience = seconds(10);  // until an rtpu has begun its first method or answers the manager
 
 std::string seconds_text(Nanoseconds time) {
-  char text[32];
-  std::snprintf(text, sizeof text, time < seconds(10) ? "%.1f s" : "%.0f s", to_seconds(time));
-  return text;
+  return formatted(time < seconds(10) ? "%.1f s" : "%.0f s", to_seconds(time));
 }
 
 const BlockHead* head_of(const ManagerState& state, RtpuId rtpu) {
@@ -101,7 +99,7 @@ void RtpuWatch::tell(RtpuId rtpu, const MethodVerdict& verdict, Nanoseconds at) 
   if (what.empty()) return;
   std::string& hang = state_.rtpus[rtpu.index].hang;
   const std::string text = what + (verdict.ended == 0 ? " for " : " ended after ") + seconds_text(verdict.since);
-  if (verdict.ended == 0) hang += (hang.empty() ? "" : "; ") + text;
+  if (verdict.ended == 0) append_joined(hang, "; ", text);
   if (verdict.is_news) state_.tell("hang", TaskWord::found(word).task(), rtpu, text, at);
 }
 

@@ -164,7 +164,7 @@ bool Recovery::turn_on(std::size_t group, Task& task, Nanoseconds now) noexcept 
   record_.begin(group, task.id);
   const SignalReport report = parts_.signals.signal({&task.id, 1}, Signal::kOn, now);
   if (report.why == Refusal::kIllegalSet) return true;  // another context turns one ON
-  if (report.why == Refusal::kNotYet && now < loss.at + TaskLife::kPatience) {
+  if (report.why == Refusal::kNotYet && now < loss.at + kReadyLimit) {
     again_at = ask_again_at(task, now);
     return look_again(again_at, again_at), true;
   }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/hosted/together.h"
 #include "chimera/runtime/hosted/variables.h"
@@ -87,7 +88,7 @@ class SetMaker {
         return true;
       }
       std::string names;
-      for (const TaskId task : may) names += (names.empty() ? "" : " or ") + name(task);
+      for (const TaskId task : may) append_joined(names, " or ", name(task));
       const std::string lacks = std::string(variable.name) + " would have no producer";
       refuse(may.empty() ? lacks : lacks + ", and there is a choice: " + names,
              may.empty() ? "" : "`--on` with one of them");
@@ -119,7 +120,7 @@ class SetMaker {
           for (const PortOf& to : variable.consumers) left[to.task.index] = before[to.task.index];
         }
     }
-    const std::string names = names_of(left, spec_.tasks);
+    const std::string names = names_in(left, spec_.tasks);
     if (!names.empty()) refuse("a loop of data would have no initial value, among: " + names);
   }
 
@@ -184,8 +185,8 @@ std::string lists_text(const TaskLists& lists, const ApplicationSpec& spec) {
   std::string text;
   const auto add = [&](const char* word, const TaskBits& tasks) {
     if (tasks == TaskBits{}) return;
-    text += (text.empty() ? "" : " ") + std::string(word);
-    text += " " + names_of(flags_of(tasks, spec), spec.tasks);
+    append_joined(text, " ", word);
+    text += " " + names_in(flags_of(tasks, spec), spec.tasks);
   };
   add("--on", lists.plus);
   add("--off", lists.minus);

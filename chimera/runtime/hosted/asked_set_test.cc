@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/runtime/testing/test_application.h"
 
 namespace chimera {
@@ -85,7 +86,7 @@ struct AskedSetTest : ::testing::Test {
     if (!asked) return asked.text();
     std::string names;
     for (std::size_t t = 0; t < app.spec.tasks.size(); ++t)
-      if (asked.tasks.has(TaskId(t))) names += (names.empty() ? "" : " ") + std::string(app.spec.tasks[t].name);
+      if (asked.tasks.has(TaskId(t))) append_joined(names, " ", app.spec.tasks[t].name);
     return names;
   }
   std::vector<TaskId> are_on{kSensor, kPid, kMotor};

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/runtime/testing/named_links.h"
 
 namespace chimera {
@@ -40,9 +41,7 @@ struct TaskOrders : ::testing::Test {
     return spec_;
   }
   std::string names(std::span<const TaskId> tasks) const {
-    std::string text;
-    for (const TaskId task : tasks) text += (text.empty() ? "" : " ") + std::string(tasks_[task.index].name);
-    return text;
+    return join(tasks, " ", [this](TaskId task) { return tasks_[task.index].name; });
   }
 
   std::vector<std::vector<PortSpec>> ports_;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "chimera/base/hosted/wording.h"
+
 namespace chimera {
 namespace {
 
@@ -13,7 +15,7 @@ SetFault fault_of(const Variable& variable, const std::vector<bool>& on) noexcep
 
 }  // namespace
 
-std::string names_of(const std::vector<bool>& on, std::span<const TaskSpec> tasks) {
+std::string names_in(const std::vector<bool>& on, std::span<const TaskSpec> tasks) {
   std::string names;
   for (std::size_t t = 0; t < on.size(); ++t)
     if (on[t]) names += (names.empty() ? "" : " ") + std::string(tasks[t].name);
@@ -35,13 +37,13 @@ std::string Variables::explain(const std::vector<bool>& on, std::span<const Task
 
 std::string Variables::fault(const std::vector<bool>& on, std::span<const TaskSpec> tasks) const {
   std::string text;
-  const auto add = [&text](std::string part) { text += (text.empty() ? "" : "; ") + std::move(part); };
+  const auto add = [&text](const std::string& part) { append_joined(text, "; ", part); };
   for (const Variable& variable : variables_) {
     const SetFault fault = fault_of(variable, on);
     if (fault == SetFault::kTwoProducers) {
       std::string who;
       for (const PortOf& p : variable.producers)
-        if (on[p.task.index]) who += (who.empty() ? "" : " and ") + std::string(tasks[p.task.index].name);
+        if (on[p.task.index]) append_joined(who, " and ", tasks[p.task.index].name);
       add(std::string(variable.name) + " would have two producers: " + who);
     } else if (fault == SetFault::kNoProducer) {
       add(std::string(variable.name) + " would have no producer");
@@ -67,7 +69,7 @@ std::string Variables::smallest_legal(std::vector<bool> on, std::span<const Task
   std::vector<bool> best;
   int tries = kTries;
   complete(on, best, tries);
-  return names_of(best, tasks);
+  return names_in(best, tasks);
 }
 
 // Leaves `on` as it was, and in `best` the smallest legal set that holds it; gives up after `tries`.

@@ -14,7 +14,7 @@
 namespace chimera {
 
 /// "servo hold": the tasks t with on[t], in the order of the spec. Context: setup.
-std::string names_of(const std::vector<bool>& on, std::span<const TaskSpec> tasks);
+std::string names_in(const std::vector<bool>& on, std::span<const TaskSpec> tasks);
 
 /// A view of spec.variables, which outlive it. Context: setup; the checks also at a cycle boundary.
 class Variables {

@@ -40,17 +40,17 @@ class TaskLife {
   /// ON as one transaction. Reports the first task that said no; whatever was spawned stays as it is. In words:
   /// refusal_text.h.
   SignalReport start(Nanoseconds now);
-  /// Starts the tasks as start(now) does. If `on` of a task answers "not yet", asks again, for at most kPatience.
+  /// Starts the tasks as start(now) does. If `on` of a task answers "not yet", asks again, for at most kReadyLimit.
   /// `wait` returns the time at about the instant that it is given.
   template <class Wait>
   SignalReport start(Nanoseconds now, Wait wait) {
     SignalReport report = start(now);
-    for (const Nanoseconds until = now + kPatience; report.why == Refusal::kNotYet && now < until;)
+    for (const Nanoseconds until = now + kReadyLimit; report.why == Refusal::kNotYet && now < until;)
       report = start(now = wait(now + kAskAgain));
     if (!report) turn_off_started(now);
     return report;
   }
-  static constexpr Nanoseconds kPatience = seconds(10), kAskAgain = milliseconds(1);
+  static constexpr Nanoseconds kAskAgain = milliseconds(1);
   /// Turns OFF (reverse of the start order), then kills, every task that is created.
   void shut_down(Nanoseconds now);
   /// Carries out one signal and all that follows from it (re-initialisation of users of a changed constant, the

@@ -215,7 +215,7 @@ StepEnd SlowSteps::turn_on_again(Task& task, Nanoseconds now) noexcept {
   if (waits_for_device(task, now)) return StepEnd::kWaits;
   const SignalReport report = move(task, Signal::kOn, now);
   if (report.why == Refusal::kNotYet) {
-    if (back_until_ == kNever) back_until_ = now + TaskLife::kPatience;
+    if (back_until_ == kNever) back_until_ = now + kReadyLimit;
     if (now < back_until_) return wait_until(again_at_ = now + period_of(task));
     (void)move(task, Signal::kOff, now);
   }

@@ -143,7 +143,7 @@ Result<void> VirtualRtpus::turn_on_all() {
     return Error{ErrorCode::kRefused, {Variables(spec).explain(wanted, spec.tasks)}, {spec.name}};
   for (const TaskId id : spec.start) {
     SignalReport report = signal(id, Signal::kOn);
-    for (const Nanoseconds until = now_ + TaskLife::kPatience; report.why == Refusal::kNotYet && now_ < until;) {
+    for (const Nanoseconds until = now_ + kReadyLimit; report.why == Refusal::kNotYet && now_ < until;) {
       now_ = now_ + TaskLife::kAskAgain;
       report = signal(id, Signal::kOn);
     }

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/catalogue/library.h"
 #include "chimera/units/testing/unit_samples.h"
 #include "chimera/verify/verify.h"
@@ -35,7 +36,7 @@ std::string faults_of(const std::string& members) {
   const Verdict verdict = verify(read_description(text, "app.yaml"), valves());
   std::string codes;
   for (const Fault& fault : verdict.report.faults())
-    if (fault.severity == Severity::kError) codes += (codes.empty() ? "" : " ") + std::string(fault.rule);
+    if (fault.severity == Severity::kError) append_joined(codes, " ", fault.rule);
   return codes;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/task/number_at.h"
 #include "chimera/verify/rules/rules.h"
 #include "chimera/verify/values.h"
@@ -35,7 +36,7 @@ std::size_t certain(Model& model, const LinkedPort& port) {
 std::string number_text(const LinkedPort& port, double value) {
   char out[32];
   const std::string number(out, std::to_chars(out, out + sizeof out, value).ptr);
-  return port.unit_text == "1" ? number : number + ' ' + port.unit_text;
+  return with_unit(number, port.unit_text);
 }
 
 void refuse(Model& model, const LinkedPort& lower, const LinkedPort& upper, std::size_t element, double low,

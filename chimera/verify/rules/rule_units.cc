@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/units/quantity.h"
 #include "chimera/verify/rules/rules.h"
 
@@ -201,8 +202,8 @@ void report_contradiction(Model& model, UnitTable& table, const LinkedPort& port
   std::string by;
   for (const auto& [key, binding] : table.bindings)
     if (key.first == port.task && port.declared->unit.find(key.second[0]) != std::string::npos)
-      by += (by.empty() ? "" : ", ") + std::string(1, key.second[0]) + " is " + binding.value.text + " by '" +
-            model.port(binding.from).name + "'";
+      append_joined(by, ", ", std::string(1, key.second[0]) + " is " + binding.value.text + " by '" +
+                                  model.port(binding.from).name + "'");
   model.error("unit-contradiction", port.at,
               model.say(port) + " has unit '" + port.declared->unit + "', so " + port.unit_text + " because " + by +
                   "; " + settled_by(model, variable, variable.unit_from) + " is in " + variable.unit_text,
