@@ -143,7 +143,7 @@ function(chimera_component_tests group)
   list(APPEND sources ${ARGN})
   _chimera_component_tests_wanted(wanted)
   if(sources AND wanted)
-    _chimera_together(sources together ACROSS)
+    _chimera_together(sources together)
     _chimera_test_binary(${group}_test unit "${sources}" "chimera_component_base;${libraries}" ""
       ${CHIMERA_FEWER_CHECKS})
   endif()

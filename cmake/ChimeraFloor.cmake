@@ -110,13 +110,12 @@ function(_chimera_test_properties name label)
   endif()
 endfunction()
 
-# _chimera_together(list folder [ACROSS] [MOST n]): replaces the .cc files of the named list with files, in `folder` of
-# the binary directory, that include up to n of one folder each, or across folders, 8 by default: headers and templates
-# are compiled once for all of them. With 16 in place of 8 two files of the manager took 31.9 s in place of 42.7, two of
-# the command line 25.7 in place of 42.2 (debug). Not CMake's own unity build: no cache knows its absolute paths in
-# another checkout.
+# _chimera_together(list folder [MOST n]): replaces the .cc files of the named list with files, in `folder` of the
+# binary directory, that include up to n of them each, 8 by default: headers and templates are compiled once for all of
+# them. With 16 in place of 8 two files of the manager took 31.9 s in place of 42.7, two of the command line 25.7 in
+# place of 42.2 (debug). Not CMake's own unity build: no cache knows its absolute paths in another checkout.
 function(_chimera_together name_of_list to)
-  cmake_parse_arguments(arg "ACROSS" "MOST" "" ${ARGN})
+  cmake_parse_arguments(arg "" "MOST" "" ${ARGN})
   if(NOT arg_MOST)
     set(arg_MOST 8)
   endif()
@@ -127,19 +126,12 @@ function(_chimera_together name_of_list to)
   set(number 0)
   while(together)
     set(text "")
-    list(GET together 0 file)
-    cmake_path(GET file PARENT_PATH folder)
     foreach(i RANGE 1 ${arg_MOST})
       list(POP_FRONT together file)
       cmake_path(ABSOLUTE_PATH file)
       cmake_path(RELATIVE_PATH file BASE_DIRECTORY ${CMAKE_SOURCE_DIR})
       string(APPEND text "#include \"${file}\"\n")
       if(NOT together)
-        break()
-      endif()
-      list(GET together 0 next)
-      cmake_path(GET next PARENT_PATH folder_of_next)
-      if(NOT arg_ACROSS AND NOT folder_of_next STREQUAL folder)
         break()
       endif()
     endforeach()

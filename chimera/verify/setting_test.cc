@@ -11,11 +11,11 @@
 namespace chimera {
 namespace {
 
-PortDescriptor port(std::string name, std::uint32_t kind, std::string unit, std::string shape = "") {
+PortDescriptor set_port(std::string name, std::uint32_t kind, std::string unit, std::string shape = "") {
   return {.name = std::move(name), .unit = std::move(unit), .shape = std::move(shape), .kind = kind};
 }
 
-Descriptor component(std::string name, std::vector<PortDescriptor> ports) {
+Descriptor set_component(std::string name, std::vector<PortDescriptor> ports) {
   Descriptor d;
   d.name = std::move(name);
   d.default_rate_hz = 100;
@@ -25,11 +25,12 @@ Descriptor component(std::string name, std::vector<PortDescriptor> ports) {
   return d;
 }
 
-const Library& library() {
+const Library& set_library() {
   static const Library kLibrary = Library::of(
-      {component("law", {port("q", CHIMERA_IN_VAR, "rad", "[2]"), port("kp", CHIMERA_IN_VAR, "N.m/rad", "[2]"),
-                         port("limit", CHIMERA_IN_CONST, "N.m"), port("cutoff", CHIMERA_IN_CONST, "Hz"),
-                         port("tau", CHIMERA_OUT_VAR, "N.m", "[2]")})},
+      {set_component("law", {set_port("q", CHIMERA_IN_VAR, "rad", "[2]"),
+                             set_port("kp", CHIMERA_IN_VAR, "N.m/rad", "[2]"),
+                             set_port("limit", CHIMERA_IN_CONST, "N.m"), set_port("cutoff", CHIMERA_IN_CONST, "Hz"),
+                             set_port("tau", CHIMERA_OUT_VAR, "N.m", "[2]")})},
       our_units());
   return kLibrary;
 }
@@ -45,14 +46,14 @@ constexpr const char* kText =
 
 class SettingTest : public ::testing::Test {
  protected:
-  SettingTest() : verdict_(verify(read_description(kText, "arm.yaml"), library())) {
+  SettingTest() : verdict_(verify(read_description(kText, "arm.yaml"), set_library())) {
     EXPECT_TRUE(verdict_.configuration) << verdict_.report.text();
   }
   static Setting set(const std::string& name, const std::string& value) {
     return {name, value, "--set " + name + " '" + value + "'"};
   }
   Result<Configuration> with(const std::vector<Setting>& settings) {
-    return with_settings(*verdict_.configuration, library(), settings);
+    return with_settings(*verdict_.configuration, set_library(), settings);
   }
   /// "where: message", or "accepted".
   std::string refusal(const std::vector<Setting>& settings) {

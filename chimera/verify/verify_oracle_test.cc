@@ -19,15 +19,15 @@ struct Module {
   unsigned inputs = 0, outputs = 0;
 };
 
-struct Graph {
+struct RandomGraph {
   std::vector<Module> modules;
   unsigned operated = 0;
   std::vector<unsigned> sets;  ///< one bit per module
 };
 
-Graph random_graph(std::mt19937& random) {
+RandomGraph random_graph(std::mt19937& random) {
   const auto sparse = [&] { return static_cast<unsigned>(random() & random()) % (1u << kVariables); };
-  Graph graph;
+  RandomGraph graph;
   graph.modules.resize(1 + random() % 5);
   for (Module& module : graph.modules) module = {sparse(), sparse() & sparse()};
   graph.operated = sparse() & sparse();
@@ -37,7 +37,7 @@ Graph random_graph(std::mt19937& random) {
 }
 
 /// Equation 1 over one set, with the operator as one more module: Y_i and Y_j are disjoint.
-bool outputs_are_disjoint(const Graph& graph, unsigned set) {
+bool outputs_are_disjoint(const RandomGraph& graph, unsigned set) {
   for (std::size_t i = 0; i < graph.modules.size(); ++i) {
     if (!(set >> i & 1)) continue;
     if (graph.modules[i].outputs & graph.operated) return false;
@@ -48,7 +48,7 @@ bool outputs_are_disjoint(const Graph& graph, unsigned set) {
 }
 
 /// Equation 2: the union of X is a subset of the union of Y.
-bool inputs_are_met(const Graph& graph, unsigned set) {
+bool inputs_are_met(const RandomGraph& graph, unsigned set) {
   unsigned x = 0, y = graph.operated;
   for (std::size_t i = 0; i < graph.modules.size(); ++i)
     if (set >> i & 1) x |= graph.modules[i].inputs, y |= graph.modules[i].outputs;
@@ -57,7 +57,7 @@ bool inputs_are_met(const Graph& graph, unsigned set) {
 
 std::string letter(unsigned variable) { return "v" + std::to_string(variable); }
 
-Library components(const Graph& graph) {
+Library components_of(const RandomGraph& graph) {
   std::vector<Descriptor> out;
   for (std::size_t i = 0; i < graph.modules.size(); ++i) {
     Descriptor d;
@@ -77,7 +77,7 @@ Library components(const Graph& graph) {
   return Library::of(std::move(out), our_units());
 }
 
-std::string described(const Graph& graph) {
+std::string text_of(const RandomGraph& graph) {
   std::string text = "subsystem: demo\ntasks:\n";
   for (std::size_t i = 0; i < graph.modules.size(); ++i) {
     text += "  m" + std::to_string(i) + ": {alias: {";
@@ -105,14 +105,14 @@ TEST(VerifyOracle, AgreesWithTheSetEquationsOnRandomGraphs) {
   std::mt19937 random(seed);
   unsigned legal = 0;
   for (int round = 0; round < 1000; ++round) {
-    const Graph graph = random_graph(random);
+    const RandomGraph graph = random_graph(random);
     bool disjoint = true, met = true;
     for (const unsigned set : graph.sets) {
       disjoint = disjoint && outputs_are_disjoint(graph, set);
       met = met && inputs_are_met(graph, set);
     }
-    const std::string text = described(graph);
-    const Verdict verdict = verify(read_description(text, "random"), components(graph));
+    const std::string text = text_of(graph);
+    const Verdict verdict = verify(read_description(text, "random"), components_of(graph));
     const std::string shown =
         "seed " + std::to_string(seed) + ", round " + std::to_string(round) + "\n" + text + verdict.report.text();
     ASSERT_EQ(verdict.configuration.has_value(), disjoint && met) << shown;

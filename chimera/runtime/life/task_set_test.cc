@@ -64,6 +64,12 @@ struct User {
   std::int32_t inits_ = 0;
 };
 
+struct Jammed {  // its `off` always fails
+  Out<double> n{"n", "1", initial = 0.0};
+  void cycle(Cycle) {}
+  void off(Cycle) { throw std::runtime_error("jammed"); }
+};
+
 VariableView view(TaskSet& set, const char* variable) {
   return set.sources().view(VariableId(Variables(set.spec()).find(variable)));
 }

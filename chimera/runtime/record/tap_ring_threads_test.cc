@@ -13,7 +13,7 @@
 namespace chimera {
 namespace {
 
-TapRecord numbered(std::uint64_t number) {
+TapRecord numbered_record(std::uint64_t number) {
   TapRecord record;
   record.at = Nanoseconds{static_cast<std::int64_t>(number)};
   record.b = ~static_cast<std::int64_t>(number);
@@ -34,7 +34,7 @@ struct TapRings : ::testing::Test {
 TEST_F(TapRings, GiveBackRecordsInTheirOrder) {
   Tap tap(*ring);
   TapReader reader(*ring);
-  for (std::uint64_t i = 0; i < 5; ++i) tap.append(numbered(i));
+  for (std::uint64_t i = 0; i < 5; ++i) tap.append(numbered_record(i));
   std::array<TapRecord, 3> out;
   ASSERT_EQ(reader.read(out), 3u);
   EXPECT_EQ(out[2].at, Nanoseconds{2});
@@ -48,9 +48,9 @@ TEST_F(TapRings, GiveBackRecordsInTheirOrder) {
 TEST_F(TapRings, ManyReadersGetTheSameRecords) {
   Tap tap(*ring);
   TapReader early(*ring);
-  tap.append(numbered(0));
+  tap.append(numbered_record(0));
   TapReader late(*ring), complete(*ring, true);
-  tap.append(numbered(1));
+  tap.append(numbered_record(1));
   std::array<TapRecord, 8> out;
   EXPECT_EQ(early.read(out), 2u);
   EXPECT_EQ(complete.read(out), 2u);
@@ -62,7 +62,7 @@ TEST_F(TapRings, AReaderThatFallsBehindLosesTheOldestAndKnowsHowMany) {
   Tap tap(*ring);
   TapReader reader(*ring);
   constexpr std::uint64_t kAppended = 2 * kTapRecords + 10;
-  for (std::uint64_t i = 0; i < kAppended; ++i) tap.append(numbered(i));
+  for (std::uint64_t i = 0; i < kAppended; ++i) tap.append(numbered_record(i));
   std::vector<TapRecord> out(kAppended);
   const std::size_t n = reader.read(out);
   EXPECT_EQ(n, kTapRecords - 2);
@@ -73,7 +73,7 @@ TEST_F(TapRings, AReaderThatFallsBehindLosesTheOldestAndKnowsHowMany) {
 
 TEST_F(TapRings, AReaderThatBeginsWithTheOldestHasLostNothing) {
   Tap tap(*ring);
-  for (std::uint64_t i = 0; i < kTapRecords + 7; ++i) tap.append(numbered(i));
+  for (std::uint64_t i = 0; i < kTapRecords + 7; ++i) tap.append(numbered_record(i));
   TapReader reader(*ring, true);
   TapRecord out[1];
   ASSERT_EQ(reader.read(out), 1u);
@@ -82,8 +82,8 @@ TEST_F(TapRings, AReaderThatBeginsWithTheOldestHasLostNothing) {
 }
 
 TEST_F(TapRings, AWriterThatTakesOverARingGoesOnCounting) {
-  Tap(*ring).append(numbered(0));
-  Tap(*ring).append(numbered(1));
+  Tap(*ring).append(numbered_record(0));
+  Tap(*ring).append(numbered_record(1));
   TapReader reader(*ring, true);
   std::array<TapRecord, 4> out;
   ASSERT_EQ(reader.read(out), 2u);
@@ -110,7 +110,7 @@ TEST_F(TapRings, RandomHeadsNeverLeadOutOfTheRingOrIntoALoop) {
 
 TEST_F(TapRings, AReaderWhoseWriterCountsBackReadsTheNextRecord) {
   Tap tap(*ring);
-  for (std::uint64_t i = 0; i < 9; ++i) tap.append(numbered(i));
+  for (std::uint64_t i = 0; i < 9; ++i) tap.append(numbered_record(i));
   TapReader reader(*ring);
   ring->head = 3;
   TapRecord out[4];
@@ -161,7 +161,7 @@ TEST_F(TapRings, NoRecordOfAMillionIsTornAndEveryGapIsCounted) {
   }
   while (ready.load() != 2) std::this_thread::yield();
   Tap tap(*ring);
-  for (std::uint64_t i = 0; i < kMillion; ++i) tap.append(numbered(i));
+  for (std::uint64_t i = 0; i < kMillion; ++i) tap.append(numbered_record(i));
   done.store(true, std::memory_order_release);
   for (auto& reader : readers) reader.join();
   for (const Seen& s : seen) {
