@@ -113,6 +113,7 @@ class Chaos {
     stopped_.clear();
   }
   void die_manager() {
+    system_.stop_keeper(keeper_is_stopped_ = false);  // a keeper reads what a dead manager has sent
     system_.kill_manager();
     asked_.clear();  // a client asks again
   }
