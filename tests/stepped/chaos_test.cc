@@ -113,6 +113,7 @@ class Chaos {
     stopped_.clear();
   }
   void die_manager() {
+    system_.stop_keeper(keeper_is_stopped_ = false);  // a keeper reads what a dead manager has sent
     system_.kill_manager();
     asked_.clear();  // a client asks again
   }
@@ -172,14 +173,21 @@ class Chaos {
       return asked_.empty() && system_.manager().is_ready() && system_.manager().state().logic.is_settled();
     };
     ASSERT_TRUE(system_.until(is_calm, seconds(60))) << "a command is never answered, or goals stay open";
-    system_.run(milliseconds(100));
+    EXPECT_TRUE(system_.until([&] { return errors_of_manager().empty(); })) << errors_of_manager();
+  }
+  std::string errors_of_manager() {
+    std::string errors;
     for (std::size_t t = 0; t < system_.spec().tasks.size(); ++t) {
       const TaskSpec& task = system_.spec().tasks[t];
-      const std::string& rtpu = kRtpus[task.rtpu.index];
-      EXPECT_TRUE(is_alive(rtpu) || system_.manager().state().logic.is_given_up(task.rtpu)) << rtpu << " stays dead";
-      const State truth = is_alive(rtpu) ? system_.rtpu(rtpu).state(TaskId(t)) : system_.state(task.name);
-      EXPECT_EQ(system_.state(task.name), truth) << task.name;
+      const State shown = system_.state(task.name);
+      if (!is_alive(rtpu_of(t))) {
+        if (!system_.manager().state().logic.is_given_up(task.rtpu)) errors += rtpu_of(t) + " stays dead\n";
+      } else if (const State truth = system_.rtpu(rtpu_of(t)).state(TaskId(t)); truth != shown) {
+        errors += std::string(task.name) + " in " + rtpu_of(t) + " is " + state_name(truth) + " and shown as " +
+                  state_name(shown) + "\n";
+      }
     }
+    return errors.empty() ? errors : errors + system_.events("hang") + system_.events("rtpu-ended");
   }
   void command_all(const char* word, State from) {
     for (const TaskSpec& task : system_.spec().tasks)
