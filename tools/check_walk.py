@@ -12,7 +12,7 @@ WALK = "docs/walk.md"
 SECTION = re.compile(r"^## (\d+)\. [^\n]*\n(.*?)(?=^## |\Z)", re.MULTILINE | re.DOTALL)
 ROW = re.compile(r"^\| ([^|\n]+) \| (\d+) \| ([^|\n]+) \|", re.MULTILINE)
 SUM = re.compile(r"\b(\d+) files with their headers\b")
-MOST = {"8": 45, "9": 30, "10": 45}  # by section: docs/walk.md says why
+MOST = {"8": 45, "9": 30, "10": 44}  # by section: docs/walk.md says why
 
 
 def named(cell):

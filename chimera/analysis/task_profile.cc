@@ -36,13 +36,6 @@ Json json_of(const Spread& spread) {
   return {{"count", spread.count}, {"min", spread.min.count}, {"mean", spread.mean().count}, {"max", spread.max.count}};
 }
 
-Json json_of(const std::optional<ServerSpec>& server) {
-  if (!server) return nullptr;
-  return {{"kind", server_kind_name(server->kind)},
-          {"capacity_ns", server->capacity.count},
-          {"period_ns", server->period.count}};
-}
-
 Json json_of(const FaultRecord& faults, Nanoseconds origin) {
   return {{"method", method_name(faults.method)},
           {"at_ns", (faults.at - origin).count},
@@ -60,7 +53,7 @@ Json json_of(const TaskProfile& task, Nanoseconds origin) {
                {"rtpu", task.rtpu},
                {"state", state_name(task.state)},
                {"period_ns", task.period.count},
-               {"server", json_of(task.server)},
+               {"server", server_json(task.server)},
                {"on_ns", task.on.count},
                {"cycles", p.cycles},
                {"execution_ns", std::move(methods)},
@@ -147,6 +140,13 @@ TaskProfile profile_of(const Json& json, Nanoseconds origin) {
 }
 
 }  // namespace
+
+Json server_json(const std::optional<ServerSpec>& server) {
+  if (!server) return nullptr;
+  return {{"kind", server_kind_name(server->kind)},
+          {"capacity_ns", server->capacity.count},
+          {"period_ns", server->period.count}};
+}
 
 Json profile_json(std::span<const TaskProfile> tasks, Nanoseconds origin) {
   Json all = Json::array();

@@ -32,6 +32,8 @@ struct TaskProfile {
   std::optional<ServerSpec> server;
 };
 
+/// {"kind", "capacity_ns", "period_ns"}; null without a server. Context: setup.
+Json server_json(const std::optional<ServerSpec>& server);
 /// A JSON array with everything counted, one object a task, times in nanoseconds, of faults from `origin`.
 /// Context: setup.
 Json profile_json(std::span<const TaskProfile> tasks, Nanoseconds origin);

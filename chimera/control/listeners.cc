@@ -2,12 +2,14 @@
 // Finds in /proc the processes that hold a control socket, and says why none of them answers.
 #include "chimera/control/listeners.h"
 
-#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <vector>
 
 #include "chimera/platform/local_socket.h"
+#include "chimera/platform/orphans.h"
+#include "chimera/platform/process_state.h"
 #include "chimera/text/time_text.h"
 
 namespace chimera::control {
@@ -44,30 +46,16 @@ bool holds(const fs::path& process, const std::string& link) {
   return false;
 }
 
-/// (name, state) of a process: "chimera-manager", 'T'.
-std::pair<std::string, char> name_and_state(const fs::path& process) {
-  std::ifstream in(process / "stat");
-  std::string text;
-  std::getline(in, text);  // no iterators: they throw if the process ends during the read
-  const std::size_t from = text.find('('), to = text.rfind(')');
-  if (from == std::string::npos || to == std::string::npos || to + 2 >= text.size()) return {"", '?'};
-  return {text.substr(from + 1, to - from - 1), text[to + 2]};
-}
-
 }  // namespace
 
 Listeners listeners_at(const std::string& path) {
   Listeners found;
   const std::string link = link_of(path);
-  std::error_code error;
-  fs::directory_iterator processes("/proc", error);
-  for (; !link.empty() && !error && processes != fs::directory_iterator(); processes.increment(error)) {
-    const std::string entry = processes->path().filename().string();
-    int pid = 0;
-    if (std::from_chars(entry.data(), entry.data() + entry.size(), pid).ec != std::errc()) continue;
-    const auto [name, state] = name_and_state(processes->path());
-    if ((name != "chimera" && name != "chimera-manager") || !holds(processes->path(), link)) continue;
+  for (const pid_t pid : link.empty() ? std::vector<pid_t>() : numbers_in("/proc")) {
+    const std::string name = name_of(pid);
+    if ((name != "chimera" && name != "chimera-manager") || !holds("/proc/" + std::to_string(pid), link)) continue;
     (name == "chimera" ? found.keeper : found.manager) = pid;
+    const char state = process_state(pid).letter;
     if (name != "chimera") found.is_stopped = state == 'T' || state == 't';
   }
   return found;

@@ -2,9 +2,8 @@
 // The time that one turn of work for many connections may take before other work comes first again.
 #pragma once
 
-#include <ctime>
-
 #include "chimera/control/limits.h"
+#include "chimera/platform/clock.h"
 
 namespace chimera::control {
 
@@ -12,16 +11,10 @@ namespace chimera::control {
 /// Context: setup.
 class Turn {
  public:
-  Turn() noexcept : ends_(clock() + kTurn) {}
-  bool is_over() const noexcept { return clock() >= ends_; }
+  Turn() noexcept : ends_(LinuxClock().now() + kTurn) {}
+  bool is_over() const noexcept { return LinuxClock().now() >= ends_; }
 
  private:
-  static Nanoseconds clock() noexcept {
-    timespec t{};
-    ::clock_gettime(CLOCK_MONOTONIC, &t);
-    return {t.tv_sec * 1'000'000'000 + t.tv_nsec};
-  }
-
   Nanoseconds ends_;
 };
 

@@ -171,30 +171,26 @@ RpcResponse receipts_answer(const ReceiptArchive& archive, std::size_t n) {
 }
 
 /// ControlServer carries out `subscribe` and `unsubscribe`.
-ManagerBackend::Handler ManagerBackend::handler(MethodId method) noexcept {
-  using Me = ManagerBackend;
-  static constexpr struct {
-    MethodId method;
-    Handler handler;
-  } kHandlers[] = {
-      {MethodId::kCheck, &Me::check}, {MethodId::kSchedule, &Me::schedule}, {MethodId::kSignal, &Me::signal},
-      {MethodId::kRing, &Me::ring},   {MethodId::kSet, &Me::set},           {MethodId::kFlag, &Me::flag},
-      {MethodId::kSwitch, &Me::switch_to}, {MethodId::kCancel, &Me::cancel}, {MethodId::kPlan, &Me::plan},
-      {MethodId::kDrill, &Me::drill}, {MethodId::kReceipts, &Me::receipts}, {MethodId::kSave, &Me::save},
-      {MethodId::kEnd, &Me::end},
-  };
-  const auto row = std::ranges::find_if(kHandlers, [method](const auto& one) { return one.method == method; });
-  return row == std::end(kHandlers) ? &Me::unknown : row->handler;
-}
-
 void ManagerBackend::call(const control::MethodRule& method, const Json& parameters, const control::Caller& caller,
                           control::Reply reply) {
   if (const auto answer = reads_.answer(method.id, parameters, caller.role)) return reply(*answer);
-  (this->*handler(method.id))({parameters, caller, reply});
-}
-
-void ManagerBackend::unknown(const Request& request) {
-  request.reply(RpcResponse::error(control::kNoMethod, "a running subsystem has no such method"));
+  const Request request{parameters, caller, reply};
+  switch (method.id) {
+    case MethodId::kReceipts: return receipts(request);
+    case MethodId::kPlan: return plan(request);
+    case MethodId::kCheck: return analyse(Question::Kind::kCheck, request);
+    case MethodId::kSchedule: return analyse(Question::Kind::kSchedule, request);
+    case MethodId::kSignal: return signal(request);
+    case MethodId::kRing: return ring(request);
+    case MethodId::kSet: return reply(set_values(state(), parameters.at("values")));
+    case MethodId::kFlag: return reply(set_flag(state(), parameters.at("up").as_bool()));
+    case MethodId::kSwitch: return switch_to(request);
+    case MethodId::kCancel: return cancel(request);
+    case MethodId::kDrill: return drill(request);
+    case MethodId::kSave: return reply(saved_values(state()));
+    case MethodId::kEnd: return end(request);
+    default: return reply(RpcResponse::error(control::kNoMethod, "a running subsystem has no such method"));
+  }
 }
 
 void ManagerBackend::analyse(Question::Kind kind, const Request& request) {
@@ -240,14 +236,6 @@ void ManagerBackend::ring(const Request& request) {
   Json names = Json::array();
   for (const TaskId task : tasks) names.push_back(state().name(task));
   request.reply(RpcResponse::good({{"tasks", std::move(names)}}));
-}
-
-void ManagerBackend::set(const Request& request) {
-  request.reply(set_values(state(), request.parameters.at("values")));
-}
-
-void ManagerBackend::flag(const Request& request) {
-  request.reply(set_flag(state(), request.parameters.at("up").as_bool()));
 }
 
 void ManagerBackend::receipts(const Request& request) {
@@ -323,8 +311,6 @@ void ManagerBackend::drill(const Request& request) {
     reply(RpcResponse::good(drill_json(state(), outcome)));
   });
 }
-
-void ManagerBackend::save(const Request& request) { request.reply(saved_values(state())); }
 
 void ManagerBackend::end(const Request& request) {
   loop_.end(static_cast<std::int32_t>(std::min<std::uint64_t>(control::number(request.parameters, "code", 0), 255)));

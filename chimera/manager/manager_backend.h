@@ -59,23 +59,14 @@ class ManagerBackend final : public control::ControlBackend {
     const control::Caller& caller;
     const control::Reply& reply;
   };
-  using Handler = void (ManagerBackend::*)(const Request& request);
-  static Handler handler(control::MethodId method) noexcept;
-
-  void check(const Request& request) { analyse(Question::Kind::kCheck, request); }
-  void schedule(const Request& request) { analyse(Question::Kind::kSchedule, request); }
   void signal(const Request& request);
   void ring(const Request& request);
-  void set(const Request& request);
-  void flag(const Request& request);
   void receipts(const Request& request);
   void plan(const Request& request);
   void switch_to(const Request& request);
   void cancel(const Request& request);
   void drill(const Request& request);
-  void save(const Request& request);
   void end(const Request& request);
-  void unknown(const Request& request);
 
   ManagerState& state() const noexcept { return loop_.state(); }
   std::optional<TaskBits> wanted(const Request& request) const;

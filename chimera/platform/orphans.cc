@@ -2,7 +2,6 @@
 // Reads origin, name and children of processes from /proc; reaps adopted processes and ends those of a dead rtpu.
 #include "chimera/platform/orphans.h"
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
@@ -13,10 +12,10 @@
 #include <charconv>
 #include <csignal>
 #include <cstdio>
-#include <memory>
 
 #include "chimera/platform/clock.h"
 #include "chimera/platform/descriptor.h"
+#include "chimera/platform/process_state.h"
 
 namespace chimera {
 namespace {
@@ -41,15 +40,6 @@ pid_t number(std::string_view text) {
   pid_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size() ? value : 0;
-}
-
-/// The numbers among the names in a folder of the kernel.
-std::vector<pid_t> numbers_in(const char* path) {
-  std::vector<pid_t> found;
-  const std::unique_ptr<DIR, int (*)(DIR*)> folder(::opendir(path), [](DIR* open) { return ::closedir(open); });
-  while (const dirent* entry = folder ? ::readdir(folder.get()) : nullptr)
-    if (const pid_t pid = number(entry->d_name); pid > 0) found.push_back(pid);
-  return found;
 }
 
 // The pidfd names one process. The number may get another owner between the check of the origin and the signal.

@@ -76,11 +76,17 @@ Descriptors open_descriptors() {
   return found;
 }
 
-std::uint32_t threads() {
-  std::uint32_t count = 0;
-  for_each_entry("/proc/self/task", [&](int, const char*) { ++count; });
-  return count;
+std::vector<pid_t> numbers_in(const std::string& folder) {
+  std::vector<pid_t> found;
+  for_each_entry(folder.c_str(), [&](int, const char* name) {
+    char* end = nullptr;
+    const long number = std::strtol(name, &end, 10);
+    if (*end == '\0' && number > 0) found.push_back(static_cast<pid_t>(number));
+  });
+  return found;
 }
+
+std::uint32_t threads() { return static_cast<std::uint32_t>(numbers_in("/proc/self/task").size()); }
 
 void name_first_new(const Descriptors& before, const Descriptors& after, std::span<char> text) {
   for (const std::string& name : after.names) {

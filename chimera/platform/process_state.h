@@ -37,6 +37,10 @@ struct ProcessState {
 /// Read from /proc; all 0 if there is no such process. Context: setup; never blocks.
 ProcessState process_state(pid_t pid) noexcept;
 
+/// The numbers among the names in a folder of the kernel: processes in /proc, threads in /proc/PID/task. Context:
+/// setup.
+std::vector<pid_t> numbers_in(const std::string& folder);
+
 /// Open descriptors of this process, each as "7 -> /dev/null".
 struct Descriptors {
   std::vector<std::string> names{};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Detects methods of an rtpu that hang. The main thread calls it, because no method can delay that thread.
+// Judges from counters whether the loop or a method of the rtpu hangs. The main thread calls it, because no method can
+// delay that thread.
 #pragma once
 
 #include <cstdint>
@@ -17,29 +18,43 @@ class HangWatch {
   /// True if the loop has been in one method for longer than the limit: no cycle boundary comes then. `running` is the
   /// method (BlockHead::running; 0: the loop waits); `beats` grows with each cycle boundary and each job that has
   /// ended. Context: main thread; wait-free.
-  bool loop_hangs(std::uint32_t running, std::uint64_t beats, Nanoseconds now) noexcept;
+  bool loop_hangs(std::uint32_t running, std::uint64_t beats, Nanoseconds now) noexcept {
+    return loop_.look(running, beats, running == 0, now) > limit_;
+  }
 
   /// True if a method that a cycle boundary or the service thread called has run for longer than the limit. `method` is
   /// that method (0: none); `progress` grows when a method begins or ends. Context: main thread; wait-free.
-  bool method_hangs(std::uint32_t method, std::uint32_t progress, Nanoseconds now) noexcept;
+  bool method_hangs(std::uint32_t method, std::uint32_t progress, Nanoseconds now) noexcept {
+    return method_.look(method, progress, method == 0, now) > limit_;
+  }
 
   /// Longest time of one method.
   Nanoseconds limit() const noexcept { return limit_; }
 
   /// The rtpu ends from here on. Context: main thread; wait-free.
-  void begin_end(Nanoseconds now) noexcept { progress_at_ = now; }
+  void begin_end(Nanoseconds now) noexcept { end_.since = now; }
   /// True if no further method of the end has ended for two limits and 100 ms. One limit is for the wait for other
   /// rtpus, one for the own method. `progress` is the number of methods that have ended. Context: main thread;
   /// wait-free.
-  bool end_hangs(std::uint32_t progress, Nanoseconds now) noexcept;
+  bool end_hangs(std::uint32_t progress, Nanoseconds now) noexcept {
+    return end_.look(0, progress, false, now) > limit_ * 2 + milliseconds(100);
+  }
 
  private:
+  /// Two values, and since when they have not changed.
+  struct Stall {
+    /// How long the values have not changed; zero if nothing runs.
+    Nanoseconds look(std::uint32_t method_now, std::uint64_t progress_now, bool is_idle, Nanoseconds now) noexcept {
+      if (is_idle || method_now != method || progress_now != progress) *this = {method_now, progress_now, now};
+      return now - since;
+    }
+    std::uint32_t method = 0;
+    std::uint64_t progress = 0;
+    Nanoseconds since = {};
+  };
+
   const Nanoseconds limit_;
-  std::uint64_t beats_ = 0;
-  std::uint32_t running_ = 0, method_ = 0, method_progress_ = 0;
-  Nanoseconds beaten_at_, method_at_;
-  std::uint32_t progress_ = 0;
-  Nanoseconds progress_at_;
+  Stall loop_, method_, end_;
 };
 
 }  // namespace chimera

@@ -167,8 +167,7 @@ std::string Questions::how_it_ended() {
   analyst_ = Process();
   if (!is_known) return "hangs";
   if (!end.by_signal) return "ended with status " + std::to_string(end.code);
-  const char* name = ::sigabbrev_np(end.code);
-  return "ended by signal " + std::to_string(end.code) + (name == nullptr ? "" : std::string(" (SIG") + name + ")");
+  return "ended by " + std::string(signal_text(end.code).view());
 }
 
 }  // namespace chimera::manager

@@ -109,13 +109,6 @@ Json spread_json(const Spread& spread) {
   return {{"mean", spread.mean().count}, {"max", spread.max.count}};
 }
 
-Json server_json(const std::optional<ServerSpec>& server) {
-  if (!server) return nullptr;
-  return {{"kind", server_kind_name(server->kind)},
-          {"capacity_ns", server->capacity.count},
-          {"period_ns", server->period.count}};
-}
-
 /// Time for which the task was ON. If it left ON without a report, only the time before its last `on` is known.
 Nanoseconds on_time(const ManagerState& state, TaskId task, const Profile& profile, Nanoseconds at) {
   return state.state(task) == State::kOn ? profile.on_by(at) : profile.on_before;

@@ -2,33 +2,23 @@
 // Logs events, and keeps the clocks of the manager.
 #include "chimera/manager/state/manager_state.h"
 
-#include <ctime>
-
 #include "chimera/manager/state/credible.h"
 #include "chimera/platform/wake.h"
 
 namespace chimera::manager {
 namespace {
 
-std::int64_t read_clock(clockid_t clock) noexcept {
-  timespec t{};
-  ::clock_gettime(clock, &t);
-  return std::int64_t{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
-}
-
 Clock* stepped_clock = nullptr;  // set by a test
 
 }  // namespace
 
 Nanoseconds now() noexcept {
-  return stepped_clock != nullptr ? stepped_clock->now() : Nanoseconds{read_clock(CLOCK_MONOTONIC)};
+  return stepped_clock != nullptr ? stepped_clock->now() : LinuxClock().now();
 }
 
 void use_clock(Clock* clock) noexcept { stepped_clock = clock; }
 
-std::int64_t wall_ns(Nanoseconds at) noexcept {
-  return read_clock(CLOCK_REALTIME) - read_clock(CLOCK_MONOTONIC) + at.count;
-}
+std::int64_t wall_ns(Nanoseconds at) noexcept { return wall_clock_shift() + at.count; }
 
 ManagerState::ManagerState(Bundle given, Peers mapped, OwnSegment segment, DecisionPage& shared,
                            const KeeperPage& keepers)

@@ -1,13 +1,103 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gives receipts to the writer, marks filed ones in the journal, and reports those that are not filed.
+// Gives receipts to a thread that files them, marks filed ones in the journal, and reports those that are not filed.
 #include "chimera/manager/switch/receipt_archive.h"
 
 #include <algorithm>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
 #include <utility>
 
+#include "chimera/base/assert.h"
 #include "chimera/control/receipt/receipt_file.h"
+#include "chimera/platform/descriptor.h"
+#include "chimera/platform/thread.h"
+#include "chimera/platform/wake.h"
 
 namespace chimera::manager {
+
+/// A thread that reads and files receipts, so that a slow, full or stalled disk delays no other work. It has one job at
+/// a time; the first one, made at the start, reads the filed receipts. A thread that a disk stalls is left behind.
+class ReceiptArchive::Writer {
+ public:
+  struct Done {
+    std::vector<std::string> found;  // by the first job: the last receipts of the file
+    std::string fault;               // reason why the receipts of the job may not be on the disk; "": they are
+  };
+
+  static Result<std::unique_ptr<Writer>> start(const std::string& folder) {
+    auto event = WakeEvent::open(Message("writer of the receipts"));
+    if (!event) return event.error();
+    auto shared = std::make_shared<Shared>(folder, *std::move(event));
+    if (!start_ordinary_thread([shared] { shared->run(); }))
+      return system_error(Message("writer of the receipts"), "thread");
+    return std::make_unique<Writer>(std::move(shared));
+  }
+  ~Writer() {
+    const std::lock_guard lock(shared_->mutex);
+    shared_->is_ending = true;
+    shared_->changed.notify_all();
+  }
+
+  /// Readable when take() has a result.
+  int descriptor() const noexcept { return shared_->event.descriptor(); }
+  bool is_busy() const noexcept { return is_busy_; }
+  /// Requires: !is_busy().
+  void file(std::vector<std::string> receipts) {
+    CHIMERA_ASSERT(!is_busy_);
+    is_busy_ = true;
+    const std::lock_guard lock(shared_->mutex);
+    shared_->job = std::move(receipts);
+    shared_->changed.notify_all();
+  }
+  /// The result of the job, once; is_busy() until then.
+  std::optional<Done> take() {
+    const std::lock_guard lock(shared_->mutex);
+    shared_->event.reset();
+    if (shared_->done) is_busy_ = false;
+    return std::exchange(shared_->done, std::nullopt);
+  }
+  /// Blocks until take() has a result, `limit` at most.
+  void await(Nanoseconds limit) const {
+    const int descriptors[] = {descriptor()};
+    await_readable(descriptors, limit);
+  }
+
+  struct Shared {
+    Shared(const std::string& folder, WakeEvent rung) : file(folder), event(std::move(rung)) {}
+
+    control::ReceiptFile file;  // used by the thread only
+    WakeEvent event;
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool is_ending = false;  // guarded by the mutex, as are the next two
+    std::optional<std::vector<std::string>> job;
+    std::optional<Done> done;
+
+    void finish(Done what) {
+      const std::lock_guard lock(mutex);
+      done = std::move(what);
+      event.ring();
+    }
+    std::optional<std::vector<std::string>> next_job() {
+      std::unique_lock lock(mutex);
+      changed.wait(lock, [this] { return is_ending || job; });
+      return is_ending ? std::nullopt : std::exchange(job, std::nullopt);
+    }
+    void run() {
+      finish({file.last(kKept), ""});
+      while (const auto receipts = next_job()) {
+        const auto filed = file.file(*receipts);
+        finish({{}, filed ? "" : filed.error().where.c_str() + std::string(": ") + filed.error().message.c_str()});
+      }
+    }
+  };
+  explicit Writer(std::shared_ptr<Shared> shared) noexcept : shared_(std::move(shared)) {}
+
+ private:
+  std::shared_ptr<Shared> shared_;  // with the thread, which may outlive this
+  bool is_busy_ = true;
+};
 
 ReceiptArchive::ReceiptArchive(ManagerState& state) : state_(state), journal_(state.own.block().journal()) {
   for (const SwitchJournal::Receipt& left : journal_.unfiled()) {
@@ -23,11 +113,15 @@ Result<std::unique_ptr<ReceiptArchive>> ReceiptArchive::start(ManagerState& stat
     return made;
   }
   made->path_ = control::ReceiptFile(folder).path();
-  auto writer = ReceiptWriter::start(folder, kKept);
+  auto writer = Writer::start(folder);
   if (!writer) return writer.error();
   made->writer_ = *std::move(writer);
   return made;
 }
+
+ReceiptArchive::~ReceiptArchive() = default;
+
+int ReceiptArchive::descriptor() const noexcept { return writer_ ? writer_->descriptor() : -1; }
 
 void ReceiptArchive::keep(std::string receipt) {
   kept_.push_back(std::move(receipt));
@@ -78,8 +172,8 @@ void ReceiptArchive::take_found(const std::vector<std::string>& found) {
   }
 }
 
-void ReceiptArchive::take_done(const ReceiptWriter::Done& done, Nanoseconds now) {
-  if (done.fault.empty()) {
+void ReceiptArchive::take_done(const std::string& fault, Nanoseconds now) {
+  if (fault.empty()) {
     for (; in_flight_ > 0; --in_flight_) {
       journal_.filed(unfiled_.front().number);
       unfiled_.pop_front();
@@ -88,11 +182,11 @@ void ReceiptArchive::take_done(const ReceiptWriter::Done& done, Nanoseconds now)
   } else {
     in_flight_ = 0;
     tries_again_ = now + kTryAgain;
-    if (fault_ != done.fault)
+    if (fault_ != fault)
       state_.tell("note", TaskId{}, RtpuId{},
-                  "receipts are not filed: " + done.fault + "; they are kept and tried again", now);
+                  "receipts are not filed: " + fault + "; they are kept and tried again", now);
   }
-  fault_ = done.fault;
+  fault_ = fault;
 }
 
 void ReceiptArchive::answer(const std::function<bool(const Waiting&)>& is_due) {
@@ -106,7 +200,7 @@ void ReceiptArchive::answer(const std::function<bool(const Waiting&)>& is_due) {
 void ReceiptArchive::look(Nanoseconds now) {
   if (!writer_) return;
   if (const auto done = writer_->take()) {
-    if (std::exchange(has_found_, true)) take_done(*done, now);
+    if (std::exchange(has_found_, true)) take_done(done->fault, now);
     else take_found(done->found);
   }
   file_next(now);

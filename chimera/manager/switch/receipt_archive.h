@@ -10,7 +10,6 @@
 
 #include "chimera/manager/state/manager_state.h"
 #include "chimera/manager/state/switch_journal.h"
-#include "chimera/manager/switch/receipt_writer.h"
 
 namespace chimera::manager {
 
@@ -22,17 +21,18 @@ class ReceiptArchive {
   static constexpr Nanoseconds kDiskLimit = milliseconds(100);  // an answer waits for the disk, but no longer than this
   static constexpr Nanoseconds kTryAgain = seconds(10);         // after a fault
 
-  /// Takes over the receipts that a predecessor has not filed. `folder`: for the files; "": there is none. Refuses if
-  /// ReceiptWriter::start refuses. `state` outlives it.
+  /// Takes over the receipts that a predecessor has not filed. `folder`: for the files; "": there is none. Refuses if a
+  /// descriptor or thread cannot be made. `state` outlives it.
   static Result<std::unique_ptr<ReceiptArchive>> start(ManagerState& state, const std::string& folder);
   ReceiptArchive(const ReceiptArchive&) = delete;
   ReceiptArchive& operator=(const ReceiptArchive&) = delete;
+  ~ReceiptArchive();
 
   /// Keeps the receipt of that number, one line of JSON, and files it. Calls `then` when it is on the disk, when it
   /// cannot be filed, or after kDiskLimit; maybe at once.
   void add(std::uint32_t number, std::string receipt, Nanoseconds now, std::function<void()> then);
   /// Readable when look() has a finished job; -1: never.
-  int descriptor() const noexcept { return writer_ ? writer_->descriptor() : -1; }
+  int descriptor() const noexcept;
   Nanoseconds next_due() const noexcept;
   void look(Nanoseconds now);
   /// Files the receipts that are left; blocks for `limit` at most.
@@ -45,6 +45,7 @@ class ReceiptArchive {
   const std::string& fault() const noexcept { return fault_; }  ///< why the last ones are not filed; "": they are filed
 
  private:
+  class Writer;
   struct Unfiled {
     std::uint32_t number;
     std::string receipt;
@@ -58,14 +59,14 @@ class ReceiptArchive {
   explicit ReceiptArchive(ManagerState& state);
   void keep(std::string receipt);
   void take_found(const std::vector<std::string>& found);
-  void take_done(const ReceiptWriter::Done& done, Nanoseconds now);
+  void take_done(const std::string& fault, Nanoseconds now);
   void file_next(Nanoseconds now);
   void answer(const std::function<bool(const Waiting&)>& is_due);
   bool is_unfiled(std::uint32_t number) const;
 
   ManagerState& state_;
   SwitchJournal journal_;
-  std::unique_ptr<ReceiptWriter> writer_;  // null: there is no folder
+  std::unique_ptr<Writer> writer_;  // null: there is no folder
   std::string path_, fault_;
   std::deque<std::string> kept_;
   std::deque<Unfiled> unfiled_;

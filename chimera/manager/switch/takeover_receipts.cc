@@ -61,12 +61,11 @@ bool TakeoverReceipts::is_possible(const Takeover& takeover, RtpuId rtpu, Nanose
   const ApplicationSpec& spec = state_.spec();
   const TaskId task = takeover.standby.task;
   const auto in_range = [&](const VariablePart& part) { return is_in_range(part, takeover, spec); };
-  const std::size_t n = std::min(takeover.n_variables, Takeover::kVariablesKept);
   return (takeover.set < spec.sets.size() || takeover.set == kNoSet) && takeover.from.index < spec.tasks.size() &&
          task.index < spec.tasks.size() && spec.tasks[task.index].rtpu == rtpu && spec.stand_in(task, takeover.from) &&
          (takeover.end == SwitchEnd::kDone || takeover.end == SwitchEnd::kAborted) && takeover.lost <= now &&
          takeover.lost >= Nanoseconds{} &&
-         std::all_of(takeover.variables.begin(), takeover.variables.begin() + static_cast<std::ptrdiff_t>(n), in_range);
+         std::ranges::all_of(takeover.kept(), in_range);
 }
 
 void TakeoverReceipts::file(const Takeover& takeover, Nanoseconds now) {

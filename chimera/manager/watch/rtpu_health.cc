@@ -4,7 +4,6 @@
 
 #include <charconv>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 
 #include "chimera/base/hosted/wording.h"
@@ -31,15 +30,6 @@ bool has_locked_memory(pid_t pid) {
   for (std::string line; std::getline(status, line);)
     if (line.starts_with("VmLck:")) return std::strtoull(line.c_str() + std::strlen("VmLck:"), nullptr, 10) > 0;
   return true;  // the process has just ended
-}
-
-std::vector<pid_t> threads_of(pid_t pid) {
-  std::vector<pid_t> threads;
-  std::error_code error;
-  for (std::filesystem::directory_iterator at(folder_of(pid) + "task", error), end; !error && at != end;
-       at.increment(error))
-    threads.push_back(static_cast<pid_t>(std::strtol(at->path().filename().c_str(), nullptr, 10)));
-  return threads;
 }
 
 std::string policy_text(int policy, int level) {
@@ -113,7 +103,7 @@ void RtpuHealth::meet(std::size_t index, Nanoseconds now) {
   RtpuRecord& rtpu = state_.rtpus[index];
   rtpu.lost_rights.clear();
   seen_[index] = {rtpu.incarnation, {}, now, 0, {}};
-  for (const pid_t thread : threads_of(rtpu.pid)) {
+  for (const pid_t thread : numbers_in(folder_of(rtpu.pid) + "task")) {
     ThreadRights rights;
     const bool is_special = look_up_rights(thread, rights) && (rights.policy != kPolicyOther || rights.only_cpu >= 0);
     if (is_special) seen_[index].threads.push_back(thread);

@@ -6,11 +6,6 @@
 #include <string_view>
 
 namespace chimera {
-namespace {
-
-std::uint64_t losses(Task& task) noexcept { return count_of(task.profile.dropped) + count_of(task.profile.aborted); }
-
-}  // namespace
 
 void TakeoverRecord::prepare(SwitchPeers* peers) {
   peers_ = peers;
@@ -64,7 +59,7 @@ void TakeoverRecord::begin(std::size_t group, TaskId standby) noexcept {
   takeover.standby.move = TaskMove::kArrives;
   takeover.standby.delay_before = delays_.begin(task(standby));
   list_handovers(takeover);
-  steps_.keep_last({takeover.variables.data(), std::min(takeover.n_variables, Takeover::kVariablesKept)});
+  steps_.keep_last(takeover.kept());
   open.is_open = true;
   open.first_cycle_by = kNever;
 }
@@ -75,12 +70,10 @@ void TakeoverRecord::done(std::size_t group, Nanoseconds now) noexcept {
   Task& standby = task(takeover.standby.task);
   takeover.at = now;
   takeover.flag = std::max(Nanoseconds{}, now - set_.standbys().loss(group).covered_until);
-  for (std::uint32_t v = 0; v < std::min(takeover.n_variables, Takeover::kVariablesKept); ++v)
-    takeover.variables[v].step_of_on = steps_.step_to(takeover.variables[v].handover);
+  for (VariablePart& part : takeover.kept()) part.step_of_on = steps_.step_to(part.handover);
   open.cycles = standby.profile.cycles;
-  open.losses = losses(standby);
-  const Nanoseconds within = std::min(standby.spec->period + standby.spec->deadline, kFirstCycleWithin);
-  open.first_cycle_by = standby.spec->aperiodic ? now : now + within;
+  open.losses = losses_of(standby);
+  open.first_cycle_by = first_cycle_by(*standby.spec, now);
   tell(takeover);
   look(now, false);
 }
@@ -132,10 +125,9 @@ void TakeoverRecord::end(Open& open, Nanoseconds now) noexcept {
   if (!standby.is_busy) {
     takeover.standby.delay = delays_.look(standby);
     if (standby.profile.cycles != open.cycles)
-      for (std::uint32_t v = 0; v < std::min(takeover.n_variables, Takeover::kVariablesKept); ++v)
-        takeover.variables[v].step_of_cycle = steps_.step_to(takeover.variables[v].handover);
+      for (VariablePart& part : takeover.kept()) part.step_of_cycle = steps_.step_to(part.handover);
   }
-  takeover.standby.lost = losses(standby) - open.losses;
+  takeover.standby.lost = losses_of(standby) - open.losses;
   takeover.ended = now;
   open.is_open = false;
   tell(takeover);

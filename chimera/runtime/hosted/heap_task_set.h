@@ -21,7 +21,11 @@ class HeapTaskSet final : private TaskSetHeap, public TaskSet {
   /// As TaskSet::build().
   static Result<std::unique_ptr<HeapTaskSet>> create(const ApplicationSpec& spec,
                                                      std::span<const chimera_component* const> components,
-                                                     const ContextPlace& place = {});
+                                                     const ContextPlace& place = {}) {
+    std::unique_ptr<HeapTaskSet> made(new HeapTaskSet(spec, place));
+    if (auto built = made->build(components); !built) return built.error();
+    return made;
+  }
 
  private:
   HeapTaskSet(const ApplicationSpec& spec, const ContextPlace& place) : TaskSet(spec, place, heap) {}

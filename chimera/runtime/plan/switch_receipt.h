@@ -66,28 +66,34 @@ enum class SwitchEnd : std::uint8_t {
   kNothingToDo,  ///< the requested set was in force
 };
 
-/// Instants are on the clock of the executor; kNever: not reached.
-struct SwitchReceipt {
+/// How a switch or a takeover went. Instants are on the clock of the executor; kNever: not reached.
+struct SwitchResult {
+  SwitchEnd end = SwitchEnd::kDone;
+  NoSwitch why = NoSwitch::kNone;  ///< of an end that is not kDone
+  TaskId task;                     ///< of `why`
+  VariableId variable;             ///< of `why`
+  double value = 0;                ///< of `variable`, of kNotSafe; NaN: it had none
+  Nanoseconds armed = kNever;   ///< `on` of the last arriving task had returned
+  Nanoseconds at = kNever;      ///< the instant of the change
+  Nanoseconds ended = kNever;   ///< `off` of the last leaving task had returned and the first cycles were seen
+  Nanoseconds flag;             ///< how long the switch held the illegal-configuration flag up
+  TaskId not_back;              ///< of kAborted: a task that was ON and did not come back
+};
+
+/// A new receipt is that of a refusal.
+struct SwitchReceipt : SwitchResult {
+  SwitchReceipt() noexcept { end = SwitchEnd::kRefused; }
+
   std::uint32_t number = 0;
   std::uint32_t before = kNoSet, after = kNoSet;  ///< in ApplicationSpec::sets
   SwitchCause cause = SwitchCause::kScript;
   TaskId by;  ///< as SwitchRequest::by
   TaskId in_place_of;      ///< of kStandby: the task that failed
   bool was_death = false;  ///< of kStandby: its process died; else it is in ERROR
-  SwitchEnd end = SwitchEnd::kRefused;
-  NoSwitch why = NoSwitch::kNone;  ///< of an end that is not kDone
-  TaskId task;                     ///< of `why`
-  VariableId variable;             ///< of `why`
-  double value = 0;                ///< of `variable`, of kNotSafe; NaN: it had none
-  FixedString<160> said;           ///< by `on` of `task`, of its fault
-  Nanoseconds asked = kNever;
-  Nanoseconds armed = kNever;   ///< `on` of the last arriving task had returned
-  Nanoseconds at = kNever;      ///< the instant of the change
+  FixedString<160> said;        ///< by `on` of `task`, of its fault
+  Nanoseconds asked = kNever;   ///< as the instants of SwitchResult
   SwitchWay way;                ///< that the last try used
   std::uint32_t tries = 1;      ///< plans that were announced for it
-  Nanoseconds flag;             ///< how long the switch held the illegal-configuration flag up
-  TaskId not_back;              ///< of kAborted: a task that was ON and did not come back
-  Nanoseconds ended = kNever;   ///< `off` of the last leaving task had returned and the first cycles were seen
   std::span<TaskPart> tasks;
   std::span<VariablePart> variables;
   std::span<TaskId> reinitialised;  ///< in this order
@@ -114,24 +120,15 @@ inline void refuse(SwitchReceipt& receipt, const PlanAnswer& answer) noexcept {
   receipt.variables = {};
 }
 
-/// Result of a switch in one context, as plain data in memory that outlives the context.
+/// Result of a switch in one context, as plain data in memory that outlives the context. `why` is of kAborted, where
+/// this context aborted the plan; kNone: another one did.
 /// Its owner writes it before SwitchProgress::over shows its number. Others read it after they saw that number, or
 /// after the owner died. After a death it may hold anything, so a reader checks every number in it.
-struct SwitchPart {
+struct SwitchPart : SwitchResult {
   static constexpr std::uint32_t kVariablesKept = 64, kSaid = 160;
 
   std::uint32_t number = 0;         ///< of the plan; 0: it took part in none
-  SwitchEnd end = SwitchEnd::kDone;
-  NoSwitch why = NoSwitch::kNone;   ///< of kAborted, where this context aborted the plan; kNone: another one did
-  TaskId task;                      ///< of `why`
-  VariableId variable;              ///< of `why`
-  double value = 0;                 ///< of `variable`, as SwitchReceipt
   char said[kSaid + 1] = {};        ///< by `on` of `task`
-  Nanoseconds armed = kNever;       ///< instants as of SwitchReceipt
-  Nanoseconds at = kNever;
-  Nanoseconds ended = kNever;
-  Nanoseconds flag;                 ///< as SwitchReceipt
-  TaskId not_back;
   std::uint32_t n_reinitialised = 0;
   std::uint32_t n_tasks = 0;        ///< of this context, in `tasks`
   std::uint32_t n_variables = 0;    ///< handed over to tasks of this context; only kVariablesKept of them are kept
@@ -143,17 +140,8 @@ struct SwitchPart {
 /// The part of the context whose tasks `is_mine` says are its own. Context: cycle boundary; wait-free.
 template <class IsMine>
 void write_part(const SwitchReceipt& receipt, IsMine is_mine, SwitchPart& part) noexcept {
-  part.end = receipt.end;
-  part.why = receipt.why;
-  part.task = receipt.task;
-  part.variable = receipt.variable;
-  part.value = receipt.value;
+  static_cast<SwitchResult&>(part) = receipt;
   std::memcpy(part.said, receipt.said.c_str(), receipt.said.view().size() + 1);
-  part.armed = receipt.armed;
-  part.at = receipt.at;
-  part.ended = receipt.ended;
-  part.flag = receipt.flag;
-  part.not_back = receipt.not_back;
   part.n_tasks = part.n_variables = part.n_reinitialised = 0;
   for (const TaskId task : receipt.reinitialised) part.reinitialised[part.n_reinitialised++] = task;
   for (const TaskPart& task : receipt.tasks)
@@ -171,19 +159,10 @@ void write_part(const SwitchReceipt& receipt, IsMine is_mine, SwitchPart& part) 
 inline void read_part(const SwitchPart& part, SwitchReceipt& receipt) noexcept {
   SwitchPart& lists = const_cast<SwitchPart&>(part);
   receipt = {};
+  static_cast<SwitchResult&>(receipt) = part;
   receipt.number = part.number;
-  receipt.end = part.end;
-  receipt.why = part.why;
-  receipt.task = part.task;
-  receipt.variable = part.variable;
-  receipt.value = part.value;
   const char* const end = std::find(part.said, part.said + SwitchPart::kSaid, '\0');
   receipt.said.assign({part.said, static_cast<std::size_t>(end - part.said)});
-  receipt.armed = part.armed;
-  receipt.at = part.at;
-  receipt.ended = part.ended;
-  receipt.flag = part.flag;
-  receipt.not_back = part.not_back;
   receipt.tasks = std::span(lists.tasks).first(std::min<std::size_t>(part.n_tasks, part.tasks.size()));
   receipt.variables = std::span(lists.variables).first(std::min(part.n_variables, SwitchPart::kVariablesKept));
   receipt.reinitialised =

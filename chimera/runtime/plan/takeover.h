@@ -14,49 +14,49 @@
 
 namespace chimera {
 
-/// Instants are on the clock of the executor; kNever: not reached.
-struct Takeover {
+/// kAborted: the standby could not go ON. `at`: the standby was ON. `ended`: its first cycle was seen, or none came, or
+/// it could not go ON. `flag`: how long no task stood in for the loss.
+struct Takeover : SwitchResult {
   static constexpr std::uint32_t kVariablesKept = 16, kSaid = 160;
 
   std::uint32_t number = 0;        ///< among those of its context, from 1 in the order of their first reports
   std::uint32_t set = kNoSet;      ///< that was in force, in ApplicationSpec::sets, with standbys for their primaries
   TaskId from;                     ///< the task that failed
   bool was_death = false;          ///< its process died; else it is in ERROR
-  SwitchEnd end = SwitchEnd::kDone;  ///< kAborted: the standby could not go ON
-  NoSwitch why = NoSwitch::kNone;  ///< of kAborted
   char said[kSaid + 1] = {};       ///< by the method that failed
   Nanoseconds lost = kNever;       ///< its loss was found
-  Nanoseconds at = kNever;         ///< the standby was ON
-  Nanoseconds ended = kNever;      ///< its first cycle was seen, or none came; or it could not go ON
-  Nanoseconds flag;                ///< how long no task stood in for the loss: the flag was up
   TaskPart standby;
   std::uint32_t n_variables = 0;   ///< handed over; only kVariablesKept of them are kept
   std::array<VariablePart, kVariablesKept> variables;
+
+  std::span<const VariablePart> kept() const noexcept {
+    return std::span(variables).first(std::min(n_variables, kVariablesKept));
+  }
+  std::span<VariablePart> kept() noexcept {
+    return std::span(variables).first(std::min(n_variables, kVariablesKept));
+  }
 };
 
 /// Writes the takeover as a receipt, whose lists have room for two tasks and all variables. Context: any; wait-free.
 inline void write_receipt(const Takeover& takeover, SwitchReceipt& receipt) noexcept {
+  static_cast<SwitchResult&>(receipt) = takeover;
   receipt.before = receipt.after = takeover.set;
   receipt.cause = SwitchCause::kStandby;
   receipt.by = takeover.standby.task;
   receipt.in_place_of = takeover.from;
   receipt.was_death = takeover.was_death;
-  receipt.end = takeover.end;
-  receipt.why = takeover.why;
   receipt.task = takeover.end == SwitchEnd::kDone ? TaskId() : takeover.standby.task;
   const char* const end = std::find(takeover.said, takeover.said + Takeover::kSaid, '\0');
   receipt.said.assign({takeover.said, static_cast<std::size_t>(end - takeover.said)});
   receipt.asked = takeover.lost;
-  receipt.armed = receipt.at = takeover.at;
-  receipt.ended = takeover.ended;
-  receipt.flag = takeover.flag;
+  receipt.armed = takeover.at;
   receipt.tasks = {receipt.tasks.data(), 2};
   receipt.tasks[0] = takeover.standby;
   receipt.tasks[1] = {};
   receipt.tasks[1].task = takeover.from;
   receipt.tasks[1].move = TaskMove::kLeaves;
-  receipt.variables = {receipt.variables.data(), std::min(takeover.n_variables, Takeover::kVariablesKept)};
-  std::copy_n(takeover.variables.begin(), receipt.variables.size(), receipt.variables.begin());
+  receipt.variables = {receipt.variables.data(), takeover.kept().size()};
+  std::copy(takeover.kept().begin(), takeover.kept().end(), receipt.variables.begin());
 }
 
 /// Keeps a receipt of a takeover that is over, if there is room. Context: cycle boundary; wait-free.

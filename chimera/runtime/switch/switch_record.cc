@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "chimera/task/number_at.h"
+
 namespace chimera {
 namespace {
 
@@ -13,24 +15,7 @@ std::uint32_t bytes_of(const ApplicationSpec& spec, const PortOf& output) noexce
   return port == nullptr ? 0 : port->max_bytes();
 }
 
-template <class T>
-double read_as(const std::byte* from) noexcept {
-  T value;
-  std::memcpy(&value, from, sizeof value);
-  return static_cast<double>(value);
-}
-
 bool is_number(std::uint32_t type) noexcept { return type <= CHIMERA_FLOAT64; }
-
-double number_at(std::uint32_t type, const std::byte* from) noexcept {
-  switch (type) {
-    case CHIMERA_BOOL: return read_as<std::uint8_t>(from);
-    case CHIMERA_INT32: return read_as<std::int32_t>(from);
-    case CHIMERA_INT64: return read_as<std::int64_t>(from);
-    case CHIMERA_FLOAT32: return read_as<float>(from);
-    default: return read_as<double>(from);
-  }
-}
 
 double distance(double a, double b) noexcept { return a < b ? b - a : a - b; }
 
@@ -275,9 +260,7 @@ void SwitchRecord::follow_arrival(TaskId id, Nanoseconds at) noexcept {
   before_[id.index] = losses(id);
   cycles_[id.index] = arriving.profile.cycles;
   if (first_cycles_by_ == kNever) first_cycles_by_ = at;
-  if (arriving.spec->aperiodic) return;
-  const Nanoseconds within = std::min(arriving.spec->period + arriving.spec->deadline, kFirstCycleWithin);
-  first_cycles_by_ = std::max(first_cycles_by_, at + within);
+  if (!arriving.spec->aperiodic) first_cycles_by_ = std::max(first_cycles_by_, first_cycle_by(*arriving.spec, at));
 }
 
 void SwitchRecord::changed(const SwitchPlan& plan, Nanoseconds at) noexcept {
@@ -337,12 +320,6 @@ void SwitchRecord::end(SwitchEnd end, Nanoseconds now) noexcept {
 TaskPart& SwitchRecord::part_of(TaskId id) noexcept {
   const auto is_its = [id](const TaskPart& part) { return part.task == id; };
   return *std::find_if(receipt_->tasks.begin(), receipt_->tasks.end(), is_its);
-}
-
-// Jobs count them also during a cycle boundary.
-std::uint64_t SwitchRecord::losses(TaskId id) const noexcept {
-  Profile& profile = set_.tasks()[id.index].profile;
-  return count_of(profile.dropped) + count_of(profile.aborted);
 }
 
 }  // namespace chimera

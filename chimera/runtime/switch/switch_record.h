@@ -3,6 +3,7 @@
 // each variable. The result is a receipt.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -16,6 +17,16 @@ namespace chimera {
 /// A first cycle that comes later than this after its task went ON is not waited for, so that the requester gets an
 /// answer.
 inline constexpr Nanoseconds kFirstCycleWithin = seconds(1);
+
+/// Until when the first cycle of a task that goes ON at `at` is waited for. Context: any; wait-free.
+inline Nanoseconds first_cycle_by(const TaskSpec& task, Nanoseconds at) noexcept {
+  return task.aperiodic ? at : at + std::min(task.period + task.deadline, kFirstCycleWithin);
+}
+/// Releases of the run without a completed cycle. Jobs count them also during a cycle boundary. Context: any;
+/// wait-free.
+inline std::uint64_t losses_of(Task& task) noexcept {
+  return count_of(task.profile.dropped) + count_of(task.profile.aborted);
+}
 
 /// Compares the first `count` elements of an out-var. A boolean counts as 0 or 1; of a struct every field counts.
 /// `declared` is the component's declaration of the port. Requires: max_bytes() of the port at both. Context: cycle
@@ -123,7 +134,7 @@ class SwitchRecord {
  private:
   void follow_arrival(TaskId id, Nanoseconds at) noexcept;
   TaskPart& part_of(TaskId id) noexcept;
-  std::uint64_t losses(TaskId id) const noexcept;
+  std::uint64_t losses(TaskId id) const noexcept { return losses_of(set_.tasks()[id.index]); }
   bool has_cycled(TaskId id) const noexcept;
   bool is_awaited(const TaskPart& part) const noexcept;
 
