@@ -265,7 +265,7 @@ class SteppedSubsystem {
     clock_.advance(microseconds(100));
     for (std::uint32_t r = 0; r < n_rtpus(); ++r)
       if (page().alive[r] != 0 && !stopped_.contains(r)) step(r);
-    page().beats.fetch_add(1);
+    if (!keeper_is_stopped_) page().beats.fetch_add(1);
     if (manager_ == nullptr) return;
     if (!manager_->step(now())) return kill_manager();
     if (manager_->receipts().unfiled() > 0) manager_->finish();  // the thread that files is not stepped
