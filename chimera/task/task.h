@@ -68,10 +68,11 @@ struct alignas(64) Task {
   // standings: a warm task has jobs, news and rows for the tap, and a task in ERROR may be in service.
   bool is_tapped = false;  ///< set at cycle boundaries: each publication goes to the tap as a row
   bool is_busy = false;    ///< a job of the task is running; written by the executor
-  Method job_method = Method::kCycle;  ///< the present method of the job, such as sync or error; by atomic_ref
   bool has_news = false;   ///< a fault was recorded or a signal sent that is not handled yet
-  State state = State::kNotCreated;
+  // Side by side from an even address: the compiler compares both with one load, which holds no byte that a job writes.
+  alignas(2) State state = State::kNotCreated;
   Standing standing = Standing::kPlain;  ///< written at cycle boundaries only
+  Method job_method = Method::kCycle;  ///< the present method of the job, such as sync or error; by atomic_ref
   std::span<Input> inputs;               ///< rebound at a cycle boundary when producers change
   std::span<LocalGroup* const> copies;   ///< of groups from other contexts, refreshed before the inputs are read
   GroupWriter group;
