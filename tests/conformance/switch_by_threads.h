@@ -80,7 +80,9 @@ inline const NamedSet kNamedSets[] = {{"one", kSets[0]}, {"two", kSets[1]}};
 
 /// `n` switches, there and back, each after a random time between a half and one and a half of `pause`. The load
 /// drawn by `seed`. The load computes half of the time; a switch is over when the job has ended in which it came.
-inline void run(const ProcessorPlace& place, Nanoseconds period, int n, Nanoseconds pause, unsigned seed = 1) {
+/// The run ends `rest` after the last one is asked for.
+inline void run(const ProcessorPlace& place, Nanoseconds period, int n, Nanoseconds pause, unsigned seed,
+                Nanoseconds rest) {
   seen = {};
   seen.reader.reserve(static_cast<std::size_t>(n + 2) * static_cast<std::size_t>(pause * 2 / period + 2));
   load = period * 2;
@@ -110,7 +112,8 @@ inline void run(const ProcessorPlace& place, Nanoseconds period, int n, Nanoseco
   PreemptiveExecutor executor(*set, options, place);
   const auto go = [&] {
     EXPECT_TRUE(executor.start());
-    EXPECT_EQ(executor.run(at + pause * 2), RunEnd::kTime);
+    EXPECT_EQ(executor.run(at + rest), RunEnd::kTime);
+    executor.shut_down();  // closes the receipt of a switch that is still under way
   };
   if (place.ceiling > 0) at_the_ceiling(go);
   else go();
@@ -140,7 +143,7 @@ inline void run_until_done(const ProcessorPlace& place, Nanoseconds period, Nano
   Nanoseconds longest;
   for (unsigned runs = 0; done < enough; ++runs) {
     ASSERT_LT(pause * 10 * runs, kHangLimit) << "hangs";
-    run(place, period, 10, pause, runs);
+    run(place, period, 10, pause, runs, pause * 2);
     ASSERT_EQ(seen.receipts.size(), 10u);
     expect_bindings_of_releases();
     for (const SwitchReceipt& receipt : seen.receipts) {

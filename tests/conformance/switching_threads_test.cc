@@ -10,5 +10,14 @@ TEST(SwitchingThreads, EachJobReadsTheProducerOfItsRelease) {
   switch_by_threads::run_until_done({}, milliseconds(2), milliseconds(22), 20);
 }
 
+TEST(SwitchingThreads, ARunThatEndsDuringASwitchSaysSoInItsReceipt) {
+  switch_by_threads::run({}, milliseconds(2), 1, milliseconds(22), 1, {});
+  const auto& receipts = switch_by_threads::seen.receipts;
+  ASSERT_EQ(receipts.size(), 1u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kAborted);
+  EXPECT_EQ(receipts[0].why, NoSwitch::kRunEnded);
+  switch_by_threads::expect_bindings_of_releases();
+}
+
 }  // namespace
 }  // namespace chimera::toy

@@ -79,7 +79,10 @@ void PreemptiveExecutor::start(Nanoseconds origin) {
 }
 
 void PreemptiveExecutor::shut_down() noexcept {
-  at_edge([this] { set_.life().shut_down(clock_.now()); });
+  at_edge([this] {
+    releases_.end(clock_.now());
+    set_.life().shut_down(clock_.now());
+  });
 }
 
 RunEnd PreemptiveExecutor::run(Nanoseconds duration) noexcept {
