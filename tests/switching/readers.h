@@ -19,8 +19,8 @@ class Readers {
     last_.fill(kNever);
     is_strict_ = true;
   }
-  /// Until begin(), values read under the flag are not judged. Values read without the flag must still come from a life
-  /// whose switch was committed.
+  /// Until begin(), values read under the flag are not judged. A value read without the flag must come from a life that
+  /// a committed switch began.
   void let_loose() { is_strict_ = false; }
   bool is_strict() const { return is_strict_; }
   /// Jobs released at `at` or later see that life.
