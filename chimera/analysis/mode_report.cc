@@ -25,7 +25,7 @@ struct ModeWish {
 class ModeWriter {
  public:
   ModeWriter(const Configuration& configuration, const Library& library)
-      : configuration_(configuration), library_(library), standing_(configuration.tasks().size()) {
+      : configuration_(configuration), library_(library), statuses_(configuration.tasks().size()) {
     schedule_.prepare(configuration.spec(), memory_);
     planner_.prepare(configuration.spec(), memory_);
     users_.prepare(configuration.spec(), memory_);
@@ -152,11 +152,11 @@ class ModeWriter {
 
   void judge_deadlines(ModeEdge& edge) {
     TaskBits after;
-    for (std::size_t t = 0; t < standing_.size(); ++t) {
-      standing_[t].state = has(edge.from, t) ? State::kOn : State::kOff;
+    for (std::size_t t = 0; t < statuses_.size(); ++t) {
+      statuses_[t].state = has(edge.from, t) ? State::kOn : State::kOff;
       if (has(edge.to, t)) after.add(TaskId(t));
     }
-    schedule_.consider(standing_, after);
+    schedule_.consider(statuses_, after);
     for (std::size_t r = 0; r < configuration_.rtpus().size(); ++r) {
       if (!schedule_.is_first_of_cpu(RtpuId(r))) continue;
       const CpuTransition cpu = schedule_.on_cpu_of(RtpuId(r));
@@ -168,7 +168,7 @@ class ModeWriter {
   void find_constants(ModeEdge& edge) {
     const auto in_force = static_cast<std::uint32_t>(report_.nodes[edge.from].set);
     SwitchPlan plan;
-    if (!planner_.plan(static_cast<std::uint32_t>(edge.to), standing_, plan)) return;
+    if (!planner_.plan(static_cast<std::uint32_t>(edge.to), statuses_, plan)) return;
     for (const TaskId user : users_.find(plan, in_force, nullptr))
       if (std::ranges::count(plan.staying, user) != 0) edge.anew.push_back(user.index);
     if (edge.anew.empty()) return;
@@ -255,7 +255,7 @@ class ModeWriter {
   SwitchPlanner planner_;
   ConstantUsers users_;
   Rivals rivals_;
-  std::vector<TaskStanding> standing_;
+  std::vector<TaskStatus> statuses_;
   std::vector<ModeWish> wishes_;
   ModeReport report_;
 };

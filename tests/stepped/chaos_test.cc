@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random commands, deaths, stalls and failing methods, by seed. CHIMERA_SEED replays one seed; the campaign `subsystem`
-// counts it up.
+// draws seeds.
 #include <gtest/gtest.h>
 
 #include <algorithm>

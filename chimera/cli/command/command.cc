@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/text/nearest.h"
 
 namespace chimera::cli {
@@ -24,11 +25,6 @@ std::vector<Option> options_of(const Command& command, std::string_view program)
   std::vector<Option> all = options_of(command);
   if (command.which != nullptr && program.empty()) all.pop_back();
   return all;
-}
-
-std::string with_nearest(const std::string& message, const std::string& wrong, const std::vector<std::string>& names) {
-  const std::string near = nearest(wrong, names);
-  return near.empty() ? message : message + "; did you mean '" + near + "'?";
 }
 
 /// "chimera new app"; in the shell "status".
@@ -101,10 +97,8 @@ class Reader {
 };
 
 void Reader::no_option(std::string_view command, const std::string& word, const std::vector<Option>& options) {
-  std::vector<std::string> names;
-  for (const Option& option : options) names.emplace_back(option.name);
-  wrong(with_nearest(typed_name(program_, command) + " has no option '" + word + "'", word.substr(0, word.find('=')),
-                     names));
+  wrong(typed_name(program_, command) + " has no option " + in_quotes(word) +
+        did_you_mean(nearest(word.substr(0, word.find('=')), chimera::names_of(options, &Option::name))));
 }
 
 /// The options in front of the command.
@@ -130,9 +124,8 @@ Words Reader::find_command(Words words) {
     words = words.subspan(1);
     command = command_named(table_, name);
     if (command != nullptr) continue;
-    std::vector<std::string> names;
-    for (const Command* row : table_) names.emplace_back(row->name);
-    wrong(with_nearest("no command '" + name + "'", name, names) + list_of(above));
+    const auto names = chimera::names_of(table_, [](const Command* row) { return row->name; });
+    wrong(no_such("command", name, names) + list_of(above));
     return words;
   }
   if (command == nullptr) wrong("no command is given" + list_of(""));
@@ -232,15 +225,6 @@ CallReading Reader::read(Words words) {
   return reading_;
 }
 
-/// `word` in quotes where a shell would else cut or change it.
-std::string quoted(const std::string& word) {
-  const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=+,@%-";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 /// A line of the help in two columns; two lines if the left text is too long.
 std::string help_line(const std::string& left, const std::string& right) {
   constexpr std::size_t kWidth = 30;
@@ -332,10 +316,10 @@ CallReading read_call(Table table, std::span<const std::string> words, std::stri
 
 std::string command_line(const Call& call) {
   std::string text = std::string("chimera ") + call.command->name;
-  for (const std::string& operand : call.operands) text += " " + quoted(operand);
+  for (const std::string& operand : call.operands) text += " " + shell_word(operand);
   for (const auto& [option, values] : call.options) {
     if (values.empty()) text += " " + option;
-    for (const std::string& value : values) text += " " + option + " " + quoted(value);
+    for (const std::string& value : values) text += " " + option + " " + shell_word(value);
   }
   return text + (call.json ? " --json" : "");
 }

@@ -12,7 +12,7 @@ std::uint16_t ShownMembers::living() const noexcept {
 }
 
 // A task of a dead rtpu, or one whose `init` or `kill` runs, cannot take part in a switch.
-TaskStanding ShownMembers::standing(TaskId task) const noexcept {
+TaskStatus ShownMembers::status(TaskId task) const noexcept {
   const bool is_alive = state_.rtpus[state_.spec().tasks[task.index].rtpu.index].is_alive;
   const State state = state_.state(task);
   const bool is_lost = !is_alive && state != State::kNotCreated;

@@ -64,9 +64,9 @@ struct SlowPlanTest : ::testing::Test {
     ways.prepare(app.spec, heap);
   }
   const SwitchPlan& plan(std::uint32_t from, std::uint32_t to) {
-    standing.assign(5, {State::kOff, false});
-    for (const TaskId task : sets[from].order) standing[task.index].state = State::kOn;
-    EXPECT_TRUE(planner.plan(to, standing, made_plan));
+    statuses.assign(5, {State::kOff, false});
+    for (const TaskId task : sets[from].order) statuses[task.index].state = State::kOn;
+    EXPECT_TRUE(planner.plan(to, statuses, made_plan));
     return made_plan;
   }
   std::vector<SlowStep> steps(std::uint32_t from, std::uint32_t to, std::uint8_t because = kSlowForConstants) {
@@ -75,7 +75,7 @@ struct SlowPlanTest : ::testing::Test {
   }
   SwitchWay way(std::uint32_t from, std::uint32_t to, std::uint32_t constants) {
     const SwitchPlan& made_of_them = plan(from, to);
-    return ways.judge(made_of_them, standing, constants, made, gaps);
+    return ways.judge(made_of_them, statuses, constants, made, gaps);
   }
 
   const std::vector<TaskId> light{kLight, kArm, kLaw, kClock}, heavy{kHeavy, kArm, kLaw}, bare{kClock},
@@ -87,7 +87,7 @@ struct SlowPlanTest : ::testing::Test {
   SlowPlanner slow;
   SwitchWays ways;
   SwitchPlan made_plan;
-  std::vector<TaskStanding> standing;
+  std::vector<TaskStatus> statuses;
   Made made;
   struct : NeededGaps {
     Nanoseconds for_on(TaskId) const noexcept override { return all; }
@@ -134,12 +134,12 @@ TEST_F(SlowPlanTest, ToolsWithOneDeviceTakeTurnsWithIt) {
   const auto plain = again.plan(plan(0, 1), 0, kSlowForConstants);
   EXPECT_EQ(plain.size(), 7u) << "two checks, two off, two reinit, one on";
   planner_again.prepare(app.spec, heap);
-  standing[kHeavy.index].state = State::kNotCreated;
-  EXPECT_TRUE(planner_again.plan(1, standing, made_plan));
-  EXPECT_EQ(planner.plan(1, standing, made_plan).why, NoSwitch::kNotCreated) << "without rivals it was killed by hand";
+  statuses[kHeavy.index].state = State::kNotCreated;
+  EXPECT_TRUE(planner_again.plan(1, statuses, made_plan));
+  EXPECT_EQ(planner.plan(1, statuses, made_plan).why, NoSwitch::kNotCreated) << "without rivals it was killed by hand";
   SwitchWays ways_again;
   ways_again.prepare(app.spec, heap);
-  const SwitchWay found = ways_again.judge(made_plan, standing, 0, made, gaps);
+  const SwitchWay found = ways_again.judge(made_plan, statuses, 0, made, gaps);
   EXPECT_EQ(found.slow, kSlowForResource | kSlowForConstants);
   EXPECT_EQ(found.absent, kHeavy);
   EXPECT_EQ(found.rival, kLight);

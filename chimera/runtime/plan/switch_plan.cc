@@ -7,14 +7,14 @@
 namespace chimera {
 namespace {
 
-bool is_on(const TaskStanding& standing) noexcept { return standing.state == State::kOn; }
+bool is_on(const TaskStatus& status) noexcept { return status.state == State::kOn; }
 
 }  // namespace
 
-TaskBits tasks_on(std::span<const TaskStanding> standing) noexcept {
+TaskBits tasks_on(std::span<const TaskStatus> statuses) noexcept {
   TaskBits on;
-  for (std::size_t t = 0; t < standing.size(); ++t)
-    if (is_on(standing[t])) on.add(TaskId(t));
+  for (std::size_t t = 0; t < statuses.size(); ++t)
+    if (is_on(statuses[t])) on.add(TaskId(t));
   return on;
 }
 
@@ -73,31 +73,31 @@ void SwitchPlanner::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   handovers_ = memory.take<Handover>(spec.variables.size());
 }
 
-PlanAnswer SwitchPlanner::plan(std::uint32_t target, std::span<const TaskStanding> standing,
+PlanAnswer SwitchPlanner::plan(std::uint32_t target, std::span<const TaskStatus> statuses,
                                SwitchPlan& plan) noexcept {
   if (target >= spec_->sets.size()) return {NoSwitch::kUnknownSet, {}};
-  const PlanAnswer answer = plan_for(spec_->sets[target].order, standing, plan);
+  const PlanAnswer answer = plan_for(spec_->sets[target].order, statuses, plan);
   if (answer) plan.after = target;
   return answer;
 }
 
-PlanAnswer SwitchPlanner::plan(const TaskBits& target, std::span<const TaskStanding> standing,
+PlanAnswer SwitchPlanner::plan(const TaskBits& target, std::span<const TaskStatus> statuses,
                                SwitchPlan& plan) noexcept {
-  if (const std::uint32_t set = set_of(*spec_, target); set != kNoSet) return this->plan(set, standing, plan);
+  if (const std::uint32_t set = set_of(*spec_, target); set != kNoSet) return this->plan(set, statuses, plan);
   std::size_t n = 0;
   for (const TaskId id : spec_->on_order)
     if (target.has(id)) target_[n++] = id;
-  const PlanAnswer answer = plan_for(target_.first(n), standing, plan);
+  const PlanAnswer answer = plan_for(target_.first(n), statuses, plan);
   if (answer) plan.after = kNoSet;
   return answer;
 }
 
-PlanAnswer SwitchPlanner::plan_for(std::span<const TaskId> order, std::span<const TaskStanding> standing,
+PlanAnswer SwitchPlanner::plan_for(std::span<const TaskId> order, std::span<const TaskStatus> statuses,
                                    SwitchPlan& plan) noexcept {
   std::size_t arriving = 0, leaving = 0, staying = 0;
   std::fill(in_target_.begin(), in_target_.end(), false);
   for (const TaskId id : order) {
-    const TaskStanding& now = standing[id.index];
+    const TaskStatus& now = statuses[id.index];
     if (now.state == State::kError) return {NoSwitch::kInError, id};
     const bool is_absent = now.state == State::kNotCreated && !rivals_.may_be_absent(id);
     if (is_absent || now.in_service) return {NoSwitch::kNotCreated, id};
@@ -107,23 +107,23 @@ PlanAnswer SwitchPlanner::plan_for(std::span<const TaskId> order, std::span<cons
   }
   for (std::size_t i = spec_->on_order.size(); i-- > 0;) {
     const TaskId id = spec_->on_order[i];
-    if (is_on(standing[id.index]) && !is_in_target(id)) leaving_[leaving++] = id;
+    if (is_on(statuses[id.index]) && !is_in_target(id)) leaving_[leaving++] = id;
   }
   if (arriving == 0 && leaving == 0) return {NoSwitch::kNothingToDo, {}};
-  plan.before = set_in_force(standing);
+  plan.before = set_in_force(statuses);
   plan.arriving = arriving_.first(arriving);
   plan.leaving = leaving_.first(leaving);
   plan.staying = staying_.first(staying);
-  plan.handovers = list_handovers(standing);
+  plan.handovers = list_handovers(statuses);
   return {};
 }
 
-std::span<const Handover> SwitchPlanner::list_handovers(std::span<const TaskStanding> standing) noexcept {
+std::span<const Handover> SwitchPlanner::list_handovers(std::span<const TaskStatus> statuses) noexcept {
   std::size_t n = 0;
   for (std::size_t v = 0; v < spec_->variables.size(); ++v) {
     PortOf from, to;
     for (const PortOf& producer : spec_->variables[v].producers) {
-      if (is_on(standing[producer.task.index])) from = producer;
+      if (is_on(statuses[producer.task.index])) from = producer;
       if (is_in_target(producer.task)) to = producer;
     }
     if (to.task.is_valid() && !(from == to)) handovers_[n++] = {VariableId(v), from, to};

@@ -12,6 +12,7 @@
 #include "chimera/runtime/application_spec.h"
 #include "chimera/runtime/plan/rivals.h"
 #include "chimera/runtime/plan/switch_agreement.h"
+#include "chimera/runtime/task_status.h"
 #include "chimera/task/state_machine.h"
 
 namespace chimera {
@@ -90,14 +91,8 @@ struct PlanAnswer {
   explicit operator bool() const noexcept { return why == NoSwitch::kNone; }
 };
 
-/// State of one task, as input of a plan.
-struct TaskStanding {
-  State state = State::kNotCreated;
-  bool in_service = false;  ///< `init` or `kill` of it is under way
-};
-
 /// Returns the tasks that are ON. Context: cycle boundary.
-TaskBits tasks_on(std::span<const TaskStanding> standing) noexcept;
+TaskBits tasks_on(std::span<const TaskStatus> statuses) noexcept;
 /// The tasks of the set of that number. Requires: it is one of them. Context: cycle boundary.
 TaskBits tasks_of(const ApplicationSpec& spec, std::uint32_t set) noexcept;
 /// The tasks that are ON after the plan. Context: cycle boundary.
@@ -136,22 +131,22 @@ class SwitchPlanner {
   /// Takes memory for any plan of this spec, which outlives the planner. Context: setup.
   void prepare(const ApplicationSpec& spec, SetupMemory& memory);
 
-  /// The plan that turns the ON set into sets[target]. Equal arguments give equal plans. `standing[t]` belongs to task
+  /// The plan that turns the ON set into sets[target]. Equal arguments give equal plans. `statuses[t]` belongs to task
   /// t. Writes `plan` only if there is one, and leaves its number as it was. Replaces the lists of the plan before.
   /// Context: cycle boundary; O(tasks + links); no allocation.
-  PlanAnswer plan(std::uint32_t target, std::span<const TaskStanding> standing, SwitchPlan& plan) noexcept;
+  PlanAnswer plan(std::uint32_t target, std::span<const TaskStatus> statuses, SwitchPlan& plan) noexcept;
   /// Plans a switch to any set of tasks. If they are one of the sets, the result is the plan above.
-  PlanAnswer plan(const TaskBits& target, std::span<const TaskStanding> standing, SwitchPlan& plan) noexcept;
+  PlanAnswer plan(const TaskBits& target, std::span<const TaskStatus> statuses, SwitchPlan& plan) noexcept;
 
   /// Calls the free function of this name. Context: cycle boundary.
-  std::uint32_t set_in_force(std::span<const TaskStanding> standing) const noexcept {
-    return chimera::set_in_force(*spec_, [&](TaskId task) { return standing[task.index].state == State::kOn; });
+  std::uint32_t set_in_force(std::span<const TaskStatus> statuses) const noexcept {
+    return chimera::set_in_force(*spec_, [&](TaskId task) { return statuses[task.index].state == State::kOn; });
   }
 
  private:
-  PlanAnswer plan_for(std::span<const TaskId> order, std::span<const TaskStanding> standing, SwitchPlan& plan) noexcept;
+  PlanAnswer plan_for(std::span<const TaskId> order, std::span<const TaskStatus> statuses, SwitchPlan& plan) noexcept;
   bool is_in_target(TaskId task) const noexcept { return in_target_[task.index]; }
-  std::span<const Handover> list_handovers(std::span<const TaskStanding> standing) noexcept;
+  std::span<const Handover> list_handovers(std::span<const TaskStatus> statuses) noexcept;
 
   const ApplicationSpec* spec_ = nullptr;
   Rivals rivals_;

@@ -52,11 +52,11 @@ struct Planned {
     turn_on({kPlant, kOne});
   }
   void turn_on(const std::vector<TaskId>& on) {
-    for (TaskStanding& each : standing) each.state = State::kOff;
-    for (const TaskId id : on) standing[id.index].state = State::kOn;
+    for (TaskStatus& each : statuses) each.state = State::kOff;
+    for (const TaskId id : on) statuses[id.index].state = State::kOn;
   }
-  PlanAnswer make(const TaskBits& target) { return planner.plan(target, standing, plan); }
-  PlanAnswer make(std::uint32_t target) { return planner.plan(target, standing, plan); }
+  PlanAnswer make(const TaskBits& target) { return planner.plan(target, statuses, plan); }
+  PlanAnswer make(std::uint32_t target) { return planner.plan(target, statuses, plan); }
   VariableId variable(std::string_view name) const {
     std::size_t v = 0;
     while (app.spec.variables[v].name != name) ++v;
@@ -68,7 +68,7 @@ struct Planned {
   NamedSet sets[3] = {{"first", first}, {"second", second}, {"none", bare}};
   HeapMemory heap;
   SwitchPlanner planner;
-  std::vector<TaskStanding> standing = std::vector<TaskStanding>(4);
+  std::vector<TaskStatus> statuses = std::vector<TaskStatus>(4);
   SwitchPlan plan;
 };
 
@@ -121,15 +121,15 @@ TEST(SwitchPlan, ARefusedPlanNamesTheTask) {
   Planned p;
   EXPECT_EQ(p.make(3).why, NoSwitch::kUnknownSet);
   EXPECT_EQ(p.make(0).why, NoSwitch::kNothingToDo);
-  p.standing[kTwo.index].state = State::kError;
+  p.statuses[kTwo.index].state = State::kError;
   EXPECT_EQ(p.make(1).why, NoSwitch::kInError);
   EXPECT_EQ(p.make(1).task, kTwo);
-  p.standing[kObserver.index].state = State::kNotCreated;
+  p.statuses[kObserver.index].state = State::kNotCreated;
   EXPECT_EQ(p.make(1).why, NoSwitch::kNotCreated);
   EXPECT_EQ(p.make(1).task, kObserver);
-  p.standing[kObserver.index] = {State::kOff, true};
+  p.statuses[kObserver.index] = {State::kOff, true};
   EXPECT_EQ(p.make(1).why, NoSwitch::kNotCreated);
-  p.standing[kOne.index].state = State::kOn;
+  p.statuses[kOne.index].state = State::kOn;
   EXPECT_EQ(p.make(2).why, NoSwitch::kNone);  // ERROR outside the target does not matter
   EXPECT_EQ(p.plan.number, 0u);
 }
@@ -157,18 +157,18 @@ TEST(SwitchPlan, AnyPlanCarriedOutMakesTheTarget) {
   std::mt19937 random(1);
   for (int i = 0; i < 20000; ++i) {
     Planned p;
-    for (TaskStanding& each : p.standing) each.state = static_cast<State>(random() % kStates);
+    for (TaskStatus& each : p.statuses) each.state = static_cast<State>(random() % kStates);
     const auto target = static_cast<std::uint32_t>(random() % 3);
-    const std::vector<TaskStanding> before = p.standing;
+    const std::vector<TaskStatus> before = p.statuses;
     const PlanAnswer answer = p.make(target);
     if (!answer) {
       EXPECT_NE(answer.why, NoSwitch::kUnknownSet);
       continue;
     }
-    for (const TaskId id : p.plan.leaving) p.standing[id.index].state = State::kOff;
-    for (const TaskId id : p.plan.arriving) p.standing[id.index].state = State::kOn;
+    for (const TaskId id : p.plan.leaving) p.statuses[id.index].state = State::kOff;
+    for (const TaskId id : p.plan.arriving) p.statuses[id.index].state = State::kOn;
     for (const TaskId id : p.plan.staying) EXPECT_EQ(before[id.index].state, State::kOn);
-    ASSERT_EQ(p.planner.set_in_force(p.standing), target) << i;
+    ASSERT_EQ(p.planner.set_in_force(p.statuses), target) << i;
     EXPECT_EQ(p.make(target).why, NoSwitch::kNothingToDo);
   }
 }
@@ -177,24 +177,24 @@ TEST(SwitchPlan, AStandbyThatIsOnCountsAsItsPrimaryUnlessTheTasksAreExactlyAnoth
   Planned p;
   const StandbySpec standby[] = {{kOne, kTwo}};
   p.app.spec.standbys = standby;
-  EXPECT_EQ(p.planner.set_in_force(p.standing), 0u);
+  EXPECT_EQ(p.planner.set_in_force(p.statuses), 0u);
   p.turn_on({kPlant, kTwo});
-  EXPECT_EQ(p.planner.set_in_force(p.standing), 0u) << "first with two for one";
+  EXPECT_EQ(p.planner.set_in_force(p.statuses), 0u) << "first with two for one";
   ASSERT_TRUE(p.make(0)) << "and yet there is something to do: a person brings the primary back";
   EXPECT_EQ(p.plan.before, 0u);
   EXPECT_EQ(listed(p.plan.arriving), std::vector<TaskId>{kOne});
   EXPECT_EQ(listed(p.plan.leaving), std::vector<TaskId>{kTwo});
   p.turn_on({kPlant, kObserver, kTwo});
-  EXPECT_EQ(p.planner.set_in_force(p.standing), 1u);
+  EXPECT_EQ(p.planner.set_in_force(p.statuses), 1u);
   p.turn_on({kTwo});
-  EXPECT_EQ(p.planner.set_in_force(p.standing), kNoSet);
+  EXPECT_EQ(p.planner.set_in_force(p.statuses), kNoSet);
   p.turn_on({kPlant, kOne, kTwo});
-  EXPECT_EQ(p.planner.set_in_force(p.standing), kNoSet) << "one more than there are";
+  EXPECT_EQ(p.planner.set_in_force(p.statuses), kNoSet) << "one more than there are";
   const TaskId exact[] = {kPlant, kTwo};
   const NamedSet sets[] = {{"first", p.first}, {"exactly", exact}};
   p.app.spec.sets = sets;
   p.turn_on({kPlant, kTwo});
-  EXPECT_EQ(p.planner.set_in_force(p.standing), 1u);
+  EXPECT_EQ(p.planner.set_in_force(p.statuses), 1u);
 }
 
 TEST(SwitchPlanner, PlansForAnySetOfTasks) {

@@ -45,9 +45,9 @@ void SwitchSchedule::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   }
 }
 
-void SwitchSchedule::consider(std::span<const TaskStanding> standing, const TaskBits& after) noexcept {
+void SwitchSchedule::consider(std::span<const TaskStatus> statuses, const TaskBits& after) noexcept {
   for (std::size_t t = 0; t < parts_.size(); ++t) {
-    const bool was_on = standing[t].state == State::kOn, is_on = after.has(TaskId(t));
+    const bool was_on = statuses[t].state == State::kOn, is_on = after.has(TaskId(t));
     parts_[t] = was_on ? (is_on ? TransitionPart::kStays : TransitionPart::kLeaves)
                        : (is_on ? TransitionPart::kArrives : TransitionPart::kAbsent);
   }
@@ -108,8 +108,8 @@ CpuTransition SwitchSchedule::on_cpu_of(RtpuId rtpu) noexcept {
   return found;
 }
 
-PlanAnswer SwitchSchedule::judge(std::span<const TaskStanding> standing, const TaskBits& after) noexcept {
-  consider(standing, after);
+PlanAnswer SwitchSchedule::judge(std::span<const TaskStatus> statuses, const TaskBits& after) noexcept {
+  consider(statuses, after);
   for (std::uint32_t r = 0; r < uses_.size(); ++r) {
     if (!is_first_of_cpu(RtpuId(r))) continue;
     const CpuTransition found = on_cpu_of(RtpuId(r));

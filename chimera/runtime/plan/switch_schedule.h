@@ -33,9 +33,9 @@ class SwitchSchedule {
   /// Takes memory for `spec`, which outlives this. Context: setup.
   void prepare(const ApplicationSpec& spec, SetupMemory& memory);
 
-  /// Considers the switch from the tasks that are ON by `standing` to those of `after`; replaces the one considered
+  /// Considers the switch from the tasks that are ON by `statuses` to those of `after`; replaces the one considered
   /// before.
-  void consider(std::span<const TaskStanding> standing, const TaskBits& after) noexcept;
+  void consider(std::span<const TaskStatus> statuses, const TaskBits& after) noexcept;
   /// The transition that was considered, on the CPU of that rtpu.
   CpuTransition on_cpu_of(RtpuId rtpu) noexcept;
   /// True if the rtpu is the first of its CPU: each CPU has one.
@@ -43,7 +43,7 @@ class SwitchSchedule {
 
   /// kNotSchedulable, with the task and what its cycle may take, where a promise that holds before the switch would not
   /// hold over it; where nothing is promised before, nothing is lost. Budgets that are not stated count as nothing.
-  PlanAnswer judge(std::span<const TaskStanding> standing, const TaskBits& after) noexcept;
+  PlanAnswer judge(std::span<const TaskStatus> statuses, const TaskBits& after) noexcept;
 
  private:
   void consider_hot(TaskId hot) noexcept;

@@ -23,7 +23,7 @@ TaskSpec task(std::int64_t period_ms, std::int64_t budget_ms, std::uint32_t rtpu
 /// Each set is a list of tasks, of an application on CPUs 1, 2 and again 1.
 struct Scene {
   Scene(std::vector<TaskSpec> with, std::vector<std::vector<TaskId>> configurations)
-      : tasks(std::move(with)), orders(std::move(configurations)), standing(tasks.size()) {
+      : tasks(std::move(with)), orders(std::move(configurations)), statuses(tasks.size()) {
     for (const auto& order : orders) sets.push_back({"s", order});
     spec.tasks = tasks;
     spec.rtpus = rtpus;
@@ -31,9 +31,9 @@ struct Scene {
     schedule.prepare(spec, heap);
   }
   PlanAnswer judge(std::uint32_t before, std::uint32_t after) {
-    for (TaskStanding& each : standing) each.state = State::kOff;
-    for (const TaskId id : orders[before]) standing[id.index].state = State::kOn;
-    return schedule.judge(standing, tasks_of(spec, after));
+    for (TaskStatus& each : statuses) each.state = State::kOff;
+    for (const TaskId id : orders[before]) statuses[id.index].state = State::kOn;
+    return schedule.judge(statuses, tasks_of(spec, after));
   }
 
   std::vector<TaskSpec> tasks;
@@ -43,7 +43,7 @@ struct Scene {
   ApplicationSpec spec;
   HeapMemory heap;
   SwitchSchedule schedule;
-  std::vector<TaskStanding> standing;
+  std::vector<TaskStatus> statuses;
 };
 
 constexpr TaskId kA{0u}, kB{1u}, kC{2u};
@@ -94,8 +94,8 @@ TEST(SwitchSchedule, AHotStandbyCountsBesideItsPrimaryAndAfterIt) {
 
 TEST(SwitchSchedule, ReportsTheTasksThatItConsideredOnACpu) {
   Scene scene({task(10, 4), task(10, 0), task(20, 2, 1)}, {{kA, kC}, {kB, kC}});
-  scene.standing[0].state = scene.standing[2].state = State::kOn;
-  scene.schedule.consider(scene.standing, tasks_of(scene.spec, 1));
+  scene.statuses[0].state = scene.statuses[2].state = State::kOn;
+  scene.schedule.consider(scene.statuses, tasks_of(scene.spec, 1));
   const CpuTransition moved = scene.schedule.on_cpu_of(RtpuId(0u));
   EXPECT_TRUE(moved.is_moved);
   EXPECT_EQ(moved.cpu, 1u);

@@ -13,32 +13,32 @@ void SwitchWays::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   users_.prepare(spec, memory);
 }
 
-SwitchWay SwitchWays::judge(const SwitchPlan& plan, std::span<const TaskStanding> standing, std::uint32_t constants,
+SwitchWay SwitchWays::judge(const SwitchPlan& plan, std::span<const TaskStatus> statuses, std::uint32_t constants,
                             const MadeConstants& made, const NeededGaps& gaps) noexcept {
   SwitchWay way;
-  way.deadline = schedule_.judge(standing, target_of(plan));
+  way.deadline = schedule_.judge(statuses, target_of(plan));
   if (!way.deadline) way.slow |= kSlowForDeadlines;
   way.constant = users_.find_staying(plan, constants, made);
   if (way.constant.task.is_valid()) way.slow |= kSlowForConstants;
-  find_gapless(plan, standing, gaps, way);
+  find_gapless(plan, statuses, gaps, way);
   for (const TaskId task : plan.arriving)
-    if (standing[task.index].state == State::kNotCreated && !way.absent.is_valid()) way.absent = task;
+    if (statuses[task.index].state == State::kNotCreated && !way.absent.is_valid()) way.absent = task;
   if (!way.absent.is_valid()) return way;
   way.slow |= kSlowForResource;
   for (std::size_t t = 0; t < spec_->tasks.size(); ++t)
-    if (rivals_.are(way.absent, TaskId(t)) && standing[t].state != State::kNotCreated) way.rival = TaskId(t);
+    if (rivals_.are(way.absent, TaskId(t)) && statuses[t].state != State::kNotCreated) way.rival = TaskId(t);
   return way;
 }
 
 // No gap of a loop is longer than the shortest period of its tasks that are ON.
-void SwitchWays::find_gapless(const SwitchPlan& plan, std::span<const TaskStanding> standing, const NeededGaps& gaps,
+void SwitchWays::find_gapless(const SwitchPlan& plan, std::span<const TaskStatus> statuses, const NeededGaps& gaps,
                               SwitchWay& way) const noexcept {
   for (const TaskId arriving : plan.arriving) {
     const TaskSpec& task = spec_->tasks[arriving.index];
     Nanoseconds longest_gap = kNever;
-    for (std::size_t t = 0; t < standing.size(); ++t) {
+    for (std::size_t t = 0; t < statuses.size(); ++t) {
       const TaskSpec& other = spec_->tasks[t];
-      const bool is_released = standing[t].state == State::kOn && other.rtpu == task.rtpu && !other.aperiodic;
+      const bool is_released = statuses[t].state == State::kOn && other.rtpu == task.rtpu && !other.aperiodic;
       if (is_released) longest_gap = std::min(longest_gap, other.period);
     }
     const Nanoseconds needed = gaps.for_on(arriving);

@@ -47,12 +47,12 @@ class SwitchWays {
  public:
   /// The spec outlives this. Context: setup.
   void prepare(const ApplicationSpec& spec, SetupMemory& memory);
-  /// The way of a plan that was made from `standing`, while the constants of sets[constants] are in force.
-  SwitchWay judge(const SwitchPlan& plan, std::span<const TaskStanding> standing, std::uint32_t constants,
+  /// The way of a plan that was made from `statuses`, while the constants of sets[constants] are in force.
+  SwitchWay judge(const SwitchPlan& plan, std::span<const TaskStatus> statuses, std::uint32_t constants,
                   const MadeConstants& made, const NeededGaps& gaps) noexcept;
 
  private:
-  void find_gapless(const SwitchPlan& plan, std::span<const TaskStanding> standing, const NeededGaps& gaps,
+  void find_gapless(const SwitchPlan& plan, std::span<const TaskStatus> statuses, const NeededGaps& gaps,
                     SwitchWay& way) const noexcept;
 
   const ApplicationSpec* spec_ = nullptr;

@@ -44,7 +44,7 @@ std::uint16_t LocalSwitches::living() const noexcept {
   return static_cast<std::uint16_t>(living);
 }
 
-TaskStanding LocalSwitches::standing(TaskId id) const noexcept {
+TaskStatus LocalSwitches::status(TaskId id) const noexcept {
   const Member& member = member_of(id);
   if (member.tasks == nullptr) return {};
   const Task& task = member.tasks->tasks()[id.index];

@@ -76,7 +76,7 @@ class LocalSwitches : private SwitchMembers {
 
   SwitchPage& page() noexcept override { return page_; }
   std::uint16_t living() const noexcept override;
-  TaskStanding standing(TaskId task) const noexcept override;
+  TaskStatus status(TaskId task) const noexcept override;
   Profile profile(TaskId task) const noexcept override;
   bool needs_gaps(TaskId task) const noexcept override { return member_of(task).needs_gaps; }
   const MadeConstants& constants() noexcept override;

@@ -67,11 +67,11 @@ struct Application {
 };
 
 void carry_out(Application& app, const SwitchOrder& order, Bytes& bytes) {
-  std::vector<TaskStanding> standing(kTasks);
+  std::vector<TaskStatus> statuses(kTasks);
   for (std::size_t t = 0; t < kTasks; ++t)
-    standing[t].state = order.on.has(TaskId(t)) ? State::kOn : static_cast<State>(bytes.take(1) % kStates);
+    statuses[t].state = order.on.has(TaskId(t)) ? State::kOn : static_cast<State>(bytes.take(1) % kStates);
   SwitchPlan plan;
-  const PlanAnswer answer = app.planner.plan(order.target, standing, plan);
+  const PlanAnswer answer = app.planner.plan(order.target, statuses, plan);
   require(order.after == kNoSet || order.after < kSets, "an order that is taken names a set, or none");
   if (!answer) return;
   for (const auto ids : {plan.arriving, plan.leaving, plan.staying})
@@ -84,10 +84,10 @@ void carry_out(Application& app, const SwitchOrder& order, Bytes& bytes) {
   }
   const Nanoseconds lead = lead_of(plan, app.tasks, order.lead);
   require(kNow + lead > kNow && order.until + lead >= order.until, "times can be added");
-  for (const TaskId id : plan.leaving) standing[id.index].state = State::kOff;
-  for (const TaskId id : plan.arriving) standing[id.index].state = State::kOn;
+  for (const TaskId id : plan.leaving) statuses[id.index].state = State::kOff;
+  for (const TaskId id : plan.arriving) statuses[id.index].state = State::kOn;
   for (std::size_t t = 0; t < kTasks; ++t)
-    require((standing[t].state == State::kOn) == order.target.has(TaskId(t)), "carried out, it makes what was asked");
+    require((statuses[t].state == State::kOn) == order.target.has(TaskId(t)), "carried out, it makes what was asked");
 }
 
 /// One of the moves of a context that believes in plan `number`.

@@ -24,17 +24,17 @@ void SwitchOrders::prepare(const ApplicationSpec& spec, bool is_alone, SetupMemo
   is_alone_ = is_alone;
   planner_.prepare(spec, memory);
   ways_.prepare(spec, memory);
-  standing_ = memory.take<TaskStanding>(spec.tasks.size());
+  statuses_ = memory.take<TaskStatus>(spec.tasks.size());
 }
 
 void SwitchOrders::look() noexcept {
-  for (std::size_t t = 0; t < standing_.size(); ++t) standing_[t] = members_.standing(TaskId(t));
+  for (std::size_t t = 0; t < statuses_.size(); ++t) statuses_[t] = members_.status(TaskId(t));
 }
 
 PlanAnswer SwitchOrders::judge(const TaskBits& target) noexcept {
   look();
-  const PlanAnswer answer = planner_.plan(target, standing_, plan_);
-  way_ = answer ? ways_.judge(plan_, standing_, constants_in_force(), members_.constants(), *this) : SwitchWay();
+  const PlanAnswer answer = planner_.plan(target, statuses_, plan_);
+  way_ = answer ? ways_.judge(plan_, statuses_, constants_in_force(), members_.constants(), *this) : SwitchWay();
   return answer;
 }
 
@@ -54,7 +54,7 @@ std::uint32_t SwitchOrders::constants_in_force() const noexcept {
 Nanoseconds SwitchOrders::lead() const noexcept {
   if (is_alone_) return {};
   Nanoseconds longest;
-  for (std::size_t t = 0; t < standing_.size(); ++t)
+  for (std::size_t t = 0; t < statuses_.size(); ++t)
     if (is_on(TaskId(t)))
       longest = std::max(longest, members_.profile(TaskId(t)).execution[static_cast<int>(Method::kCycle)].max);
   return lead_of(plan_, spec_->tasks, longest);
@@ -181,7 +181,7 @@ bool SwitchOrders::make_next_try(OrderedSwitch& over, NoSwitch why, Nanoseconds 
   if ((slow == 0 && !was_late) || over.tries >= kMostTries) return false;
   look();
   const TaskBits target = over.order.target;
-  if (!planner_.plan(target, standing_, plan_)) return false;
+  if (!planner_.plan(target, statuses_, plan_)) return false;
   const Nanoseconds until = slow != 0 ? now + (over.order.until - over.asked) : over.order.until;
   if (slow != 0) over.way.slow = slow;
   ++over.tries;

@@ -34,7 +34,7 @@ class SwitchMembers {
   virtual SwitchPage& page() noexcept = 0;
   /// Bit c: context c lives, and takes part in the next switch.
   virtual std::uint16_t living() const noexcept = 0;
-  virtual TaskStanding standing(TaskId task) const noexcept = 0;
+  virtual TaskStatus status(TaskId task) const noexcept = 0;
   /// Measurements of the task by its context; empty if they are not known.
   virtual Profile profile(TaskId task) const noexcept = 0;
   /// Methods of the task wait for an idle processor: jobs of its context do not preempt each other.
@@ -85,9 +85,9 @@ class SwitchOrders : private NeededGaps {
   PlanAnswer judge(const TaskBits& target) noexcept;
 
   // Results of the last look() or judge().
-  bool is_on(TaskId task) const noexcept { return standing_[task.index].state == State::kOn; }
-  TaskBits on() const noexcept { return tasks_on(standing_); }
-  std::uint32_t set_in_force() const noexcept { return planner_.set_in_force(standing_); }
+  bool is_on(TaskId task) const noexcept { return statuses_[task.index].state == State::kOn; }
+  TaskBits on() const noexcept { return tasks_on(statuses_); }
+  std::uint32_t set_in_force() const noexcept { return planner_.set_in_force(statuses_); }
   const SwitchPlan& plan() const noexcept { return plan_; }
   const SwitchWay& way() const noexcept { return way_; }
   /// From the proposal of the instant of the change to that instant, in the first try.
@@ -127,7 +127,7 @@ class SwitchOrders : private NeededGaps {
   SwitchWays ways_;
   SwitchPlan plan_;
   SwitchWay way_;                     // of plan_
-  std::span<TaskStanding> standing_;  // by task
+  std::span<TaskStatus> statuses_;  // by task
   Nanoseconds origin_;
   bool is_alone_ = false;
 };

@@ -30,7 +30,7 @@ constexpr Nanoseconds kOrigin = seconds(1), kAsked = seconds(2);
 struct Contexts final : SwitchMembers, MadeConstants {
   SwitchPage& page() noexcept override { return words; }
   std::uint16_t living() const noexcept override { return 0b11; }
-  TaskStanding standing(TaskId task) const noexcept override { return {states[task.index], false}; }
+  TaskStatus status(TaskId task) const noexcept override { return {states[task.index], false}; }
   Profile profile(TaskId task) const noexcept override { return profiles[task.index]; }
   bool needs_gaps(TaskId) const noexcept override { return is_executive; }
   const MadeConstants& constants() noexcept override { return *this; }

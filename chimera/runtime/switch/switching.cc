@@ -11,10 +11,10 @@
 namespace chimera {
 namespace {
 
-void note_standing(const TaskSet& set, std::span<TaskStanding> standing) noexcept {
+void note_statuses(const TaskSet& set, std::span<TaskStatus> statuses) noexcept {
   for (const Task& each : set.tasks()) {
     const bool is_elsewhere = set.others() != nullptr && !set.is_mine(each.id);
-    standing[each.id.index] = {is_elsewhere ? set.others()->state(each.id) : each.shown_state(), each.in_service()};
+    statuses[each.id.index] = {is_elsewhere ? set.others()->state(each.id) : each.shown_state(), each.in_service()};
   }
 }
 
@@ -54,7 +54,7 @@ void Switching::prepare(SwitchPeers* peers) {
   planner_.prepare(set.spec(), set.setup_memory());
   record_.prepare();
   changeover_.prepare();
-  standing_ = set.setup_memory().take<TaskStanding>(set.tasks().size());
+  statuses_ = set.setup_memory().take<TaskStatus>(set.tasks().size());
 }
 
 // An earlier incarnation of this context may have taken part in the open plan; this one knows nothing of the plan.
@@ -85,14 +85,14 @@ bool Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   const bool has_lists = request.lists.are_there();
   bool changes_nothing = false;
   if (phase_ != Phase::kNone || !is_free()) {
-    const auto order = agreement().order(agreement().plan(), parts_.set.spec().sets.size(), standing_.size());
+    const auto order = agreement().order(agreement().plan(), parts_.set.spec().sets.size(), statuses_.size());
     const bool leads_there =
         order && (has_lists ? request.lists.are_met_by(order->target) : order->after == request.set);
     changes_nothing = phase_ != Phase::kUndoing && leads_there;
   } else {
-    note_standing(parts_.set, standing_);
+    note_statuses(parts_.set, statuses_);
     changes_nothing =
-        has_lists ? request.lists.are_met_by(tasks_on(standing_)) : planner_.set_in_force(standing_) == request.set;
+        has_lists ? request.lists.are_met_by(tasks_on(statuses_)) : planner_.set_in_force(statuses_) == request.set;
   }
   peers_->wish(request, changes_nothing, now);
   return !changes_nothing;
@@ -138,8 +138,8 @@ void Switching::take_up(const PlanWord& plan, Nanoseconds now) noexcept {
   bool is_made = plan.is_open() && is_member;
   if (is_made) {
     for (const Task& each : parts_.set.tasks())
-      standing_[each.id.index] = {order->on.has(each.id) ? State::kOn : State::kOff, false};
-    is_made = static_cast<bool>(planner_.plan(order->target, standing_, plan_));
+      statuses_[each.id.index] = {order->on.has(each.id) ? State::kOn : State::kOff, false};
+    is_made = static_cast<bool>(planner_.plan(order->target, statuses_, plan_));
     receipt.before = is_made ? plan_.before : kNoSet;
     receipt.after = order->after;
   }

@@ -111,7 +111,7 @@ class Switching {
   SwitchOrder order_;
   SwitchPlan plan_;
   UndisturbedState before_;
-  std::span<TaskStanding> standing_;  // by task, when a plan is made
+  std::span<TaskStatus> statuses_;  // by task, when a plan is made
   Nanoseconds origin_, at_ = kNever;
   Nanoseconds gap_since_ = kNever;    // a gap is awaited
   Nanoseconds off_since_ = kNever;    // `off` of the first task is due
