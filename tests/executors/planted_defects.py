@@ -111,7 +111,7 @@ DEFECTS = (
     ("lists of tasks are held against nothing that is ON", "switch/local_switches.cc",
      "asked_->find(request, orders_.on(), now, target)", "asked_->find(request, TaskBits(), now, target)"),
     ("lists of tasks that are met are asked for all the same", "switch/switching.cc",
-     "has_lists ? request.lists.are_met_by(tasks_on(standing_)) :", "has_lists ? false :"),
+     "has_lists ? request.lists.are_met_by(tasks_on(statuses_)) :", "has_lists ? false :"),
     ("of lists of tasks that wait only the same again is a new wish", "plan/switch_wish.h",
      "return is_last_open ? !is_for_the_same : !changes_nothing;",
      "return is_last_open ? is_for_the_same : !changes_nothing;"),
