@@ -46,14 +46,15 @@ RpcResponse no_answer(const ManagerState& state, RtpuId rtpu, const std::string&
                        {{"rtpu", state.name(rtpu)}, {"running", running.empty() ? Json() : Json(running)}});
 }
 
-std::variant<TaskBits, RpcResponse> named_set(const ApplicationSpec& spec, const std::string& name) {
+std::variant<WantedTasks, RpcResponse> named_set(const ApplicationSpec& spec, const std::string& name) {
   const auto set = std::ranges::find(spec.sets, std::string_view(name), &NamedSet::name);
-  if (set != spec.sets.end()) return tasks_of(spec, static_cast<std::uint32_t>(set - spec.sets.begin()));
+  const auto number = static_cast<std::uint32_t>(set - spec.sets.begin());
+  if (number < spec.sets.size()) return WantedTasks{tasks_of(spec, number), {}};
   return RpcResponse::no_such("configuration", name, names_of(spec.sets, &NamedSet::name));
 }
 
 /// The tasks that `switch` requests: a configuration, or the tasks that are ON plus `on` minus `off`.
-std::variant<TaskBits, RpcResponse> wanted_tasks(const ManagerState& state, const Json& parameters) {
+std::variant<WantedTasks, RpcResponse> wanted_tasks(const ManagerState& state, const Json& parameters) {
   const bool is_named = parameters.contains("configuration");
   const bool is_listed = parameters.contains("on") || parameters.contains("off");
   if (is_named == is_listed)
@@ -68,7 +69,7 @@ std::variant<TaskBits, RpcResponse> wanted_tasks(const ManagerState& state, cons
     (key == std::string_view("on") ? lists.plus : lists.minus) = bits_of(std::get<0>(found));
   }
   AskedSet asked = asked_set(state.spec(), state.tasks_on(), lists);
-  if (asked) return asked.tasks;
+  if (asked) return WantedTasks{asked.tasks, lists};
   return RpcResponse::refused("set", asked.why, "", asked.remedy);
 }
 
@@ -243,19 +244,19 @@ void ManagerBackend::receipts(const Request& request) {
 }
 
 /// The requested set of tasks. None: the answer with the refusal has been sent.
-std::optional<TaskBits> ManagerBackend::wanted(const Request& request) const {
+std::optional<WantedTasks> ManagerBackend::wanted(const Request& request) const {
   auto found = wanted_tasks(state(), request.parameters);
   if (const auto* refused = std::get_if<RpcResponse>(&found)) {
     request.reply(*refused);
     return std::nullopt;
   }
-  return std::get<TaskBits>(found);
+  return std::get<WantedTasks>(found);
 }
 
 void ManagerBackend::plan(const Request& request) {
   const auto to = wanted(request);
   if (!to) return;
-  request.reply(RpcResponse::good(plan_json(state(), loop_.switches().foresee(*to))));
+  request.reply(RpcResponse::good(plan_json(state(), loop_.switches().foresee(to->target))));
 }
 
 void ManagerBackend::cancel(const Request& request) {
@@ -276,11 +277,10 @@ void ManagerBackend::switch_to(const Request& request) {
   if (state().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
   const std::uint64_t wait_ms = control::number(request.parameters, "wait_ms", 10'000);
   const Nanoseconds wait = milliseconds(static_cast<std::int64_t>(wait_ms));
-  const SwitchRequest asked{set_of(state().spec(), *to), SwitchCause::kScript, {}};
-  loop_.switches().ask(asked, *to, {request.caller.role, request.caller.user}, wait, now(),
-                         [this, reply = request.reply](const SwitchOutcome& outcome) {
-                           reply(switch_answer(state(), outcome));
-                         });
+  loop_.switch_to(to->target, to->lists.minus, {request.caller.role, request.caller.user}, wait, now(),
+                  [this, reply = request.reply](const SwitchOutcome& outcome) {
+                    reply(switch_answer(state(), outcome));
+                  });
 }
 
 void ManagerBackend::drill(const Request& request) {

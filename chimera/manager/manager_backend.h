@@ -31,6 +31,12 @@ Json plan_json(const ManagerState& state, const ForeseenSwitch& foreseen);
 /// The last `n` receipts, and the state of their file. Context: setup.
 control::RpcResponse receipts_answer(const ReceiptArchive& archive, std::size_t n);
 
+/// A request for a switch: the tasks that are to be ON, and the lists that they were worked out from.
+struct WantedTasks {
+  TaskBits target;
+  TaskLists lists;  ///< empty where a configuration was named
+};
+
 /// Context: setup.
 class ManagerBackend final : public control::ControlBackend {
  public:
@@ -69,7 +75,7 @@ class ManagerBackend final : public control::ControlBackend {
   void end(const Request& request);
 
   ManagerState& state() const noexcept { return loop_.state(); }
-  std::optional<TaskBits> wanted(const Request& request) const;
+  std::optional<WantedTasks> wanted(const Request& request) const;
   void analyse(Question::Kind kind, const Request& request);
 
   ManagerLoop& loop_;

@@ -188,6 +188,13 @@ void ManagerLoop::become_ready() {
   steps_->step(subsystem::InventoryComplete{});
 }
 
+void ManagerLoop::switch_to(const TaskBits& on, const TaskBits& off, Asker asked_by, Nanoseconds wait, Nanoseconds now,
+                            Switched switched) {
+  steps_->note_switch(on, off);
+  const SwitchRequest asked{set_of(state_->spec(), on), SwitchCause::kScript, {}};
+  switches_->ask(asked, on, asked_by, wait, now, std::move(switched));
+}
+
 RtpuId ManagerLoop::ring(std::span<const TaskId> tasks) { return rtpu_links_->ring(tasks, now()); }
 
 void ManagerLoop::end(std::int32_t code) { end_wish_ = code; }

@@ -51,6 +51,9 @@ class ManagerLoop {
   void command(Signal signal, std::vector<TaskId> tasks, Answered answered) {
     steps_->command(signal, std::move(tasks), std::move(answered));
   }
+  /// Requests a switch for a person, who named the tasks `off`; as SwitchCoordinator::ask().
+  void switch_to(const TaskBits& on, const TaskBits& off, Asker asked_by, Nanoseconds wait, Nanoseconds now,
+                 Switched switched);
   /// Rings doorbells, as RtpuLinks::ring.
   RtpuId ring(std::span<const TaskId> tasks);
   /// Call it after step() returned false. Files the receipts that are left; may block for most of the second that the

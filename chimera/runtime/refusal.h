@@ -14,9 +14,10 @@ enum class Refusal : std::uint8_t {
   kIllegalSet,  ///< the tasks that would be ON would have two producers of a variable, or none
   kFault,       ///< `on` or the constructor said no; the text is in the task's fault record
   kNotYet,      ///< `on` answered not yet: it is to be asked again; the task is OFF
-  kRival        ///< of spawn: another task that is created has its resource (runtime/plan/rivals.h)
+  kRival,       ///< of spawn: another task that is created has its resource (runtime/plan/rivals.h)
+  kKeptOff      ///< of on, sent by a task: an operator turned the task OFF
 };
-inline constexpr Refusal kLastRefusal = Refusal::kRival;
+inline constexpr Refusal kLastRefusal = Refusal::kKeptOff;
 /// A task whose `on` answers not yet is asked again for at most this time: a device may need seconds to start.
 inline constexpr Nanoseconds kReadyLimit = seconds(10);
 

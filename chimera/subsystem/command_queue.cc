@@ -138,6 +138,7 @@ bool CommandQueue::take_back(Command& command) {
     part.is_taken_back = part.is_taken_back || can_be_taken_back(command.signal, part.task);
     changed = transaction_.withdraw(part.task, command.signal) || changed;
     changed = goals_.clear(part.task, command.signal == Signal::kKill ? kGoalSpawn | kGoalOn : kGoalOn) || changed;
+    goals_.add(part.task, kGoalOff);
   }
   return changed;
 }

@@ -10,7 +10,7 @@ void Goals::recall(std::span<const std::uint32_t> remembered) {
   for (std::size_t t = 0; t < std::min(goals_.size(), remembered.size()); ++t) goals_[t].bits = remembered[t];
 }
 
-bool Goals::set(TaskId task, std::uint32_t goal) {
+bool Goals::write(TaskId task, std::uint32_t goal) {
   Goal& mine = goals_[task.index];
   if ((goal & kGoalSpawn) != 0 && (mine.bits & kGoalSpawn) == 0) mine.failure = {};
   if (mine.bits == goal) return false;

@@ -19,10 +19,10 @@ class Goals {
   Goals(SubsystemState& state) : state_(state), goals_(state.spec.tasks.size()) {}
 
   void recall(std::span<const std::uint32_t> remembered);
-  /// False if the task had this goal already.
-  bool set(TaskId task, std::uint32_t goal);
-  bool add(TaskId task, std::uint32_t bits) { return set(task, of(task) | bits); }
-  bool clear(TaskId task, std::uint32_t bits) { return set(task, of(task) & ~bits); }
+  /// Replaces the goal; kGoalOff stays. False if the task had this goal already.
+  bool set(TaskId task, std::uint32_t goal) { return write(task, goal | (of(task) & kGoalOff)); }
+  bool add(TaskId task, std::uint32_t bits) { return write(task, of(task) | bits); }
+  bool clear(TaskId task, std::uint32_t bits) { return write(task, of(task) & ~bits); }
   std::uint32_t of(TaskId task) const noexcept { return goals_[task.index].bits; }
   bool has(TaskId task, std::uint32_t bits) const noexcept { return (of(task) & bits) != 0; }
   bool is_pursued(TaskId task) const noexcept { return has(task, kGoalSpawn | kGoalOn); }
@@ -48,6 +48,7 @@ class Goals {
     SignalRefusal failure;
     Nanoseconds waits_since = kNever;  ///< for a rival to be killed
   };
+  bool write(TaskId task, std::uint32_t goal);
   bool advance(TaskId task);
   bool wait_for(TaskId task, TaskId rival);
   bool has_constants(TaskId task) const noexcept;

@@ -7,6 +7,7 @@
 namespace chimera::subsystem {
 
 void OnQueue::add(const Commanded& command) {
+  for (TaskId task : command.tasks) goals_.clear(task, kGoalOff);
   queue_.push_back({{command.id, state_.sorted(command.tasks), TaskId{}, false}, state_.now});
 }
 
@@ -15,7 +16,11 @@ void OnQueue::add(const Requested& request) {
   if (request.task.index >= n || request.from.index >= n) return;
   for (const Waiting& waiting : queue_)
     if (waiting.request.from == request.from && waiting.request.tasks.front() == request.task) return;
-  queue_.push_back({{0, {request.task}, request.from, false}, state_.now});
+  const OnRequest asked{0, {request.task}, request.from, false};
+  if (!goals_.has(request.task, kGoalOff)) return queue_.push_back({asked, state_.now});
+  const std::string name = state_.name(request.task);
+  const std::string remedy = "`chimera on " + name + "` turns it ON";
+  transaction_.refuse(asked, request.task, {RefusalKind::kState, "an operator turned " + name + " OFF", remedy});
 }
 
 bool OnQueue::advance() {

@@ -52,6 +52,15 @@ TEST_F(OnQueueTest, TakesARequestOfATaskOnce) {
       << "a second one would be refused";
 }
 
+TEST_F(OnQueueTest, RefusesATaskThatWouldTurnOnWhatAPersonTurnedOff) {
+  goals.add(kTraj, kGoalOff);
+  (void)taken();
+  queue.add(Requested{kTraj, Signal::kOn, kArm});
+  EXPECT_EQ(advance(), "refused: on sent by arm: an operator turned traj OFF; `chimera on traj` turns it ON\n");
+  ask(1, {kTraj});
+  EXPECT_EQ(advance(), "goal traj 0\ngoal traj 2\nsend spare: on traj\n");
+}
+
 TEST_F(OnQueueTest, IgnoresATaskThatDoesNotExist) {
   queue.add(Requested{TaskId(9u), Signal::kOn, kArm});
   queue.add(Requested{kTraj, Signal::kOn, TaskId(9u)});

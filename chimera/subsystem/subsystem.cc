@@ -43,6 +43,12 @@ struct Subsystem::Parts {
     if (command.signal == Signal::kOn) on_queue.add(command);
     else commands.add(command);
   }
+  void on_event(const PersonSwitches& to) {
+    for (TaskId task : state.spec.on_order) {
+      if (to.on.has(task)) goals.clear(task, kGoalOff);
+      if (to.off.has(task)) goals.add(task, kGoalOff);
+    }
+  }
   void on_event(const Tick&) {}
 
   SignalRefusal refusal_of(const Reported& report) const;
@@ -111,6 +117,7 @@ SignalRefusal Subsystem::Parts::refusal_of(const Reported& report) const {
     case Refusal::kFault: return {RefusalKind::kFault, report.text.empty() ? "a method failed" : report.text, {}};
     case Refusal::kNotYet: return {RefusalKind::kNotYet, "on: it is not ready yet", {}};
     case Refusal::kRival: return {RefusalKind::kResource, "another task that is created has its resource", {}};
+    case Refusal::kKeptOff:  // the step function judges it before it sends `on`
     case Refusal::kNone: break;
   }
   return {RefusalKind::kOther, report.text, {}};
@@ -165,6 +172,8 @@ Nanoseconds Subsystem::next_due() const noexcept {
 }
 
 State Subsystem::state(TaskId task) const noexcept { return parts_->state.observed.state(task); }
+
+bool Subsystem::is_kept_off(TaskId task) const noexcept { return parts_->goals.has(task, kGoalOff); }
 
 bool Subsystem::is_settled() const noexcept {
   return !parts_->goals.any(kGoalSpawn | kGoalOn) && !parts_->transaction.is_under_way();

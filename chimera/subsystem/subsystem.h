@@ -39,6 +39,8 @@ namespace chimera::subsystem {
 
 /// Goal bits of a task (BlockView::goal).
 inline constexpr std::uint32_t kGoalSpawn = 1, kGoalOn = 2;
+/// Goal bit: a person turned the task OFF. It stays OFF until a person says otherwise: a task's `on` is refused.
+inline constexpr std::uint32_t kGoalOff = 8;
 
 /// An rtpu is restarted at most this often within this time, then given up until a person sends `spawn` or `clear`.
 inline constexpr int kRestartIntensity = 3;
@@ -79,10 +81,13 @@ struct Reported { std::uint64_t command = 0; TaskId task; Signal signal = Signal
 struct Requested { TaskId task; Signal signal = Signal::kOn; TaskId from; };
 /// A client requested a signal. ManagerLoop chooses `id`: above 0, never used twice.
 struct Commanded { std::uint64_t id = 0; Signal signal = Signal::kOn; std::vector<TaskId> tasks; };
+/// A person switches to the tasks `on`, and names the tasks `off`, which stay OFF.
+struct PersonSwitches { TaskBits on, off; };
 /// Only time passed: due at next_due().
 struct Tick {};
 
-using Event = std::variant<Begun, InventoryComplete, RtpuUp, RtpuDown, TaskSeen, Reported, Requested, Commanded, Tick>;
+using Event = std::variant<Begun, InventoryComplete, RtpuUp, RtpuDown, TaskSeen, Reported, Requested, Commanded,
+                           PersonSwitches, Tick>;
 
 // ---- actions ----
 
@@ -136,6 +141,8 @@ class Subsystem {
 
   /// State as users see it: a created task of a dead rtpu is in ERROR.
   State state(TaskId task) const noexcept;
+  /// True if a person turned the task OFF, and no person has turned it ON since.
+  bool is_kept_off(TaskId task) const noexcept;
   /// True if every goal is met or given up.
   bool is_settled() const noexcept;
   /// True if the rtpu is dead and will not be restarted.

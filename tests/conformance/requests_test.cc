@@ -215,6 +215,42 @@ TEST_P(Requests, ARequestOfAnArmedTaskIsSentAtTheChangeOnly) {
   EXPECT_TRUE(is_on(kLow));
 }
 
+TEST_P(Requests, LeaveATaskOffThatAPersonTurnedOffUntilAPersonTurnsItOn) {
+  scene.first = [](Cycle c) {
+    if (c.count() == 8 || c.count() == 25) ask(c, "high");
+    if (c.count() == 10) EXPECT_TRUE(c.signal(Signal::kOn, "second"));
+  };
+  const auto person = [](Nanoseconds at, Signal signal) {
+    return ScriptAct{at, ScriptAct::Kind::kSignal, signal, kSecond};
+  };
+  const auto receipts =
+      go(milliseconds(150), {person(milliseconds(5), Signal::kOff), person(milliseconds(12), Signal::kOn)});
+  ASSERT_EQ(receipts.size(), 2u);
+  EXPECT_EQ(receipts[0].why, NoSwitch::kKeptOff);
+  EXPECT_EQ(receipts[0].task, kSecond);
+  EXPECT_EQ(receipts[1].end, SwitchEnd::kDone);
+  ASSERT_EQ(runner_->refused().size(), 1u);
+  EXPECT_EQ(runner_->refused()[0].why, Refusal::kKeptOff);
+  EXPECT_TRUE(is_on(kSecond) && is_on(kHigh));
+}
+
+TEST_P(Requests, LeaveATaskOffThatAPersonNamedBehindOff) {
+  scene.first = [](Cycle c) {
+    if (c.count() == 8) ask(c, "low");
+  };
+  ScriptAct act = to(kHighSet, milliseconds(5));
+  act.set = UINT32_MAX;
+  TaskLists lists;
+  lists.plus.add(kHigh);
+  lists.minus.add(kLow);
+  act.lists = &lists;
+  const auto receipts = go(milliseconds(20), {act, to(kLowSet, milliseconds(15))});
+  ASSERT_EQ(receipts.size(), 3u);
+  EXPECT_EQ(receipts[0].end, SwitchEnd::kDone);
+  EXPECT_EQ(receipts[1].why, NoSwitch::kKeptOff);
+  EXPECT_EQ(receipts[2].end, SwitchEnd::kDone) << "a person switches";
+}
+
 TEST_P(Requests, ForAnUnknownConfigurationAreRefusedCountedAndNotedOnce) {
   scene.first = [](Cycle c) {
     if (c.count() % 2 == 0) ask(c, "hihg");

@@ -81,6 +81,9 @@ class Runner {
   Result<void> start() { return executive_ ? start_result(set_, executive_->start()) : virtual_->start(); }
   RunEnd run(Nanoseconds duration) { return executive_ ? executive_->run(duration) : virtual_->run(duration); }
   const AskedSets& asked() const { return asked_; }
+  std::span<const RefusedSignal> refused() {
+    return executive_ ? executive_->refused() : virtual_->refused();
+  }
   void shut_down() { executive_ ? executive_->shut_down() : virtual_->shut_down(); }
 
   std::span<const SwitchReceipt> receipts() { return kept().all(); }

@@ -58,6 +58,31 @@ TEST(SteppedRequests, RefuseTasksThatAreNoLegalSetByName) {
   EXPECT_EQ(system.receipts(), Json::array());
 }
 
+/// Also if the manager is killed after the answer to the person, and over the death of the rtpu.
+TEST(SteppedRequests, LeaveATaskOffThatAPersonTurnedOff) {
+  SteppedSubsystem system(kTasksAsk);
+  ASSERT_TRUE(system.until_started());
+  ASSERT_TRUE(system.call("signal", {{"signal", "off"}, {"tasks", {"two"}}}).is_good());
+  system.kill_manager();
+  system.start_manager();
+  system.die("second");
+  ASSERT_TRUE(system.until_on("asker"));
+  system.set("wish", 2);
+  const std::string refusal =
+      "switch to 'high', asked for by task asker, is refused: an operator turned task 'two' OFF\n";
+  ASSERT_TRUE(system.until([&] { return system.events("switch") == refusal; })) << system.events("switch");
+  EXPECT_EQ(system.on(), kLow);
+  EXPECT_EQ(system.result("switch", {{"configuration", "high"}})["end"], "done");
+  system.set("wish", 1);
+  ASSERT_TRUE(system.until([&] { return system.on() == kLow; })) << system.on();
+  system.set("wish", 2);
+  EXPECT_TRUE(system.until([&] { return system.on() == kHigh; })) << "a person has turned it ON since";
+  EXPECT_EQ(system.result("switch", {{"off", {"two"}}, {"on", {"one"}}})["end"], "done");
+  ASSERT_TRUE(system.until([&] { return system.events("switch").find(refusal) != std::string::npos; }));
+  system.run(milliseconds(300));
+  EXPECT_EQ(system.on(), kLow);
+}
+
 TEST(SteppedRequests, WaitForSafeWhenAndNameTheVariableThatDelays) {
   SteppedSubsystem system(kTasksAsk);
   ASSERT_TRUE(system.until_started());

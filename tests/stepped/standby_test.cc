@@ -66,6 +66,27 @@ TEST_F(SteppedStandby, TakesOverFromAProcessThatDiesWithoutFlagAndWithoutALostCy
   EXPECT_EQ(system.result("status")["configuration"], "run");
 }
 
+/// The task asks in each cycle for the configuration of the primary, then for another one that has it.
+TEST_F(SteppedStandby, ARequestOfATaskDoesNotGoBackToThePrimary) {
+  SteppedSubsystem system(with("configurations: {run: [reference, main, user]}", R"(  asker:
+    {component: t_asker, rtpu: second, rate: 100 Hz, constants: {first: run, second: less}}
+operator: {wish: 1}
+configurations: {run: [reference, main, user, asker], less: [reference, main, asker]}
+start: run)"));
+  ASSERT_TRUE(system.until_started());
+  system.die("first");
+  ASSERT_TRUE(system.until_on("spare"));
+  ASSERT_TRUE(system.until([&] { return system.state("main") == State::kOff; }));
+  system.run(milliseconds(500));
+  EXPECT_EQ(system.on(), "reference spare user asker ");
+  EXPECT_EQ(system.receipts().size(), 1u) << "of the takeover";
+  system.set("wish", 2);
+  ASSERT_TRUE(system.until([&] { return system.on() == "reference spare asker "; })) << system.on();
+  ASSERT_TRUE(system.until([&] { return system.receipts().size() == 2; }));
+  EXPECT_EQ(system.receipts().elements()[1]["from"], "run with spare for main");
+  EXPECT_EQ(system.result("switch", {{"configuration", "run"}})["end"], "done") << "a person may";
+}
+
 /// The rtpu of the primary and the manager die together, `later` steps of 100 us apart.
 TEST_F(SteppedStandby, TakesOverWhileTheManagerIsDead) {
   for (int later = 0; later < 10; ++later) {

@@ -2,10 +2,14 @@
 // Asks for receipts, or reads them from their file, and makes a table of them.
 #include "chimera/cli/live/receipts_command.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "chimera/base/hosted/wording.h"
 #include "chimera/cli/print/answer_text.h"
@@ -22,17 +26,16 @@ namespace {
 /// How many receipts are asked for.
 std::uint64_t last_of(const Call& call) { return call.has("--last") ? std::stoull(call.value("--last")) : 20; }
 
-/// The only subsystem with receipts; "" where there is none, or there are several.
-std::string only_one() {
-  std::string only;
+/// The subsystems with receipts, in order.
+std::vector<std::string> all_with_receipts() {
+  std::vector<std::string> all;
   std::error_code error;
   for (std::filesystem::directory_iterator at(control::state_folder(), error), end; !error && at != end;
-       at.increment(error)) {
-    if (!std::filesystem::exists(control::ReceiptFile(at->path().string()).path(), error)) continue;
-    if (!only.empty()) return "";
-    only = at->path().filename().string();
-  }
-  return only;
+       at.increment(error))
+    if (std::filesystem::exists(control::ReceiptFile(at->path().string()).path(), error))
+      all.push_back(at->path().filename().string());
+  std::ranges::sort(all);
+  return all;
 }
 
 std::string asked_at(const Json& receipt) {
@@ -103,7 +106,14 @@ CommandResult filed_receipts(const Call& call, const std::string& subsystem, con
   if (why.code != ErrorCode::kNotFound) return refused(why, call.json);  // it may run
   const char* chosen = std::getenv("CHIMERA_SUBSYSTEM");
   const std::string asked = !subsystem.empty() ? subsystem : chosen != nullptr ? chosen : "";
-  const std::string name = asked.empty() ? only_one() : asked;
+  const std::vector<std::string> all = asked.empty() ? all_with_receipts() : std::vector{asked};
+  if (all.size() > 1) {
+    const std::string others = join(std::span(all).subspan(1), ", ");
+    const std::string text = std::string(why.message.view()) + "; receipts of earlier runs: `chimera receipts " +
+                             "--subsystem " + all[0] + "`, also " + others;
+    return refused({why.code, std::string_view(text), why.where}, call.json);
+  }
+  const std::string name = all.empty() ? "" : all[0];
   if (name.empty() || name.find('/') != std::string::npos) return refused(why, call.json);
   const control::ReceiptFile file(control::state_folder_of(name));
   const std::vector<std::string> lines = file.last(last_of(call));

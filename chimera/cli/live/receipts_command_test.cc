@@ -107,6 +107,8 @@ TEST_F(ReceiptsCommandTest, ComeFromTheFileOfASubsystemThatDoesNotRun) {
   EXPECT_EQ(answer["receipts"][0]["number"], 2);
   file("arm", 1);
   EXPECT_EQ(filed({"receipts"}).code, kRefused) << "which one?";
+  EXPECT_EQ(filed({"receipts"}).err,
+            "no subsystem runs; receipts of earlier runs: `chimera receipts --subsystem arm`, also drive\n");
   EXPECT_EQ(filed({"receipts"}, "arm").code, kOk);
   EXPECT_EQ(filed({"receipts"}, "leg").err, "no subsystem runs\n");
   EXPECT_EQ(filed({"receipts"}, "arm", ErrorCode::kRefused).code, kRefused) << "it may run";

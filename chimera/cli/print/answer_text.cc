@@ -13,6 +13,7 @@
 #include "chimera/cli/print/status_text.h"
 #include "chimera/text/json.h"
 #include "chimera/text/nearest.h"
+#include "chimera/text/time_text.h"
 
 namespace chimera::cli {
 namespace {
@@ -135,7 +136,7 @@ std::string drill_text(const Json& answer) {
   for (const Json& task : tasks) {
     const std::string verdict = text_of(task, "verdict");
     text += text_of(task, "task") + ": ";
-    if (verdict == "safe") text += "safe " + figure(Json(number_of(task, "after_ns") / 1e6)) + " ms after the flag\n";
+    if (verdict == "safe") text += "safe " + time_text(Nanoseconds{whole_of(task, "after_ns")}) + " after the flag\n";
     else if (verdict == "cannot-tell") text += "cannot tell: its component has no safe_state output\n";
     else if (verdict == "left") text += "left service before it was safe\n";
     else text += "not safe\n";
@@ -148,10 +149,10 @@ std::string drill_text(const Json& answer) {
       text += "and the guard has not told what it wrote\n";
     else if (written + lost == 0) text += "and it had no safe frame\n";
     else text += std::to_string(written) + " of " + std::to_string(written + lost) + " safe frames written";
-    if (written > 0) text += " " + figure(Json(number_of(killed, "after_ns") / 1e6)) + " ms after the kill";
+    if (written > 0) text += " " + time_text(Nanoseconds{whole_of(killed, "after_ns")}) + " after the kill";
     if (written + lost > 0) text += "\n";
   }
-  return text + "flag up for " + figure(Json(number_of(answer, "flag_ns") / 1e6)) + " ms\n";
+  return text + "flag up for " + time_text(Nanoseconds{whole_of(answer, "flag_ns")}) + "\n";
 }
 
 std::string plan_text(const Json& answer) {

@@ -49,12 +49,12 @@ TEST(AnswerText, ADrillPrintsWhetherEachTaskIsSafe) {
             "flag up for 31 ms\n");
   EXPECT_EQ(drill_text(Json::parse(R"({"flag_ns": 1000000, "tasks": [{"task": "a", "verdict": "waiting"}],
               "killed": {"rtpu": "servo", "is_told": true, "written": 1, "lost": 1, "after_ns": 400000}})")),
-            "a: not safe\nservo: killed, 1 of 2 safe frames written 0.4 ms after the kill\nflag up for 1 ms\n");
+            "a: not safe\nservo: killed, 1 of 2 safe frames written 400 us after the kill\nflag up for 1 ms\n");
   EXPECT_EQ(drill_text(Json::parse(R"({"flag_ns": 1000000, "tasks": [{"task": "a", "verdict": "waiting"}],
               "killed": {"rtpu": "servo", "is_told": true, "written": 0, "lost": 0, "after_ns": null}})")),
             "a: not safe\nservo: killed, and it had no safe frame\nflag up for 1 ms\n");
   EXPECT_EQ(drill_text(Json::parse(R"({"safe": false, "flag_ns": 0, "tasks": []})")),
-            "no task that is ON has hardware that could move\nflag up for 0 ms\n");
+            "no task that is ON has hardware that could move\nflag up for 0 s\n");
 }
 
 TEST(AnswerText, SaveSpeaksTheWordsOfADescription) {

@@ -97,7 +97,8 @@ std::vector<const Task*> Application::all_tasks() const {
 
 std::vector<State> Application::states() const {
   std::vector<State> states;
-  for (const Task* task : all_tasks()) states.push_back(peers_ == nullptr ? task->state : peers_->state(task->id));
+  for (const Task* task : all_tasks())
+    states.push_back(peers_ == nullptr ? task->shown_state() : peers_->state(task->id));
   return states;
 }
 

@@ -32,6 +32,7 @@ std::string signal_line(const RefusedSignal& refused, const Task& task, Nanoseco
   if (refused.why == Refusal::kIllegalSet) why = "the tasks that would be ON are not a legal set";
   if (refused.why == Refusal::kNotYet) why = "it is not ready yet; ask again";
   if (refused.why == Refusal::kRival) why = "another task that is created has its resource";
+  if (refused.why == Refusal::kKeptOff) why = "a task sent it, and an operator turned " + name + " OFF";
   const std::string signal = is_ring ? "ring" : signal_name(refused.signal);
   return refused_line(refused.at - origin, signal + " " + name, why);
 }

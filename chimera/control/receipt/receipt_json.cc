@@ -98,11 +98,11 @@ std::string receipt_json(const SwitchReceipt& receipt, const ApplicationSpec& sp
                          const ReceiptFrame& frame) {
   if (receipt.end == SwitchEnd::kNothingToDo) return {};
   const bool is_done = receipt.end == SwitchEnd::kDone;
-  const bool has_before = receipt.before != kNoSet, has_wall = frame.wall_ns >= 0;
+  const bool has_wall = frame.wall_ns >= 0;
   const std::uint32_t tries = receipt.end == SwitchEnd::kRefused ? 0 : receipt.tries;
   return "{\"number\": " + std::to_string(receipt.number) + ", \"origin_ns\": " +
          (has_wall ? std::to_string(origin.count) : "null") + ", \"from\": " +
-         json_name(has_before, has_before ? spec.sets[receipt.before].name : "") + ", \"to\": " +
+         json_name(receipt.before != kNoSet, from_text(receipt, spec)) + ", \"to\": " +
          json_name(receipt.after != kNoSet, receipt.after != kNoSet ? spec.sets[receipt.after].name : "") + ", " +
          json_way(receipt, spec) + ", \"asked_by\": " + json_asked_by(receipt, spec, frame.asked_by) +
          ", \"end\": \"" +

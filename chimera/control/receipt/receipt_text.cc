@@ -105,7 +105,7 @@ std::string receipt_text(const SwitchReceipt& receipt, const ApplicationSpec& sp
   if (receipt.end == SwitchEnd::kNothingToDo)
     return "switch" + when + ": " + (receipt.after == kNoSet ? "these tasks are" : to + " is") +
            " in force, nothing to do\n";
-  const std::string from = receipt.before == kNoSet ? "" : "from " + in_quotes(spec.sets[receipt.before].name) + " ";
+  const std::string from = receipt.before == kNoSet ? "" : "from " + in_quotes(from_text(receipt, spec)) + " ";
   const SwitchRequest request{receipt.after, receipt.cause, receipt.by};
   const std::string by = receipt.cause == SwitchCause::kScript ? "" : "by " + asked_by(request, spec) + " ";
   const bool is_slow = receipt.way.slow != 0 && receipt.end != SwitchEnd::kRefused;

@@ -29,7 +29,7 @@ std::string not_schedulable(const SwitchReceipt& receipt, const ApplicationSpec&
   const TaskId late = receipt.way.deadline.task;
   if (!late.is_valid()) return reason_word(NoSwitch::kNotSchedulable);
   const TaskSpec& task = spec.tasks[late.index];
-  const std::string from = receipt.before == kNoSet ? "what is ON" : in_quotes(spec.sets[receipt.before].name);
+  const std::string from = receipt.before == kNoSet ? "what is ON" : in_quotes(from_text(receipt, spec));
   const Nanoseconds takes = receipt.way.deadline.takes;
   return "the transition from " + from + " to " + set_text(receipt.after, spec) +
          " is not schedulable on CPU " + std::to_string(spec.rtpus[task.rtpu.index].cpu) + ": a cycle of task " +
@@ -64,6 +64,26 @@ std::string absent_text(const SwitchWay& way, const ApplicationSpec& spec) {
 
 std::string set_text(std::uint32_t set, const ApplicationSpec& spec) {
   return set == kNoSet ? "other tasks" : in_quotes(spec.sets[set].name);
+}
+
+std::string set_with_standbys(std::uint32_t set, const ApplicationSpec& spec,
+                              const std::function<bool(TaskId)>& is_on) {
+  std::string name(spec.sets[set].name);
+  const char* joint = " with ";
+  for (const TaskId task : spec.sets[set].order) {
+    if (is_on(task)) continue;
+    TaskId by(0u);
+    while (by.index < spec.tasks.size() && !(spec.stand_in(task, by) && is_on(by))) ++by.index;
+    if (by.index == spec.tasks.size()) continue;
+    name += joint + std::string(spec.tasks[by.index].name) + " for " + std::string(spec.tasks[task.index].name);
+    joint = " and ";
+  }
+  return name;
+}
+
+std::string from_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
+  if (receipt.before == kNoSet) return "";
+  return set_with_standbys(receipt.before, spec, [&receipt](TaskId task) { return receipt.on_before.has(task); });
 }
 
 std::vector<std::string> slow_words(const SwitchWay& way) {
@@ -110,6 +130,7 @@ const char* reason_word(NoSwitch why) noexcept {
     case NoSwitch::kNothingToDo: return "nothing-to-do";
     case NoSwitch::kInError: return "in-error";
     case NoSwitch::kNotCreated: return "not-created";
+    case NoSwitch::kKeptOff: return "turned-off";
     case NoSwitch::kUnderWay: return "under-way";
     case NoSwitch::kNotSchedulable: return "not-schedulable";
     case NoSwitch::kOnFailed: return "on-failed";
@@ -139,6 +160,7 @@ std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spe
   switch (receipt.why) {
     case NoSwitch::kInError: return "task " + task + " is in ERROR: clear it first";
     case NoSwitch::kNotCreated: return "task " + task + " is not there: spawn it first";
+    case NoSwitch::kKeptOff: return "an operator turned task " + task + " OFF";
     case NoSwitch::kUnderWay:
       return receipt.said.view().empty() ? "another switch is under way" : std::string(receipt.said.view());
     case NoSwitch::kOnFailed: return "on of task " + task + ": " + std::string(receipt.said.view());

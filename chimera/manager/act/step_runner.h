@@ -38,6 +38,8 @@ class StepRunner {
   void look(Nanoseconds at) {
     if (next_due() <= at) step(subsystem::Tick{});
   }
+  /// A person switches; call it before the switch is asked for.
+  void note_switch(const TaskBits& on, const TaskBits& off) { step(subsystem::PersonSwitches{on, off}); }
   /// Requests a signal; calls `answered` when it is over, maybe at once.
   void command(Signal signal, std::vector<TaskId> tasks, Answered answered);
 

@@ -7,6 +7,7 @@
 
 #include "chimera/analysis/schedule_report.h"
 #include "chimera/analysis/task_profile.h"
+#include "chimera/control/receipt/switch_reason.h"
 #include "chimera/manager/state/cause.h"
 #include "chimera/manager/watch/face_watch.h"
 #include "chimera/text/json.h"
@@ -220,17 +221,7 @@ std::string configuration_name(const ManagerState& state) {
   for (std::size_t t = 0; t < on.size(); ++t) on[t] = state.state(TaskId(t)) == State::kOn;
   const auto is_on = [&](TaskId task) { return on[task.index]; };
   const std::uint32_t set = set_in_force(spec, is_on);
-  if (set == kNoSet) return "";
-  std::string name(spec.sets[set].name);
-  const char* joint = " with ";
-  for (const TaskId task : spec.sets[set].order) {
-    if (is_on(task)) continue;
-    TaskId by(0u);
-    while (!(spec.stand_in(task, by) && is_on(by))) ++by.index;  // there is one: the set is in force
-    name += joint + state.name(by) + " for " + state.name(task);
-    joint = " and ";
-  }
-  return name;
+  return set == kNoSet ? "" : control::set_with_standbys(set, spec, is_on);
 }
 
 Json status_json(const ManagerState& state, Nanoseconds at) {

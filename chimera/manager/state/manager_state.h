@@ -75,6 +75,11 @@ struct ManagerState {
   }
   /// True if the keeper has begun to end the run. Acquire: pairs with the keeper's store of KeeperPage::ending.
   bool is_ending() const noexcept { return keeper.ending.load(std::memory_order_acquire) != 0; }
+  /// From where the seconds of texts count, as in `run`: the start, when all tasks were ON; before it, the origin.
+  Nanoseconds zero() const noexcept {
+    const std::int64_t started = own.block().memory().started_at;
+    return started != 0 ? Nanoseconds{started} : keeper.origin;
+  }
   std::string name(TaskId task) const { return std::string(spec().tasks[task.index].name); }
   std::string name(RtpuId rtpu) const { return std::string(spec().rtpus[rtpu.index].name); }
 

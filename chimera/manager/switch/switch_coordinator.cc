@@ -164,10 +164,11 @@ bool SwitchCoordinator::is_free() const noexcept {
 }
 
 /// Judges the request. If the switch may begin, `end` is kDone, because no error has occurred yet.
-void SwitchCoordinator::assess(const TaskBits& target, SwitchOutcome& outcome) {
+void SwitchCoordinator::assess(TaskBits& target, SwitchOutcome& outcome) {
   SwitchReceipt& receipt = outcome.receipt;
-  const PlanAnswer answer = orders_.judge(target);
+  const PlanAnswer answer = orders_.judge(target, receipt.cause);
   receipt.before = orders_.set_in_force();
+  receipt.on_before = orders_.on();
   receipt.after = set_of(state_.spec(), target);
   receipt.why = answer.why;
   receipt.task = answer.task;
@@ -190,10 +191,11 @@ void SwitchCoordinator::assess(const TaskBits& target, SwitchOutcome& outcome) {
   receipt.end = may_begin ? SwitchEnd::kDone : is_in_force ? SwitchEnd::kNothingToDo : SwitchEnd::kRefused;
   const std::string task = receipt.task.is_valid() ? state_.name(receipt.task) : "";
   if (receipt.why == NoSwitch::kInError) outcome.remedy = "`chimera clear " + task + "`";
+  if (receipt.why == NoSwitch::kKeptOff) outcome.remedy = "`chimera on " + task + "`";
   if (receipt.why == NoSwitch::kNotCreated) outcome.remedy = "`chimera spawn " + task + "`";
 }
 
-ForeseenSwitch SwitchCoordinator::foresee(const TaskBits& target) {
+ForeseenSwitch SwitchCoordinator::foresee(TaskBits target) {
   SwitchOutcome outcome;
   assess(target, outcome);
   const bool has_plan = outcome.receipt.end == SwitchEnd::kDone;
@@ -246,14 +248,14 @@ Nanoseconds SwitchCoordinator::expected() {
   return (slow & kSlowForConstants) != 0 ? sum + flag_lead(state_.spec(), orders_.on()) : sum;
 }
 
-void SwitchCoordinator::ask(const SwitchRequest& request, const TaskBits& target, Asker asked_by, Nanoseconds wait,
+void SwitchCoordinator::ask(const SwitchRequest& request, TaskBits target, Asker asked_by, Nanoseconds wait,
                             Nanoseconds now, Switched switched) {
   look(now);
   auto outcome = std::make_shared<SwitchOutcome>();
-  assess(target, *outcome);
   outcome->receipt.asked = now;
   outcome->receipt.cause = request.cause;
   outcome->receipt.by = request.by;
+  assess(target, *outcome);
   BegunSwitch begun;
   begun.number = journal_.next();
   begun.cause = request.cause;
@@ -332,6 +334,10 @@ std::shared_ptr<SwitchOutcome> SwitchCoordinator::collect(const BegunSwitch& ove
   outcome->tasks.resize(receipt.tasks.size());
   outcome->variables.resize(receipt.variables.size());
   outcome->reinitialised.resize(receipt.reinitialised.size());
+  if (state_.is_ending() && receipt.why == NoSwitch::kDisturbed) {  // every task goes OFF at the end
+    receipt.why = NoSwitch::kRunEnded;
+    receipt.task = {};
+  }
   if (over.cancelled_by.role != control::Role::kNone && receipt.end == SwitchEnd::kAborted) {
     receipt.why = NoSwitch::kCancelled;
     receipt.said.assign(over.cancelled_by.text());
@@ -350,7 +356,7 @@ void SwitchCoordinator::file(std::shared_ptr<SwitchOutcome> outcome, const Begun
 
 void SwitchCoordinator::tell(const SwitchOutcome& outcome, Nanoseconds now) {
   const ApplicationSpec& spec = state_.spec();
-  const std::string text = control::receipt_text(outcome.receipt, spec, state_.keeper.origin);
+  const std::string text = control::receipt_text(outcome.receipt, spec, state_.zero());
   state_.tell("switch", TaskId{}, RtpuId{}, text.substr(0, text.find('\n')), now);
   for (const std::string& line : control::bump_lines(outcome.receipt, spec))
     state_.tell("bump", TaskId{}, RtpuId{}, line, now);

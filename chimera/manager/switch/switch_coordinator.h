@@ -62,10 +62,10 @@ class SwitchCoordinator {
     ask(request, tasks_of(state_.spec(), request.set), asked_by, wait, now, std::move(switched));
   }
   /// Requests a switch to any legal set of tasks; request.set is its number or kNoSet.
-  void ask(const SwitchRequest& request, const TaskBits& target, Asker asked_by, Nanoseconds wait, Nanoseconds now,
+  void ask(const SwitchRequest& request, TaskBits target, Asker asked_by, Nanoseconds wait, Nanoseconds now,
            Switched switched);
   /// The result that ask() would have. Changes nothing.
-  ForeseenSwitch foresee(const TaskBits& target);
+  ForeseenSwitch foresee(TaskBits target);
   /// Aborts a switch that is under way and not committed. `switched` gets the same receipt as the requester. False if
   /// there is none or it is too late.
   bool cancel(Asker cancelled_by, Switched switched);
@@ -92,7 +92,7 @@ class SwitchCoordinator {
 
   SwitchAgreement agreement() const noexcept { return orders_.agreement(); }
   void take_over();
-  void assess(const TaskBits& target, SwitchOutcome& outcome);
+  void assess(TaskBits& target, SwitchOutcome& outcome);
   Nanoseconds method_time(TaskId task, Method method) const;
   Nanoseconds expected();
   void find_late_off(ForeseenSwitch& foreseen) const;

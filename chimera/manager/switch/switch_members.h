@@ -18,6 +18,7 @@ class ShownMembers final : public SwitchMembers, private MadeConstants {
   SwitchPage& page() noexcept override { return state_.page.switching; }
   std::uint16_t living() const noexcept override;
   TaskStatus status(TaskId task) const noexcept override;
+  bool is_kept_off(TaskId task) const noexcept override { return state_.logic.is_kept_off(task); }
   Profile profile(TaskId task) const noexcept override { return state_.profile(task); }
   bool needs_gaps(TaskId task) const noexcept override;
   const MadeConstants& constants() noexcept override { return *this; }

@@ -80,6 +80,8 @@ void TakeoverReceipts::file(const Takeover& takeover, Nanoseconds now) {
   write_receipt(takeover, receipt);
   if (receipt.ended == kNever) receipt.ended = std::max(takeover.lost, takeover.at == kNever ? now : takeover.at);
   receipt.number = journal_.next();
+  const std::string text = control::receipt_text(receipt, spec, state_.zero());
+  state_.tell("switch", TaskId{}, RtpuId{}, text.substr(0, text.find('\n')), now);
   for (const std::string& line : control::bump_lines(receipt, spec))
     state_.tell("bump", TaskId{}, RtpuId{}, line, now);
   archive_.add(receipt.number,

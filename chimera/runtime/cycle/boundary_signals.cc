@@ -62,6 +62,7 @@ void BoundarySignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
     return;
   }
   Task& task = set_.tasks()[act.task.index];
+  if (orders_ != nullptr) orders_->note_word(act.task, act.signal);
   if (act.signal == Signal::kWakeup) return ring(task, now);
   if (may_touch(act.task)) return carry_out(task, act.signal, now);
   // A task with a job under way takes the signal like one that it sent itself: after the job and its error handling.
@@ -77,7 +78,12 @@ void BoundarySignals::carry_out_pending(Nanoseconds now) noexcept {
   }
 }
 
+// The script's own `on` has ended what kept the task OFF, so the one that is refused was sent by a task.
 void BoundarySignals::carry_out(Task& task, Signal signal, Nanoseconds now) noexcept {
+  if (signal == Signal::kOn && orders_ != nullptr && orders_->is_kept_off(task.id)) {
+    (void)refused_.try_push({now, task.id, signal, Refusal::kKeptOff, task.state});
+    return tap_.record(TapKind::kSignal, now, task.id, static_cast<std::uint64_t>(signal), 0);
+  }
   const SignalReport report = this->signal({&task.id, 1}, signal, now);
   if (!report.is_accepted) (void)refused_.try_push({now, task.id, signal, report.why, report.before});
   if (guest_ != nullptr) guest_->told(report, now);

@@ -38,6 +38,7 @@ struct TaskBits {
 
   constexpr bool has(TaskId task) const noexcept { return (words[task.index / 64] >> task.index % 64 & 1u) != 0; }
   constexpr void add(TaskId task) noexcept { words[task.index / 64] |= std::uint64_t{1} << task.index % 64; }
+  constexpr void remove(TaskId task) noexcept { words[task.index / 64] &= ~(std::uint64_t{1} << task.index % 64); }
   constexpr bool operator==(const TaskBits&) const noexcept = default;
 };
 

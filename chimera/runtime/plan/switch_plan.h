@@ -58,6 +58,7 @@ enum class NoSwitch : std::uint8_t {
   kNothingToDo,  ///< exactly the tasks of the target are ON
   kInError,      ///< `task`, of the target, is in ERROR: to be cleared first
   kNotCreated,   ///< `task`, of the target, is NOT-CREATED and not only for a rival, or its `init` or `kill` runs
+  kKeptOff,      ///< a task or reaction asked, and an operator has turned `task`, of the target, OFF
   kUnderWay,     ///< another switch is under way
   kNotSchedulable,  ///< `task` might miss a deadline if leaving and arriving tasks met: it is slow for that
 
@@ -85,7 +86,7 @@ constexpr bool is_of_another(NoSwitch why) noexcept { return why == NoSwitch::kL
 /// Answer to a request for a plan: the plan was made, or the reason why not.
 struct PlanAnswer {
   NoSwitch why = NoSwitch::kNone;
-  TaskId task;  ///< of kInError and kNotCreated: the first in data-flow order; of kNotSchedulable: one that might miss
+  TaskId task;  ///< of kInError, kNotCreated, kKeptOff: the first by data flow; of kNotSchedulable: one that might miss
   Nanoseconds takes = kNever;  ///< of kNotSchedulable: a cycle of `task` at most; kNever: no bound was found
 
   explicit operator bool() const noexcept { return why == NoSwitch::kNone; }

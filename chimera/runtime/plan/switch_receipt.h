@@ -86,6 +86,7 @@ struct SwitchReceipt : SwitchResult {
 
   std::uint32_t number = 0;
   std::uint32_t before = kNoSet, after = kNoSet;  ///< in ApplicationSpec::sets
+  TaskBits on_before;  ///< of a switch: ON at the request
   SwitchCause cause = SwitchCause::kScript;
   TaskId by;  ///< as SwitchRequest::by
   TaskId in_place_of;      ///< of kStandby: the task that failed
@@ -99,9 +100,10 @@ struct SwitchReceipt : SwitchResult {
   std::span<TaskId> reinitialised;  ///< in this order
 };
 
-/// Fills in the request for a switch; set `before` is in force.
+/// Fills in the request for a switch; the tasks `on` are ON, and the set `before` is in force.
 inline void note_request(SwitchReceipt& receipt, const SwitchRequest& request, std::uint32_t before,
-                         const SwitchWay& way, Nanoseconds asked) noexcept {
+                         const TaskBits& on, const SwitchWay& way, Nanoseconds asked) noexcept {
+  receipt.on_before = on;
   receipt.asked = asked;
   receipt.after = request.set;
   receipt.cause = request.cause;

@@ -96,6 +96,11 @@ void LocalSwitches::Member::wish(const SwitchRequest& request, bool changes_noth
   if (is_new_wish(request.is_for(last), changes_nothing, static_cast<bool>(last))) last = request;
 }
 
+void LocalSwitches::note_word(TaskId task, Signal signal) noexcept {
+  if (signal == Signal::kOff || signal == Signal::kKill) kept_off_.add(task);
+  if (signal == Signal::kOn) kept_off_.remove(task);
+}
+
 // Requires: tasks were looked at. False: the lists of the request would lead to no legal set.
 bool LocalSwitches::find_target(SwitchRequest& request, Nanoseconds now, TaskBits& target) noexcept {
   if (!request.lists.are_there()) {
@@ -113,14 +118,21 @@ void LocalSwitches::ask(SwitchRequest request, Nanoseconds now) noexcept {
   orders_.look();
   TaskBits target;
   if (!find_target(request, now, target)) return;
-  const PlanAnswer answer = is_under_way() ? PlanAnswer{NoSwitch::kUnderWay, {}} : orders_.judge(target);
+  if (request.cause == SwitchCause::kScript)
+    for (const TaskId id : spec_->on_order) {
+      if (target.has(id)) kept_off_.remove(id);
+      if (request.lists.minus.has(id)) kept_off_.add(id);
+    }
+  const PlanAnswer answer = is_under_way() ? PlanAnswer{NoSwitch::kUnderWay, {}} : orders_.judge(target, request.cause);
+  if (answer) request.set = orders_.plan().after;
   const bool is_nothing = answer.why == NoSwitch::kNothingToDo;
   if (is_nothing && request.cause != SwitchCause::kScript) return;
   const std::uint32_t number = is_nothing ? 0 : receipts_.next_number();
   if (is_under_way() && !receipts_.has_room()) return receipts_.leave_out();  // the last place is that of the present
   SwitchReceipt& receipt = receipts_.add();
   receipt.number = number;
-  note_request(receipt, request, orders_.set_in_force(), answer ? orders_.way() : SwitchWay(), now);
+  note_request(receipt, request, orders_.set_in_force(), orders_.on(),
+               answer ? orders_.way() : SwitchWay(), now);
   if (!answer) return refuse(receipt, answer);
   present_ = {};
   present_.number = number;

@@ -34,6 +34,9 @@ class LocalSwitches : private SwitchMembers {
   /// The context takes part in nothing any more.
   void die(std::uint32_t context) noexcept;
 
+  /// The script, which stands for a person, sends the signal: `off` and `kill` keep the task OFF until its `on`.
+  void note_word(TaskId task, Signal signal) noexcept;
+  bool is_kept_off(TaskId task) const noexcept override { return kept_off_.has(task); }
   /// Judges the request and orders the switch; its receipt is in receipts(). Lists that lead to no legal set have no
   /// effect.
   void ask(SwitchRequest request, Nanoseconds now) noexcept;
@@ -96,6 +99,7 @@ class LocalSwitches : private SwitchMembers {
   OrderedSwitch present_;
   SwitchReceipt* receipt_ = nullptr;  // of the switch that is under way
   SwitchRequest wish_;                // of the task that asked last: waits for the end of the switch that is under way
+  TaskBits kept_off_;                 // by the script
   Nanoseconds latest_;                // instant of the last part
 };
 

@@ -31,11 +31,35 @@ void SwitchOrders::look() noexcept {
   for (std::size_t t = 0; t < statuses_.size(); ++t) statuses_[t] = members_.status(TaskId(t));
 }
 
-PlanAnswer SwitchOrders::judge(const TaskBits& target) noexcept {
+PlanAnswer SwitchOrders::judge(TaskBits& target, SwitchCause cause) noexcept {
   look();
+  way_ = {};
+  if (cause != SwitchCause::kScript) {
+    keep_standbys(target);
+    if (const TaskId kept = first_kept_off(target); kept.is_valid()) return {NoSwitch::kKeptOff, kept};
+  }
   const PlanAnswer answer = planner_.plan(target, statuses_, plan_);
   way_ = answer ? ways_.judge(plan_, statuses_, constants_in_force(), members_.constants(), *this) : SwitchWay();
   return answer;
+}
+
+// The tasks that are ON are no set of the description: where one stands in for a task of the target, it took over.
+void SwitchOrders::keep_standbys(TaskBits& target) const noexcept {
+  if (set_of(*spec_, on()) != kNoSet) return;
+  for (const StandbySpec& each : spec_->standbys)
+    for (const TaskId by : {each.standby, each.primary})
+      for (std::size_t t = 0; t < statuses_.size(); ++t) {
+        if (!target.has(TaskId(t)) || is_on(TaskId(t)) || !is_on(by) || target.has(by)) continue;
+        if (!spec_->stand_in(TaskId(t), by)) continue;
+        target.remove(TaskId(t));
+        target.add(by);
+      }
+}
+
+TaskId SwitchOrders::first_kept_off(const TaskBits& target) const noexcept {
+  for (const TaskId id : spec_->on_order)
+    if (target.has(id) && !is_on(id) && members_.is_kept_off(id)) return id;
+  return {};
 }
 
 Nanoseconds SwitchOrders::for_on(TaskId task) const noexcept {
@@ -108,6 +132,7 @@ void SwitchOrders::collect(const OrderedSwitch& over, NoSwitch otherwise, Nanose
   receipt = empty;
   receipt.number = over.number;
   receipt.before = over.before;
+  receipt.on_before = over.order.on;
   receipt.after = over.order.after;
   receipt.cause = over.cause;
   receipt.by = over.by;

@@ -35,6 +35,8 @@ class SwitchMembers {
   /// Bit c: context c lives, and takes part in the next switch.
   virtual std::uint16_t living() const noexcept = 0;
   virtual TaskStatus status(TaskId task) const noexcept = 0;
+  /// A person turned the task OFF, and no person has turned it ON since.
+  virtual bool is_kept_off(TaskId task) const noexcept = 0;
   /// Measurements of the task by its context; empty if they are not known.
   virtual Profile profile(TaskId task) const noexcept = 0;
   /// Methods of the task wait for an idle processor: jobs of its context do not preempt each other.
@@ -81,8 +83,10 @@ class SwitchOrders : private NeededGaps {
   SwitchAgreement agreement() const noexcept { return {members_.page(), origin_}; }
   /// Notes where the tasks stand now.
   void look() noexcept;
-  /// Looks, and makes the plan and finds the way that leads to these tasks.
-  PlanAnswer judge(const TaskBits& target) noexcept;
+  /// Looks, and makes the plan and finds the way that leads to these tasks. A person's word and a takeover hold
+  /// against a request of a task or reaction: a task that is kept OFF is refused, and in `target` a task that a standby
+  /// has replaced becomes that standby.
+  PlanAnswer judge(TaskBits& target, SwitchCause cause) noexcept;
 
   // Results of the last look() or judge().
   bool is_on(TaskId task) const noexcept { return statuses_[task.index].state == State::kOn; }
@@ -115,6 +119,8 @@ class SwitchOrders : private NeededGaps {
 
  private:
   Nanoseconds for_on(TaskId task) const noexcept override;
+  void keep_standbys(TaskBits& target) const noexcept;
+  TaskId first_kept_off(const TaskBits& target) const noexcept;
   bool is_of(TaskId task, std::uint32_t context) const noexcept;
   void make_order(OrderedSwitch& next, const TaskBits& target, Nanoseconds until) const noexcept;
   void add_part(const SwitchReceipt& part, std::uint32_t context, Nanoseconds now, SwitchReceipt& to) const noexcept;

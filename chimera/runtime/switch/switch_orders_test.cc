@@ -31,6 +31,7 @@ struct Contexts final : SwitchMembers, MadeConstants {
   SwitchPage& page() noexcept override { return words; }
   std::uint16_t living() const noexcept override { return 0b11; }
   TaskStatus status(TaskId task) const noexcept override { return {states[task.index], false}; }
+  bool is_kept_off(TaskId task) const noexcept override { return task == kept_off; }
   Profile profile(TaskId task) const noexcept override { return profiles[task.index]; }
   bool needs_gaps(TaskId) const noexcept override { return is_executive; }
   const MadeConstants& constants() noexcept override { return *this; }
@@ -48,6 +49,7 @@ struct Contexts final : SwitchMembers, MadeConstants {
   std::uint16_t over[kMaxContexts] = {};
   SwitchReceipt parts[kMaxContexts];
   bool is_executive = true;
+  TaskId kept_off;
   int rung = 0;
 };
 
@@ -65,9 +67,14 @@ struct SwitchOrdersTest : ::testing::Test {
     variables.resize(app.spec.variables.size());
     reinitialised.resize(3);
   }
+  /// Judges a request for the second set.
+  PlanAnswer judge(SwitchCause cause = SwitchCause::kScript) {
+    TaskBits target = tasks_of(app.spec, 1);
+    return orders.judge(target, cause);
+  }
   /// To the second set.
   void ask() {
-    ASSERT_TRUE(orders.judge(tasks_of(app.spec, 1)));
+    ASSERT_TRUE(judge());
     present.number = 1;
     present.asked = kAsked;
     orders.make(present, tasks_of(app.spec, 1), kAsked + kSwitchPatience);
@@ -124,6 +131,39 @@ TEST_F(SwitchOrdersTest, OrderNamesTasksMembersDeadlineAndLead) {
   EXPECT_EQ(contexts.rung, 1);
 }
 
+TEST_F(SwitchOrdersTest, ATaskAndAReactionCannotTurnOnWhatAPersonTurnedOff) {
+  contexts.kept_off = kTwo;
+  for (const SwitchCause cause :
+       {SwitchCause::kRequest, SwitchCause::kMiss, SwitchCause::kOverrun, SwitchCause::kFault}) {
+    const PlanAnswer answer = judge(cause);
+    EXPECT_EQ(answer.why, NoSwitch::kKeptOff);
+    EXPECT_EQ(answer.task, kTwo);
+  }
+  EXPECT_TRUE(judge(SwitchCause::kScript)) << "a person may";
+  contexts.kept_off = kOne;
+  EXPECT_TRUE(judge(SwitchCause::kRequest)) << "it is to leave";
+}
+
+TEST_F(SwitchOrdersTest, ARequestOfATaskKeepsTheStandbyThatTookOver) {
+  const StandbySpec standbys[] = {{.primary = kOne, .standby = kTwo}};
+  app.spec.standbys = standbys;
+  app.spec.sets = std::span(sets).first(1);
+  orders.prepare(app.spec, false, memory);
+  contexts.states = {State::kOff, State::kOn, State::kOn};
+  TaskBits target = tasks_of(app.spec, 0);
+  EXPECT_EQ(orders.judge(target, SwitchCause::kRequest).why, NoSwitch::kNothingToDo);
+  EXPECT_EQ(target, bits_of(second));
+  target = bits_of(std::vector<TaskId>{kOne});
+  EXPECT_TRUE(orders.judge(target, SwitchCause::kRequest));
+  EXPECT_EQ(target, bits_of(std::vector<TaskId>{kTwo})) << "other tasks leave, and the standby stays";
+  target = tasks_of(app.spec, 0);
+  EXPECT_TRUE(orders.judge(target, SwitchCause::kScript)) << "a person may go back";
+  app.spec.sets = sets;  // a configuration of its own has the standby: it did not take over
+  target = tasks_of(app.spec, 0);
+  EXPECT_TRUE(orders.judge(target, SwitchCause::kRequest));
+  EXPECT_EQ(target, bits_of(first));
+}
+
 TEST_F(SwitchOrdersTest, LateSwitchIsTriedFourTimesWithMoreLead) {
   ask();
   const Nanoseconds lead = present.order.lead;
@@ -171,11 +211,11 @@ TEST_F(SwitchOrdersTest, OnlyAnExecutiveNeedsAGapForOn) {
   app.tasks[kUser.index].rtpu = RtpuId(1u);
   for (TaskSpec& task : app.tasks) task.on_miss = OnMiss::kAbort;
   orders.prepare(app.spec, false, memory);
-  ASSERT_TRUE(orders.judge(tasks_of(app.spec, 1)));
+  ASSERT_TRUE(judge());
   EXPECT_EQ(orders.way().slow, kSlowForGap);
   EXPECT_EQ(orders.way().gapless, kTwo);
   contexts.is_executive = false;
-  ASSERT_TRUE(orders.judge(tasks_of(app.spec, 1)));
+  ASSERT_TRUE(judge());
   EXPECT_EQ(orders.way().slow, 0);
 }
 
