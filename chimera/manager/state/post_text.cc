@@ -21,6 +21,7 @@ std::string refusal(const Post& post, const std::string& fault) {
     case Refusal::kFault: return fault;
     case Refusal::kNotYet: return "it is not ready yet";
     case Refusal::kRival: return "another task that is created has its resource";
+    case Refusal::kKeptOff: return "an operator turned it OFF";
     case Refusal::kNone: break;
   }
   return "another task of the list was refused";
