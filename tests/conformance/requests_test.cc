@@ -218,7 +218,7 @@ TEST_P(Requests, ARequestOfAnArmedTaskIsSentAtTheChangeOnly) {
 TEST_P(Requests, LeaveATaskOffThatAPersonTurnedOffUntilAPersonTurnsItOn) {
   scene.first = [](Cycle c) {
     if (c.count() == 8 || c.count() == 25) ask(c, "high");
-    if (c.count() == 10) EXPECT_TRUE(c.signal(Signal::kOn, "second"));
+    if (c.count() == 10) scene.answers.push_back(c.signal(Signal::kOn, "second"));
   };
   const auto person = [](Nanoseconds at, Signal signal) {
     return ScriptAct{at, ScriptAct::Kind::kSignal, signal, kSecond};
@@ -231,6 +231,7 @@ TEST_P(Requests, LeaveATaskOffThatAPersonTurnedOffUntilAPersonTurnsItOn) {
   EXPECT_EQ(receipts[1].end, SwitchEnd::kDone);
   ASSERT_EQ(runner_->refused().size(), 1u);
   EXPECT_EQ(runner_->refused()[0].why, Refusal::kKeptOff);
+  EXPECT_EQ(scene.answers, std::vector<bool>(3, true));
   EXPECT_TRUE(is_on(kSecond) && is_on(kHigh));
 }
 
