@@ -58,7 +58,8 @@ TEST_F(OnQueueTest, RefusesATaskThatWouldTurnOnWhatAPersonTurnedOff) {
   queue.add(Requested{kTraj, Signal::kOn, kArm});
   EXPECT_EQ(advance(), "refused: on sent by arm: an operator turned traj OFF; `chimera on traj` turns it ON\n");
   ask(1, {kTraj});
-  EXPECT_EQ(advance(), "goal traj 0\ngoal traj 2\nsend spare: on traj\n");
+  EXPECT_FALSE(goals.has(kTraj, kGoalOff));
+  EXPECT_EQ(advance(), "goal traj 2\nsend spare: on traj\n");
 }
 
 TEST_F(OnQueueTest, IgnoresATaskThatDoesNotExist) {

@@ -77,6 +77,7 @@ TEST(SteppedRequests, LeaveATaskOffThatAPersonTurnedOff) {
   ASSERT_TRUE(system.until([&] { return system.on() == kLow; })) << system.on();
   system.set("wish", 2);
   EXPECT_TRUE(system.until([&] { return system.on() == kHigh; })) << "a person has turned it ON since";
+  ASSERT_TRUE(system.until([&] { return system.receipts().size() == 4; }));
   EXPECT_EQ(system.result("switch", {{"off", {"two"}}, {"on", {"one"}}})["end"], "done");
   ASSERT_TRUE(system.until([&] { return system.events("switch").find(refusal) != std::string::npos; }));
   system.run(milliseconds(300));

@@ -54,7 +54,7 @@ TEST(AnswerText, ADrillPrintsWhetherEachTaskIsSafe) {
               "killed": {"rtpu": "servo", "is_told": true, "written": 0, "lost": 0, "after_ns": null}})")),
             "a: not safe\nservo: killed, and it had no safe frame\nflag up for 1 ms\n");
   EXPECT_EQ(drill_text(Json::parse(R"({"safe": false, "flag_ns": 0, "tasks": []})")),
-            "no task that is ON has hardware that could move\nflag up for 0 s\n");
+            "no task that is ON has hardware that could move\nflag up for 0 ns\n");
 }
 
 TEST(AnswerText, SaveSpeaksTheWordsOfADescription) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chimera/runtime/testing/named_links.h"
@@ -147,9 +148,10 @@ class TestWorld {
       }
     } else if (const auto* start_it = std::get_if<StartRtpu>(&action)) {
       out << "start " << name(start_it->rtpu);
-    } else if (const auto* goal = std::get_if<RememberGoal>(&action)) {
-      remembered.goals[goal->task.index] = goal->goal;
-      out << "goal " << name(goal->task) << " " << goal->goal;
+    } else if (const auto* goal = std::get_if<RememberGoal>(&action)) {  // without the word of a person
+      const std::uint32_t before = std::exchange(remembered.goals[goal->task.index], goal->goal);
+      if ((before ^ goal->goal) == kGoalOff) return "";
+      out << "goal " << name(goal->task) << " " << (goal->goal & ~kGoalOff);
     } else if (const auto* handled = std::get_if<RememberHandled>(&action)) {
       remembered.handled[handled->rtpu.index] = handled->incarnation;
       out << "handled " << name(handled->rtpu) << " " << handled->incarnation;
