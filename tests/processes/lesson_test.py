@@ -113,7 +113,7 @@ class SafeMachine(Typed):
             for command in commands("20_safe_machine"):
                 self.do(command)
                 if "--kill" in command:
-                    self.assertRegex(self.said["drill"], r"servo: killed, 1 of 1 safe frames written [0-9.]+ .s after")
+                    self.assertRegex(self.said["drill"], r"killed, 1 of 1 safe frames written [0-9.]+ [mu]?s after")
                 if command.startswith("chimera events") and "safe" in command:
                     self.assertIn("1 safe frame written", self.said["events"])
             self.assertIn("is silent: bring it back", self.said["events"])

@@ -2,6 +2,7 @@
 // A standby takes over, whichever process dies and at every step, with and without a manager.
 #include <gtest/gtest.h>
 
+#include "chimera/base/hosted/wording.h"
 #include "tests/stepped/stepped_subsystem.h"
 
 namespace chimera::manager::standby_test {
@@ -84,6 +85,11 @@ start: run)"));
   ASSERT_TRUE(system.until([&] { return system.on() == "reference spare asker "; })) << system.on();
   ASSERT_TRUE(system.until([&] { return system.receipts().size() == 2; }));
   EXPECT_EQ(system.receipts().elements()[1]["from"], "run with spare for main");
+  const Json status = system.status(), taken = takeovers(system)[0];
+  const std::int64_t asked = taken["asked_ns"].as_int64() + status["origin_ns"].as_int64();
+  const double since_start = static_cast<double>(asked - status["started_ns"].as_int64()) / 1e9;
+  EXPECT_NE(system.events("switch").find(formatted("takeover 1 at %.3f s by 'spare'", since_start)), std::string::npos)
+      << system.events("switch");
   EXPECT_EQ(system.result("switch", {{"configuration", "run"}})["end"], "done") << "a person may";
 }
 

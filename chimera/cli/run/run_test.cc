@@ -210,6 +210,17 @@ TEST(Run, AValueThatCannotBeSetIsRefusedBeforeAnythingRuns) {
       << refusal("1 ms: set x 3 m");
 }
 
+TEST(Run, AHotStandbyIsOffInTheTableOfOneContext) {
+  RunRequest request = lasting(milliseconds(50));
+  const Said said = said_by(request, R"(subsystem: s
+tasks:
+  main: {component: t_counter, rate: 100 Hz}
+  spare: {component: t_counter, rate: 100 Hz, standby_for: {task: main, hot: true}}
+)");
+  EXPECT_NE(said.out.find("\nmain   ON "), std::string::npos) << said.out << said.err;
+  EXPECT_NE(said.out.find("\nspare  OFF "), std::string::npos) << said.out;
+}
+
 TEST(Run, AnIllegalDescriptionIsReportedAndNotRun) {
   RunRequest request = lasting(milliseconds(1));
   const Said said = said_by(request, "");

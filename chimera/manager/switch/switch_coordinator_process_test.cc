@@ -108,6 +108,16 @@ TEST_F(SwitchCoordinatorTest, AFailureCountsMoreThanLatenessOrNoAnswer) {
   }
 }
 
+TEST_F(SwitchCoordinatorTest, ASwitchThatTheEndOfTheRunDisturbsSaysSo) {
+  ask(kRest);
+  fake.page().ending = 1;
+  over(0, NoSwitch::kDisturbed);
+  over(1);
+  ASSERT_TRUE(until_answered());
+  EXPECT_EQ(got->receipt.why, NoSwitch::kRunEnded);
+  EXPECT_FALSE(got->receipt.task.is_valid());
+}
+
 TEST_F(SwitchCoordinatorTest, ACancelledSwitchIsNotTriedAgain) {
   ask(kRest);
   EXPECT_TRUE(coordinator().cancel(kBen, [](const SwitchOutcome&) {}));

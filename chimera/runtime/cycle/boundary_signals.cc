@@ -80,11 +80,10 @@ void BoundarySignals::carry_out_pending(Nanoseconds now) noexcept {
 
 // The script's own `on` has ended what kept the task OFF, so the one that is refused was sent by a task.
 void BoundarySignals::carry_out(Task& task, Signal signal, Nanoseconds now) noexcept {
-  if (signal == Signal::kOn && orders_ != nullptr && orders_->is_kept_off(task.id)) {
-    (void)refused_.try_push({now, task.id, signal, Refusal::kKeptOff, task.state});
-    return tap_.record(TapKind::kSignal, now, task.id, static_cast<std::uint64_t>(signal), 0);
-  }
-  const SignalReport report = this->signal({&task.id, 1}, signal, now);
+  const bool is_kept_off = signal == Signal::kOn && orders_ != nullptr && orders_->is_kept_off(task.id);
+  SignalReport report{false, false, Refusal::kKeptOff, signal, task.id, task.state, task.state};
+  if (is_kept_off) record(report, set_.flag().is_up(), now);
+  else report = this->signal({&task.id, 1}, signal, now);
   if (!report.is_accepted) (void)refused_.try_push({now, task.id, signal, report.why, report.before});
   if (guest_ != nullptr) guest_->told(report, now);
 }

@@ -101,6 +101,13 @@ void LocalSwitches::note_word(TaskId task, Signal signal) noexcept {
   if (signal == Signal::kOn) kept_off_.remove(task);
 }
 
+void LocalSwitches::note_word(const TaskBits& on, const TaskBits& off) noexcept {
+  for (const TaskId id : spec_->on_order) {
+    if (on.has(id)) kept_off_.remove(id);
+    if (off.has(id)) kept_off_.add(id);
+  }
+}
+
 // Requires: tasks were looked at. False: the lists of the request would lead to no legal set.
 bool LocalSwitches::find_target(SwitchRequest& request, Nanoseconds now, TaskBits& target) noexcept {
   if (!request.lists.are_there()) {
@@ -118,11 +125,7 @@ void LocalSwitches::ask(SwitchRequest request, Nanoseconds now) noexcept {
   orders_.look();
   TaskBits target;
   if (!find_target(request, now, target)) return;
-  if (request.cause == SwitchCause::kScript)
-    for (const TaskId id : spec_->on_order) {
-      if (target.has(id)) kept_off_.remove(id);
-      if (request.lists.minus.has(id)) kept_off_.add(id);
-    }
+  if (request.cause == SwitchCause::kScript) note_word(target, request.lists.minus);
   const PlanAnswer answer = is_under_way() ? PlanAnswer{NoSwitch::kUnderWay, {}} : orders_.judge(target, request.cause);
   if (answer) request.set = orders_.plan().after;
   const bool is_nothing = answer.why == NoSwitch::kNothingToDo;
@@ -131,8 +134,7 @@ void LocalSwitches::ask(SwitchRequest request, Nanoseconds now) noexcept {
   if (is_under_way() && !receipts_.has_room()) return receipts_.leave_out();  // the last place is that of the present
   SwitchReceipt& receipt = receipts_.add();
   receipt.number = number;
-  note_request(receipt, request, orders_.set_in_force(), orders_.on(),
-               answer ? orders_.way() : SwitchWay(), now);
+  note_request(receipt, request, orders_.set_in_force(), orders_.on(), answer ? orders_.way() : SwitchWay(), now);
   if (!answer) return refuse(receipt, answer);
   present_ = {};
   present_.number = number;

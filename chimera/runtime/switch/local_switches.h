@@ -87,6 +87,7 @@ class LocalSwitches : private SwitchMembers {
   bool read_part(std::uint32_t context, std::uint16_t plan, SwitchReceipt& part) const noexcept override;
 
   const Member& member_of(TaskId task) const noexcept;
+  void note_word(const TaskBits& on, const TaskBits& off) noexcept;
   bool find_target(SwitchRequest& request, Nanoseconds now, TaskBits& target) noexcept;
   void end_if_over(Nanoseconds now, bool is_run_over) noexcept;
 

@@ -35,30 +35,27 @@ PlanAnswer SwitchOrders::judge(TaskBits& target, SwitchCause cause) noexcept {
   look();
   way_ = {};
   if (cause != SwitchCause::kScript) {
-    keep_standbys(target);
-    if (const TaskId kept = first_kept_off(target); kept.is_valid()) return {NoSwitch::kKeptOff, kept};
+    if (const TaskId kept = heed_persons(target); kept.is_valid()) return {NoSwitch::kKeptOff, kept};
   }
   const PlanAnswer answer = planner_.plan(target, statuses_, plan_);
   way_ = answer ? ways_.judge(plan_, statuses_, constants_in_force(), members_.constants(), *this) : SwitchWay();
   return answer;
 }
 
-// The tasks that are ON are no set of the description: where one stands in for a task of the target, it took over.
-void SwitchOrders::keep_standbys(TaskBits& target) const noexcept {
-  if (set_of(*spec_, on()) != kNoSet) return;
-  for (const StandbySpec& each : spec_->standbys)
-    for (const TaskId by : {each.standby, each.primary})
-      for (std::size_t t = 0; t < statuses_.size(); ++t) {
-        if (!target.has(TaskId(t)) || is_on(TaskId(t)) || !is_on(by) || target.has(by)) continue;
-        if (!spec_->stand_in(TaskId(t), by)) continue;
-        target.remove(TaskId(t));
-        target.add(by);
-      }
-}
-
-TaskId SwitchOrders::first_kept_off(const TaskBits& target) const noexcept {
-  for (const TaskId id : spec_->on_order)
-    if (target.has(id) && !is_on(id) && members_.is_kept_off(id)) return id;
+// The first task of the target that is kept OFF. Where the tasks that are ON are no set of the description, and one of
+// them stands in for a task of the target, it took over and stays.
+TaskId SwitchOrders::heed_persons(TaskBits& target) const noexcept {
+  const bool may_have_taken_over = set_of(*spec_, on()) == kNoSet;
+  for (const TaskId id : spec_->on_order) {
+    if (!target.has(id) || is_on(id)) continue;
+    if (members_.is_kept_off(id)) return id;
+    for (const TaskId by : spec_->on_order) {
+      if (!may_have_taken_over || !is_on(by) || target.has(by) || !spec_->stand_in(id, by)) continue;
+      target.remove(id);
+      target.add(by);
+      break;
+    }
+  }
   return {};
 }
 

@@ -119,8 +119,7 @@ class SwitchOrders : private NeededGaps {
 
  private:
   Nanoseconds for_on(TaskId task) const noexcept override;
-  void keep_standbys(TaskBits& target) const noexcept;
-  TaskId first_kept_off(const TaskBits& target) const noexcept;
+  TaskId heed_persons(TaskBits& target) const noexcept;
   bool is_of(TaskId task, std::uint32_t context) const noexcept;
   void make_order(OrderedSwitch& next, const TaskBits& target, Nanoseconds until) const noexcept;
   void add_part(const SwitchReceipt& part, std::uint32_t context, Nanoseconds now, SwitchReceipt& to) const noexcept;
