@@ -3,7 +3,8 @@
 
 A line `...` stands for any lines; `[exit 1]` after the output states an exit code other than 0. Only commands in
 virtual time and commands on files have a text that can be compared; lessons in real time are shown in the README of
-their folder. With --write the files are brought up to date, to be looked at before they are committed.
+their folder. The commands see only the subsystems in a folder of sockets of their own, not those of other tests. With
+--write the files are brought up to date, to be looked at before they are committed.
 """
 import argparse
 import os
@@ -12,6 +13,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tempfile
 
 
 def commands(path):
@@ -25,12 +27,12 @@ def commands(path):
     return found
 
 
-def run(command, folder, program):
+def run(command, folder, program, sockets):
     words = shlex.split(command)
     if words[0] != "chimera":
         raise SystemExit(f"{folder}: only `chimera` is run here: {command}")
     done = subprocess.run([program, *words[1:]], cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                          env={**os.environ, "ASAN_OPTIONS": "detect_leaks=0"})
+                          env={**os.environ, "XDG_RUNTIME_DIR": sockets, "ASAN_OPTIONS": "detect_leaks=0"})
     lines = (done.stdout + done.stderr).splitlines()
     return lines + ([f"[exit {done.returncode}]"] if done.returncode else [])
 
@@ -69,7 +71,8 @@ def main():
             print(f"{folder.name}: has no expected.txt")
             failed += 1
             continue
-        results = [(c, e, run(c, folder, options.program)) for c, e in commands(path)]
+        with tempfile.TemporaryDirectory() as sockets:
+            results = [(c, e, run(c, folder, options.program, sockets)) for c, e in commands(path)]
         if options.write:
             write(path, results)
         for command, expected, found in results:
