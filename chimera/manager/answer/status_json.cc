@@ -118,7 +118,7 @@ Json task_json(const ManagerState& state, TaskId task, Nanoseconds at) {
   const TaskSpec& spec = state.spec().tasks[task.index];
   const TaskStatus status = state.peers.status(task);
   const Profile p = state.profile(task);
-  const FaultRecord fault = state.peers.fault(task);
+  const FaultRecord fault = state.fault(task);
   return {{"task", spec.name},
           {"component", spec.component},
           {"rtpu", state.name(spec.rtpu)},
@@ -208,7 +208,7 @@ Json flag_json(const ManagerState& state) {
 }
 
 std::string fault_text(const ManagerState& state, TaskId task) {
-  const FaultRecord fault = state.peers.fault(task);
+  const FaultRecord fault = state.fault(task);
   if (fault.count == 0) return "";
   return std::string(method_name(fault.method)) + ": " + fault.last.text;
 }
@@ -278,7 +278,7 @@ Json profile_json(const ManagerState& state, Nanoseconds at) {
     const TaskSpec& spec = state.spec().tasks[t];
     const Profile profile = state.profile(TaskId(t));
     tasks.push_back({std::string(spec.name), std::string(spec.component), state.state(TaskId(t)), spec.period, profile,
-                     state.peers.fault(TaskId(t)), std::string(state.name(spec.rtpu)),
+                     state.fault(TaskId(t)), std::string(state.name(spec.rtpu)),
                      state.configuration ? transfer_of(*state.configuration, t) : TransferCost{},
                      on_time(state, TaskId(t), profile, at), spec.server});
   }

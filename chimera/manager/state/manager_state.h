@@ -29,6 +29,7 @@ struct RtpuRecord {
   std::uint32_t restarts = 0;  ///< starts beyond the first
   std::string last_end;        ///< "ended by signal 9 (SIGKILL)"; "" if it never ended
   bool is_away = false;        ///< alive, but does not run: its data is out of date
+  bool is_overwritten = false; ///< its memory was overwritten: nothing in it is believed, and it is killed
   std::string hang;            ///< object or method that does not run or end: "log.init for 2.0 s"; "": none
   std::string ended_for;       ///< reason why this manager had it killed; "": it did not
   std::uint64_t resident_bytes = 0, first_resident_bytes = 0;  ///< now, and when it was ON; 0: unknown
@@ -61,11 +62,13 @@ struct ManagerState {
   /// State as users see it: a task of an rtpu that does not run counts as ERROR, like a task of a dead rtpu.
   State state(TaskId task) const noexcept {
     const State state = logic.state(task);
-    const bool is_away = rtpus[spec().tasks[task.index].rtpu.index].is_away;
-    return is_away && state != State::kNotCreated ? State::kError : state;
+    const RtpuRecord& rtpu = rtpus[spec().tasks[task.index].rtpu.index];
+    return rtpu.is_away && (rtpu.is_overwritten || state != State::kNotCreated) ? State::kError : state;
   }
   /// Counts of the task in its rtpu; empty if there is no rtpu or the counts are not credible.
   Profile profile(TaskId task) const noexcept;
+  /// The last fault of the task; none if it is not credible.
+  FaultRecord fault(TaskId task) const noexcept;
   /// The tasks that are ON, as users see them.
   TaskBits tasks_on() const noexcept {
     TaskBits on;
