@@ -284,7 +284,7 @@ class SteppedSubsystem {
   }
 
   void start_rtpu(std::uint32_t r) {
-    const std::uint32_t incarnation = rtpus_[r] == nullptr ? 1 : rtpus_[r]->segment.block.head().incarnation + 1;
+    const std::uint32_t incarnation = ++incarnations_[r];
     testing::TestRtpu::decision_now = now();
     ended_.erase(r);
     stopped_.erase(r);
@@ -301,7 +301,7 @@ class SteppedSubsystem {
   }
   void show(std::uint32_t to, std::uint32_t of) {
     const testing::OwnSegment& segment = rtpus_[of]->segment;
-    EXPECT_TRUE(rtpus_[to]->peers->offer(of, segment.block.head().incarnation, segment.region.descriptor()));
+    EXPECT_TRUE(rtpus_[to]->peers->offer(of, incarnations_[of], segment.region.descriptor()));
     Doorbell(decision_page().bells[to].word).ring();
   }
   void show_manager(std::uint32_t to) {
@@ -314,7 +314,7 @@ class SteppedSubsystem {
     for (std::uint32_t other = 0; other < n_rtpus(); ++other) Doorbell(decision_page().bells[other].word).ring();
     ended_[r] = KeeperMessage{.kind = KeeperMessage::Kind::kEnded,
                               .index = r,
-                              .incarnation = rtpus_[r]->segment.block.head().incarnation,
+                              .incarnation = incarnations_[r],
                               .code = signal,
                               .by_signal = 1,
                               .at = now()};
@@ -327,7 +327,7 @@ class SteppedSubsystem {
   }
   void introduce(std::uint32_t r) {
     const testing::OwnSegment& segment = rtpus_[r]->segment;
-    const std::uint32_t incarnation = segment.block.head().incarnation;
+    const std::uint32_t incarnation = incarnations_[r];
     if (!ended_.contains(r)) tell(KeeperMessage::Kind::kStarted, r, incarnation);
     tell(KeeperMessage::Kind::kPeer, r, incarnation, segment.region.descriptor());
     EXPECT_TRUE(!ended_.contains(r) || channel_.send(bytes_of(ended_[r])));
@@ -362,6 +362,7 @@ class SteppedSubsystem {
   SharedPages decision_;
   MemoryRegion keeper_;
   std::vector<std::unique_ptr<testing::TestRtpu>> rtpus_;
+  std::map<std::uint32_t, std::uint32_t> incarnations_;  // by rtpu; its own memory may be overwritten
   std::map<std::uint32_t, KeeperMessage> ended_;  // by rtpu: the message about its death, until it is started again
   std::set<std::uint32_t> stopped_;
   Channel channel_;

@@ -10,6 +10,7 @@
 #include "chimera/control/receipt/switch_reason.h"
 #include "chimera/manager/state/cause.h"
 #include "chimera/manager/watch/face_watch.h"
+#include "chimera/platform/realtime.h"
 #include "chimera/text/json.h"
 
 namespace chimera::manager {
@@ -76,11 +77,13 @@ Json rtpu_json(const ManagerState& state, RtpuId rtpu) {
                {"lost_events", 0},
                {"resident_bytes", record.resident_bytes},
                {"first_resident_bytes", record.first_resident_bytes},
+               {"not_real_time", Json()},
                {"lost_rights", record.is_alive ? or_null(record.lost_rights) : Json()},
                {"flag", false}};
   if (!segment.is_there()) return json;
   const BlockHead& head = segment.block().head();
   json["grant"] = grant_of(head);
+  json["not_real_time"] = or_null(not_real_time(grant_of(head)).c_str());
   if (record.is_alive) json["running"] = or_null(running_text(state.spec(), head.running));
   json["lost_events"] = head.lost_posts.load(std::memory_order_relaxed);
   json["flag"] = head.flag.load(std::memory_order_relaxed) != 0;
@@ -119,7 +122,7 @@ Json task_json(const ManagerState& state, TaskId task, Nanoseconds at) {
   const TaskSpec& spec = state.spec().tasks[task.index];
   const TaskStatus status = state.peers.status(task);
   const Profile p = state.profile(task);
-  const FaultRecord fault = state.peers.fault(task);
+  const FaultRecord fault = state.fault(task);
   return {{"task", spec.name},
           {"component", spec.component},
           {"rtpu", state.name(spec.rtpu)},
@@ -209,7 +212,7 @@ Json flag_json(const ManagerState& state) {
 }
 
 std::string fault_text(const ManagerState& state, TaskId task) {
-  const FaultRecord fault = state.peers.fault(task);
+  const FaultRecord fault = state.fault(task);
   if (fault.count == 0) return "";
   return std::string(method_name(fault.method)) + ": " + fault.last.text;
 }
@@ -269,7 +272,7 @@ Json profile_json(const ManagerState& state, Nanoseconds at) {
     const TaskSpec& spec = state.spec().tasks[t];
     const Profile profile = state.profile(TaskId(t));
     tasks.push_back({std::string(spec.name), std::string(spec.component), state.state(TaskId(t)), spec.period, profile,
-                     state.peers.fault(TaskId(t)), std::string(state.name(spec.rtpu)),
+                     state.fault(TaskId(t)), std::string(state.name(spec.rtpu)),
                      state.configuration ? transfer_of(*state.configuration, t) : TransferCost{},
                      on_time(state, TaskId(t), profile, at), spec.server});
   }
@@ -284,6 +287,7 @@ Json event_json(const ManagerState& state, const LoggedEvent& event) {
                {"text", event.text}};
   if (event.task.is_valid()) json["task"] = state.name(event.task);
   if (event.rtpu.is_valid()) json["rtpu"] = state.name(event.rtpu);
+  if (!event.by.empty()) json["by"] = event.by;
   return json;
 }
 

@@ -44,6 +44,12 @@ std::vector<RtpuId> RtpuWatch::look(Nanoseconds at) {
     record.hang.clear();
     record.is_away = false;
     if (!record.is_alive) continue;
+    if (record.is_overwritten) {
+      record.is_away = true;
+      record.hang = "something in it has overwritten its memory";
+      over.push_back(rtpu);
+      continue;
+    }
     if (look_at_life(rtpu, at)) over.push_back(rtpu);
     if (!record.is_away) look_at_methods(rtpu, at);
   }
