@@ -63,6 +63,17 @@ std::int64_t send_now(int socket, std::string_view bytes) noexcept;
 /// Number of sent bytes that the other end has not read; -1 if the system does not say. Context: setup.
 int unread_by_other_end(int socket) noexcept;
 
+/// Claims a name of at most 107 bytes on this machine (in one network namespace) until the descriptor is closed: an
+/// abstract Unix socket, which no file stands for. -1 with errno, EADDRINUSE if another process holds the name.
+/// Context: setup; never blocks.
+OwnedDescriptor claim_name(std::string_view name) noexcept;
+struct NameHolder {
+  pid_t process = 0;  ///< 0: it does not answer
+  uid_t user = 0;
+};
+/// The process that holds the name. Context: setup; never blocks.
+NameHolder holder_of_name(std::string_view name) noexcept;
+
 /// The process that made a connection.
 struct SocketPeer {
   pid_t process = 0;

@@ -73,6 +73,9 @@ class CpuClaim {
   OwnedDescriptor descriptor_;
 };
 
+/// Refuses a limit of open files (ulimit -n, LimitNOFILE=) that leaves no room for `more` descriptors. Context: setup.
+Result<void> may_open_here(std::uint64_t more) noexcept;
+
 /// Refuse limits of the shell or the service (ulimit, LimitSTACK=) under which the process would die without a message:
 /// a stack below 256 KiB, which every process needs; files below 4 MiB, which shared memory needs. Context: setup.
 Result<void> may_run_here() noexcept;
