@@ -214,6 +214,7 @@ bool Keeper::advance() {
     for (std::uint32_t index = 0; index < peers_.manager_index(); ++index) peers_[index].signal(SIGKILL);
     enter(Phase::kRtpusDie, kSigkillLimit);
   } else if (phase_ == Phase::kRtpusDie && (!peers_.any_rtpu_lives() || is_late)) {
+    peers_.give_up_rtpus();
     enter(Phase::kFaceFinishes, plan_.face_limit);
   } else if (phase_ == Phase::kFaceFinishes && (!face_.lives() || is_late)) {
     if (face_.lives())

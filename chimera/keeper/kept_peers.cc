@@ -147,6 +147,14 @@ void KeptPeers::finish_rtpus() {
   for (std::uint32_t index = 0; index < manager_index(); ++index) peers_[index].send({.kind = Kind::kFinish});
 }
 
+void KeptPeers::give_up_rtpus() {
+  for (std::uint32_t index = 0; index < manager_index(); ++index) {
+    if (!peers_[index].lives()) continue;
+    peers_[index].note_end({.by_signal = true, .code = SIGKILL}, clock_.now());
+    show_end(index);
+  }
+}
+
 void KeptPeers::finish_manager() { peers_[manager_index()].send({.kind = Kind::kFinish}); }
 
 bool KeptPeers::any_rtpu_lives() const noexcept {
