@@ -156,6 +156,7 @@ Result<void> Rtpu::make_segment() {
   if (auto owner = SegmentOwner::format(segment_.writable(), table); !owner) return owner.error();
   std::byte* at = segment_.writable().data() + block_offset(table);
   block_ = BlockOwner(at, start_.peer, start_.incarnation, n_tasks, peers_->count());
+  if (start_.parent != 0) block_.head().pid = own_process_id();
   return {};
 }
 
