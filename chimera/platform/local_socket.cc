@@ -129,6 +129,7 @@ Channel::Got Channel::receive(std::span<std::byte> bytes, int& passed) const noe
   while (got < 0 && (errno == EINTR || errno == ECONNRESET));
   if (got < 0) return errno == EAGAIN ? Got::kNothing : Got::kClosed;
   passed = passed_in(message);
+  if (passed < 0 && (message.msg_flags & MSG_CTRUNC) != 0) passed = kLostDescriptor;
   if (static_cast<std::size_t>(got) == bytes.size() && (message.msg_flags & MSG_TRUNC) == 0) return Got::kMessage;
   if (passed >= 0) ::close(std::exchange(passed, -1));
   return Got::kClosed;

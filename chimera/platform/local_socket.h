@@ -21,6 +21,9 @@
 
 namespace chimera {
 
+/// Channel::receive(): the message came with a descriptor, for which this process had no room (ulimit -n).
+inline constexpr int kLostDescriptor = -2;
+
 /// One end of a SOCK_SEQPACKET pair. Move-only; closes. Never blocks.
 class Channel {
  public:
@@ -37,8 +40,8 @@ class Channel {
   /// Sends `bytes` whole, with one descriptor (-1: none). False if the other end is gone or its buffer is full.
   [[nodiscard]] bool send(std::span<const std::byte> bytes, int passed = -1) const noexcept;
   /// Receives the next message, which must have bytes.size() bytes; a message of another length is from a stranger:
-  /// kClosed. `passed` becomes the descriptor that came with the message (-1: none), close-on-exec; the caller closes
-  /// `passed`.
+  /// kClosed. `passed` becomes the descriptor that came with the message (-1: none; or kLostDescriptor), close-on-exec;
+  /// the caller closes `passed`.
   Got receive(std::span<std::byte> bytes, int& passed) const noexcept;
 
  private:

@@ -115,7 +115,10 @@ void lock_memory(const RealtimeRequest& request, RealtimeGrant& grant, Parts& re
     grant.memory = true;
     return;
   }
+  constexpr int kPlain = MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE;
+  void* const room = request.room == 0 ? MAP_FAILED : ::mmap(nullptr, request.room, PROT_NONE, kPlain, -1, 0);
   const int error = ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
+  if (room != MAP_FAILED) ::munmap(room, request.room);
   grant.memory = error == 0 && has_locked_memory();
   if (grant.memory) {
     report.grant() << kLockedWords;

@@ -18,6 +18,8 @@ struct RealtimeRequest {
   int priority = 0;         ///< SCHED_FIFO 1..99; 0 leaves the thread as it is
   int cpu = -1;             ///< the only CPU to run on; -1: any
   bool lock_memory = true;  ///< keep all pages of the process in memory
+  /// Bytes that the process maps later. Without room for them no page is locked: each later mapping would fail.
+  std::uint64_t room = 0;
 };
 
 /// Words of RealtimeGrant::report. Other processes read the granted rights behind them.

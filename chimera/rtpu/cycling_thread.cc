@@ -51,7 +51,7 @@ void CyclingThread::start() {
 
 void CyclingThread::run() {
   const int ceiling = priority_of(place_.spec, place_.me, place_.priority);
-  const RealtimeGrant grant = enter_realtime({ceiling, static_cast<int>(self().cpu), true});
+  const RealtimeGrant grant = enter_realtime({ceiling, static_cast<int>(self().cpu), true, place_.room});
   if (self().preemptive)
     make_threads(grant.priority ? ceiling : 0);
   else

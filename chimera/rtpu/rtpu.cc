@@ -193,7 +193,8 @@ Result<void> Rtpu::make_tasks() {
   hang_watch_ = std::make_unique<HangWatch>(image_->settings().method_limit);
   switching_ = std::make_unique<SwitchLinks>(*tasks_, *others_, *peers_, *decision_, start_.peer);
   const CyclingPlace cycling{spec,        start_.peer, image_->settings().priority, *tasks_, *edge_, *others_,
-                           *switching_, writer_,     keeper_->origin,             bell(),  over_.descriptor()};
+                           *switching_, writer_,     keeper_->origin,             bell(),  over_.descriptor(),
+                           peers_->room()};
   cycling_ = std::make_unique<CyclingThread>(cycling);
   return {};
 }

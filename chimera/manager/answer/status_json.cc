@@ -9,6 +9,7 @@
 #include "chimera/analysis/task_profile.h"
 #include "chimera/manager/state/cause.h"
 #include "chimera/manager/watch/face_watch.h"
+#include "chimera/manager/watch/guard_news.h"
 #include "chimera/text/json.h"
 
 namespace chimera::manager {
@@ -76,6 +77,7 @@ Json rtpu_json(const ManagerState& state, RtpuId rtpu) {
                {"resident_bytes", record.resident_bytes},
                {"first_resident_bytes", record.first_resident_bytes},
                {"lost_rights", record.is_alive ? or_null(record.lost_rights) : Json()},
+               {"unguarded", or_null(unguarded_text(state, rtpu))},
                {"flag", false}};
   if (!segment.is_there()) return json;
   const BlockHead& head = segment.block().head();
@@ -246,6 +248,7 @@ Json status_json(const ManagerState& state, Nanoseconds at) {
           {"ending", state.is_ending()},
           {"flag", flag_json(state)},
           {"keeper", {{"pid", state.keeper_pid}, {"hang", or_null(state.keeper_hang)}}},
+          {"guard", guard_json(state)},
           {"face", face_json(state)},
           {"rtpus", std::move(rtpus)},
           {"tasks", std::move(tasks)}};

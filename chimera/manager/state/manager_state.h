@@ -55,7 +55,7 @@ struct ManagerState {
   std::vector<RtpuRecord> rtpus;
   std::vector<std::uint32_t> tap_users;  ///< by task: subscriptions that want its publications
   std::int32_t keeper_pid = 0;
-  std::string keeper_hang;  ///< "" while it runs
+  std::string keeper_hang, guard_hang;  ///< "" while it runs
 
   const ApplicationSpec& spec() const noexcept { return peers.spec(); }
   /// State as users see it: a task of an rtpu that does not run counts as ERROR, like a task of a dead rtpu.
