@@ -11,6 +11,7 @@
 #include "chimera/manager/state/asker.h"
 #include "chimera/manager/state/cause.h"
 #include "chimera/manager/state/command_text.h"
+#include "chimera/manager/watch/guard_news.h"
 #include "chimera/runtime/hosted/asked_set.h"
 #include "chimera/text/json.h"
 #include "chimera/text/json_text.h"
@@ -286,7 +287,7 @@ void ManagerBackend::switch_to(const Request& request) {
 }
 
 void ManagerBackend::drill(const Request& request) {
-  const auto refuse = [&](const char* kind, const std::string& why, const char* remedy) {
+  const auto refuse = [&](const char* kind, const std::string& why, const std::string& remedy) {
     request.reply(RpcResponse::refused(kind, "the drill is refused: " + why, "", remedy));
   };
   if (state().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
@@ -308,6 +309,8 @@ void ManagerBackend::drill(const Request& request) {
     const auto at = std::ranges::find(names, name);
     if (at == names.end()) return request.reply(RpcResponse::no_such("rtpu", name, names));
     to_kill = RtpuId(static_cast<std::size_t>(at - names.begin()));
+    if (const NoGuard lack = no_guard(state(), to_kill); !lack.why.empty())
+      return refuse("no-guard", lack.why, lack.remedy);
   }
   loop_.drill().begin(wait, to_kill, now(), [this, reply = request.reply](const DrillOutcome& outcome) {
     reply(RpcResponse::good(drill_json(state(), outcome)));

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <optional>
 
@@ -95,6 +96,28 @@ TEST_F(ManagerBackendTest, ADrillBeginsWithTheFlagDown) {
   EXPECT_EQ(refusal("drill", Json::object()),
             "-32000 the drill is refused: the flag is up already, so it would measure nothing "
             "{\"kind\":\"flag-up\",\"remedy\":\"`chimera status` says by whom\",\"where\":\"\"}");
+}
+
+TEST_F(ManagerBackendTest, ADrillKillsNoRtpuThatTheGuardCannotServe) {
+  const auto refused = [this] { return refusal("drill", {{"kill", "servo"}}); };
+  const auto text = [](const std::string& why, const std::string& remedy) {
+    return "-32000 the drill is refused: " + why + " {\"kind\":\"no-guard\",\"remedy\":\"" + remedy +
+           "\",\"where\":\"\"}";
+  };
+  EXPECT_EQ(refused(), text("the subsystem has no guard: no task has a device", "leave out `--kill`"));
+  fake_.page().guard_pid = 4711;
+  state().guard_hang = "does not run: stopped by a signal (state T), for 1.6 s";
+  EXPECT_EQ(refused(), text("the guard does not run: stopped by a signal (state T), for 1.6 s",
+                            "`kill -CONT 4711` continues a stopped one"));
+  fake_.page().unguarded[0] = EMFILE;
+  EXPECT_EQ(refused(), text("no safe frame can be written: Too many open files",
+                            "raise the limits of open files (ulimit -n) and locked memory (ulimit -l), and start the "
+                            "run again"));
+  fake_.page().guard_state = GuardState::kDead;
+  EXPECT_EQ(refused(), text("the guard is dead: no safe frames are written until the next run",
+                            "end the run and start it again"));
+  EXPECT_EQ(fake_.killed, std::nullopt);
+  EXPECT_EQ(fake_.told("drill"), "");
 }
 
 TEST_F(ManagerBackendTest, NoDrillWhileASwitchIsUnderWay) {

@@ -18,6 +18,8 @@ struct RealtimeRequest {
   int priority = 0;         ///< SCHED_FIFO 1..99; 0 leaves the thread as it is
   int cpu = -1;             ///< the only CPU to run on; -1: any
   bool lock_memory = true;  ///< keep all pages of the process in memory
+  /// Bytes that the process maps later. Without room for them no page is locked: each later mapping would fail.
+  std::uint64_t room = 0;
 };
 
 /// Words of RealtimeGrant::report. Other processes read the granted rights behind them.
@@ -78,6 +80,9 @@ class CpuClaim {
   explicit CpuClaim(OwnedDescriptor descriptor) noexcept : descriptor_(std::move(descriptor)) {}
   OwnedDescriptor descriptor_;
 };
+
+/// Refuses a limit of open files (ulimit -n, LimitNOFILE=) that leaves no room for `more` descriptors. Context: setup.
+Result<void> may_open_here(std::uint64_t more) noexcept;
 
 /// Refuse limits of the shell or the service (ulimit, LimitSTACK=) under which the process would die without a message:
 /// a stack below 256 KiB, which every process needs; files below 4 MiB, which shared memory needs. Context: setup.

@@ -2,6 +2,9 @@
 // For a release build: under the address sanitizer mlockall does nothing.
 #include <gtest/gtest.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <string>
@@ -27,6 +30,31 @@ TEST(RealtimeMemory, IsReportedLockedIfTheKernelReportsIt) {
     EXPECT_NE(grant.report.view().find("set RLIMIT_MEMLOCK to unlimited"), std::string_view::npos);
   }
   ::munlockall();
+}
+
+// The usual limit of an ordinary user lets a small process lock its memory, and then refuses each further mapping.
+TEST(RealtimeMemory, IsNotLockedWithoutRoomForLaterMappings) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::ifstream pages("/proc/self/statm");
+    std::uint64_t mapped = 0;
+    pages >> mapped;
+    const std::uint64_t room = 64u << 20;
+    const rlimit limit{mapped * 4096 + room / 2, mapped * 4096 + room / 2};
+    if (::setrlimit(RLIMIT_MEMLOCK, &limit) != 0 || (::geteuid() == 0 && ::setuid(54321) != 0)) ::_exit(77);
+    const auto can_map = [](std::uint64_t bytes) {
+      return ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0) != MAP_FAILED;
+    };
+    if (!enter_realtime({.lock_memory = true}).memory || can_map(room)) ::_exit(1);
+    ::munlockall();
+    if (enter_realtime({.lock_memory = true, .room = room}).memory || !can_map(room)) ::_exit(2);
+    ::_exit(enter_realtime({.lock_memory = true, .room = 1}).memory ? 3 : 0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "the system allows no change of limit and user";
+  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ bool CyclingThread::is_gone() const noexcept {
 void CyclingThread::run() {
   number_ = this_thread();
   const int ceiling = priority_of(place_.spec, place_.me, place_.priority);
-  const RealtimeGrant grant = enter_realtime({ceiling, static_cast<int>(self().cpu), true});
+  const RealtimeGrant grant = enter_realtime({ceiling, static_cast<int>(self().cpu), true, place_.room});
   if (self().preemptive)
     make_threads(grant.priority ? ceiling : 0);
   else

@@ -34,6 +34,7 @@ struct CyclingPlace {
   Nanoseconds origin;  ///< of the grid of releases that all rtpus share
   std::atomic<std::uint32_t>& bell;
   int over;  ///< descriptor of a WakeEvent, rung when the thread has ended
+  std::uint64_t room;  ///< bytes of other processes that this process maps later, at most
 };
 
 /// The main thread starts and joins it.

@@ -157,6 +157,7 @@ Result<void> Rtpu::make_segment() {
   if (auto owner = SegmentOwner::format(segment_.writable(), table); !owner) return owner.error();
   std::byte* at = segment_.writable().data() + block_offset(table);
   block_ = BlockOwner(at, start_.peer, start_.incarnation, n_tasks, peers_->count());
+  if (start_.parent != 0) block_.head().pid = own_process_id();
   return {};
 }
 
@@ -193,7 +194,8 @@ Result<void> Rtpu::make_tasks() {
   hang_watch_ = std::make_unique<HangWatch>(image_->settings().method_limit);
   switching_ = std::make_unique<SwitchLinks>(*tasks_, *others_, *peers_, *decision_, start_.peer);
   const CyclingPlace cycling{spec,        start_.peer, image_->settings().priority, *tasks_, *edge_, *others_,
-                           *switching_, writer_,     keeper_->origin,             bell(),  over_.descriptor()};
+                           *switching_, writer_,     keeper_->origin,             bell(),  over_.descriptor(),
+                           peers_->room()};
   cycling_ = std::make_unique<CyclingThread>(cycling);
   return {};
 }

@@ -5,6 +5,7 @@
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
+#include <sys/ptrace.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -20,7 +21,7 @@ struct Misdeed {
   InConst<Text<16>> how{"how", initial = "nothing",
                         doc =
                             "child daemon chain exec stays: a child that outlives the cycle; leak; ordinary top strays "
-                            "unlocked: the rights of its thread; close; timer: closes those in init; spin; "
+                            "unlocked traced: the rights of its thread; close; timer: closes those in init; spin; "
                             "strict: the next system call of the thread ends the thread"};
   InConst<std::int64_t> number{"number", "1", initial = -1, doc = "the one descriptor to close; -1: all above 2"};
   InConst<std::int64_t> for_ns{"for_ns", "ns", initial = 20'000'000, doc = "how long each spin takes"};
@@ -59,6 +60,7 @@ struct Misdeed {
     if (is("strays")) stray();
     if (is("unlocked")) ::munlockall();
     if (is("strict")) ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_STRICT);
+    if (is("traced")) ::ptrace(PTRACE_TRACEME, 0, nullptr, nullptr);
     if (is("close") && *number < 0) ::close_range(3, ~0u, 0);
     if (is("close") && *number >= 0) ::close(static_cast<int>(*number));
   }

@@ -165,6 +165,26 @@ class Frames(unittest.TestCase):
             system.await_nothing_left()
             self.assertEqual(set(self.drive.torques), {3.0})
 
+    def test_a_stopped_guard_is_reported_and_writes_no_late_frame(self):
+        with self.start() as system:
+            guard, = system.named("chimera-guard")
+            self.assertEqual(system.call("status")["guard"]["pid"], guard)
+            self.assertTrue(system.kill(guard, signal.SIGSTOP))
+            system.await_event(0, "hang", "guard does not run: stopped by a signal (state T)")
+            self.assertIn("guard: HANGS: does not run: stopped by", system.chimera("status", code=None).stdout)
+            refused = system.chimera("drill", "--yes", "--kill", "second", code=1).stderr
+            self.assertIn(f"`kill -CONT {guard}` continues a stopped one", refused)
+            before = system.rtpu("second")
+            system.kill(before["pid"])
+            system.await_restart("second", before)
+            self.await_turning_again(system)
+            self.assertTrue(system.kill(guard, signal.SIGCONT))
+            system.await_event(0, "hang", "guard runs again after")
+            self.assertIn("0 safe frames written; 1 left out: the guard was late",
+                          system.await_event(0, "safe", "left out")["text"])
+            system.await_cycles("drive")
+            self.assertEqual((self.drive.fills, set(self.drive.torques)), (0, {3.0}))
+
     def test_a_frame_that_was_cut_by_the_death_hides_nothing(self):
         with self.start(16, "1 kHz") as system:
             self.drive.is_deaf = True

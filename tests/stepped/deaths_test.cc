@@ -2,6 +2,10 @@
 // The death of an rtpu or of the manager, and a method that fails, have only their declared effects on the tasks.
 #include <gtest/gtest.h>
 
+#include <csignal>
+
+#include "chimera/base/testing/await.h"
+#include "chimera/platform/process.h"
 #include "tests/stepped/stepped_subsystem.h"
 
 namespace chimera::manager::deaths_test {
@@ -156,6 +160,30 @@ TEST_F(Deaths, TheManagerMayDieAtAnyStepOfACommand) {
     expect_steady(system);
     EXPECT_EQ(system.profile("beside").dropped, 0u) << steps;
   }
+}
+
+TEST_F(Deaths, AStoppedGuardIsReportedWithinTwoSecondsAndAgainWhenItRuns) {
+  SteppedSubsystem system(kTwoRtpus);
+  ASSERT_TRUE(system.until_started());
+  const char* const words[] = {"sleep", "60"};
+  Process guard = *Process::start("/bin/sleep", words, {});
+  guard.signal(SIGSTOP);
+  ASSERT_TRUE(await_that([&] { return process_state(guard.pid()).letter == 'T'; }));
+  system.decision_page().guard_beats = 7;
+  system.page().guard_pid = guard.pid();
+  system.run(seconds(2));
+  EXPECT_NE(system.events("hang").find("guard does not run: stopped by a signal (state T), for 1.5 s\n"),
+            std::string::npos)
+      << system.events("hang");
+  EXPECT_TRUE(system.status()["guard"]["hang"].as_string().starts_with("does not run: stopped by a signal"));
+  EXPECT_NE(system.refusal("drill", {{"kill", "second"}}).find("the guard does not run: stopped"), std::string::npos);
+  system.decision_page().guard_beats = 8;
+  system.run(milliseconds(300));
+  EXPECT_NE(system.events("hang").find("guard runs again after 2."), std::string::npos) << system.events("hang");
+  EXPECT_TRUE(system.status()["guard"]["hang"].is_null());
+  ProcessEnd how;
+  guard.signal(SIGKILL);
+  EXPECT_TRUE(guard.wait(how, kHangLimit.count));
 }
 
 TEST_F(Deaths, AnErrorInAnyMethodStaysWithItsTask) {

@@ -243,8 +243,13 @@ OldestInput oldest_input(const Json& task) {
 std::string status_text(const Json& status) {
   std::string text = headline(status) + "\n" + face_text(status["face"]);
   if (const Columns rtpus = rtpu_table(status); !rtpus.empty()) text += "\n" + rtpus.text();
-  if (const std::string hang = text_of(status["keeper"], "hang"); !hang.empty())
-    text += "keeper: HANGS: " + hang + "\n";
+  for (const char* process : {"keeper", "guard"})
+    if (const std::string hang = text_of(status[process], "hang"); !hang.empty())
+      text += process + (": HANGS: " + hang) + "\n";
+  if (const std::string lack = text_of(status["guard"], "lack"); !lack.empty()) text += lack + "\n";
+  for (const Json& rtpu : status["rtpus"])
+    if (const std::string why = text_of(rtpu, "unguarded"); !why.empty())
+      text += text_of(rtpu, "name") + ": NO GUARD: " + why + "\n";
   for (const Json& rtpu : status["rtpus"])
     if (const std::string hang = text_of(rtpu, "hang"); !hang.empty())
       text += text_of(rtpu, "name") + ": HANGS: " + hang + "\n";

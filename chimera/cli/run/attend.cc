@@ -380,9 +380,11 @@ std::vector<TaskProfile> RemoteTarget::profiles(const Json& origin) {
   return tasks ? *tasks : std::vector<TaskProfile>();
 }
 
+/// An rtpu that lives and does not run counts too: its tasks may be ON.
 bool any_lives(const Json& status) {
   const Json& rtpus = status["rtpus"];
-  return std::any_of(rtpus.begin(), rtpus.end(), [](const Json& rtpu) { return truth_at(rtpu, "alive"); });
+  return std::any_of(rtpus.begin(), rtpus.end(),
+                     [](const Json& rtpu) { return truth_at(rtpu, "alive") || rtpu["hang"].is_string(); });
 }
 
 /// Asks the keeper to turn the tasks off and kill them, and reads all events until then. Returns the status after it.

@@ -10,6 +10,7 @@
 #include "chimera/control/receipt/switch_reason.h"
 #include "chimera/manager/state/cause.h"
 #include "chimera/manager/watch/face_watch.h"
+#include "chimera/manager/watch/guard_news.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/text/json.h"
 
@@ -79,6 +80,7 @@ Json rtpu_json(const ManagerState& state, RtpuId rtpu) {
                {"first_resident_bytes", record.first_resident_bytes},
                {"not_real_time", Json()},
                {"lost_rights", record.is_alive ? or_null(record.lost_rights) : Json()},
+               {"unguarded", or_null(unguarded_text(state, rtpu))},
                {"flag", false}};
   if (!segment.is_there()) return json;
   const BlockHead& head = segment.block().head();
@@ -240,6 +242,7 @@ Json status_json(const ManagerState& state, Nanoseconds at) {
           {"ending", state.is_ending()},
           {"flag", flag_json(state)},
           {"keeper", {{"pid", state.keeper_pid}, {"hang", or_null(state.keeper_hang)}}},
+          {"guard", guard_json(state)},
           {"face", face_json(state)},
           {"rtpus", std::move(rtpus)},
           {"tasks", std::move(tasks)}};

@@ -57,8 +57,8 @@ struct ManagerState {
   std::vector<RtpuRecord> rtpus;
   std::vector<std::uint32_t> tap_users;  ///< by task: subscriptions that want its publications
   std::int32_t keeper_pid = 0;
-  std::string keeper_hang;  ///< "" while it runs
-  std::string acting;       ///< Asker::text() of the request that is being carried out; "": none is
+  std::string keeper_hang, guard_hang;  ///< "" while it runs
+  std::string acting;                   ///< Asker::text() of the request that is being carried out; "": none is
 
   const ApplicationSpec& spec() const noexcept { return peers.spec(); }
   /// State as users see it: a task of an rtpu that does not run counts as ERROR, like a task of a dead rtpu.

@@ -53,6 +53,7 @@ struct alignas(64) BlockHead {
   std::atomic<std::uint32_t> at_edge{0};     ///< as `running`, for a method called at a cycle boundary; 0: none
   std::atomic<std::uint32_t> background{0};  ///< as `running`: the background that is under way longest; 0: none
   std::atomic<std::uint32_t> jobs{0};        ///< cycles of the task in `running` that ended, as the main thread saw
+  std::atomic<std::int32_t> pid{0};          ///< of the owner; 0: it has no process of its own
   SwitchProgress switching;                  ///< how far this rtpu has come with a switch
   SwitchWishWords wish;                      ///< the configuration that a task of this rtpu asked for last
 };
