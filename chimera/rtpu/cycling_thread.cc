@@ -50,6 +50,7 @@ void CyclingThread::start() {
 }
 
 void CyclingThread::run() {
+  thread_id_ = this_thread();
   const int ceiling = priority_of(place_.spec, place_.me, place_.priority);
   const RealtimeGrant grant = enter_realtime({ceiling, static_cast<int>(self().cpu), true});
   if (self().preemptive)

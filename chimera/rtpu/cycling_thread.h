@@ -46,6 +46,8 @@ class CyclingThread {
   /// Requests real-time rights, writes the granted ones to the block, and cycles until the control ends the loop.
   /// Context: setup.
   void start();
+  /// Its id; 0: it has not begun. Any thread.
+  pid_t thread() const noexcept { return thread_id_; }
   /// True if all tasks are killed and no task cycles any more. Any thread.
   bool has_ended() const noexcept { return has_ended_; }
   /// Context: setup; blocks until the thread has ended.
@@ -69,6 +71,7 @@ class CyclingThread {
   std::unique_ptr<ComputingClock> job_clock_;
   std::unique_ptr<Executive> executive_;
   std::unique_ptr<PreemptiveExecutor> preemptive_;  // one of the two
+  std::atomic<pid_t> thread_id_{0};  // stored first by the thread
   std::atomic<bool> has_ended_{false};  // stored last by the thread, loaded by the main thread before it joins
   std::thread thread_;
 };
