@@ -50,12 +50,12 @@ void CyclingThread::start() {
 }
 
 bool CyclingThread::is_gone() const noexcept {
-  const pid_t number = number_;
-  return number != 0 && used_by(number) == kNever && !has_ended_;  // in this order: it may end in between
+  const pid_t id = thread_id_;
+  return id != 0 && used_by(id) == kNever && !has_ended_;  // in this order: it may end in between
 }
 
 void CyclingThread::run() {
-  number_ = this_thread();
+  thread_id_ = this_thread();
   const int ceiling = priority_of(place_.spec, place_.me, place_.priority);
   const RealtimeGrant grant = enter_realtime({ceiling, static_cast<int>(self().cpu), true, place_.room});
   if (self().preemptive)

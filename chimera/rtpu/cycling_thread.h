@@ -48,6 +48,8 @@ class CyclingThread {
   /// Requests real-time rights, writes the granted ones to the block, and cycles until the control ends the loop.
   /// Context: setup.
   void start();
+  /// Its id; 0: it has not begun. Any thread.
+  pid_t thread() const noexcept { return thread_id_; }
   /// True if all tasks are killed and no task cycles any more. Any thread.
   bool has_ended() const noexcept { return has_ended_; }
   /// True if the thread is gone without has_ended(): a component ended it. Any thread; one system call.
@@ -73,7 +75,7 @@ class CyclingThread {
   std::unique_ptr<ComputingClock> job_clock_;
   std::unique_ptr<Executive> executive_;
   std::unique_ptr<PreemptiveExecutor> preemptive_;  // one of the two
-  std::atomic<pid_t> number_{0};        // of the thread; 0: it has not begun
+  std::atomic<pid_t> thread_id_{0};  // stored first by the thread
   std::atomic<bool> has_ended_{false};  // stored last by the thread, loaded by the main thread before it joins
   std::thread thread_;
 };

@@ -60,7 +60,7 @@ class Rtpu {
   bool hangs();
   bool loop_hangs();
   bool has_lost_thread();
-  bool give_up(std::uint32_t method, Nanoseconds waited);
+  bool give_up(std::uint32_t method, Nanoseconds waited, Nanoseconds used = {});
   std::uint64_t jobs_of(TaskId task) const;
 
   std::atomic<std::uint32_t>& bell() { return decision_->bells[start_.peer].word; }
@@ -218,7 +218,7 @@ int Rtpu::run() {
     if (has_lost_thread()) return kThreadLost;
     if (hangs()) return kMethodHangs;
     if (!is_ending_ && edge_->hanging().any()) {
-      is_giving_up_ = give_up(edge_->hanging().job(), edge_->hanging().age());
+      is_giving_up_ = give_up(edge_->hanging().job(), edge_->hanging().age(), edge_->hanging().used());
       end(true);
     }
     // Now all tasks are killed except the one whose job hangs.
@@ -248,14 +248,15 @@ bool Rtpu::hangs() {
   if (hang_watch_->method_hangs(acting, edge_->supervised().progress(), now))
     // `running` is then `error`, called after the method in `acting`.
     return give_up(is_same_task ? running : acting, limit);
-  if (loop_hangs()) return give_up(running, limit);
+  if (loop_hangs()) return give_up(running, limit, hang_watch_->job_used());
   const bool end_hangs = is_ending_ && hang_watch_->end_hangs(edge_->supervised().progress(), now);
   return end_hangs && give_up(running != 0 ? running : serving, limit);
 }
 
 // Writes the hung method and its limit to the block; always true.
-bool Rtpu::give_up(std::uint32_t method, Nanoseconds waited) {
+bool Rtpu::give_up(std::uint32_t method, Nanoseconds waited, Nanoseconds used) {
   block_.head().hung_limit = waited.count;
+  block_.head().hung_used = used.count;
   block_.head().hung = method;
   return true;
 }
@@ -327,8 +328,12 @@ std::uint64_t Rtpu::jobs_of(TaskId task) const {
 // Always false on a preemptive rtpu: that executor has its own supervisor.
 bool Rtpu::loop_hangs() {
   if (self().preemptive) return false;
-  const std::uint32_t running = block_.head().running;
-  return hang_watch_->loop_hangs(running, block_.head().beats + jobs_of(TaskWord::found(running).task()), wall_.now());
+  const TaskWord word = TaskWord::found(block_.head().running);
+  const std::uint64_t beats = block_.head().beats + jobs_of(word.task());
+  const bool is_cycle = word.has_method() && word.method() == Method::kCycle;
+  const Nanoseconds used = is_cycle ? used_by(cycling_->thread()) : kNever;  // kNever also if that thread is gone
+  if (used == kNever) return hang_watch_->loop_hangs(word.word(), beats, wall_.now());
+  return hang_watch_->job_hangs(image_->spec().tasks[word.task().index], word.word(), beats, used, wall_.now());
 }
 
 // True if the keeper is gone. A process that ends closes its channels first and loses its children a little later. A

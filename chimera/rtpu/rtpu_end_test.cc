@@ -94,7 +94,7 @@ TEST_F(RtpuEndTest, WaitsForNoDeadRtpuThoughNoKeeperShowsItsDeath) {
 }
 
 TEST_F(RtpuEndTest, EndsWithoutWaitingWhenAJobOfItsOwnHangs) {
-  rtpu(0).edge->hanging().note(TaskWord(kEndedGiver, Method::kCycle), seconds(1));
+  rtpu(0).edge->hanging().note(TaskWord(kEndedGiver, Method::kCycle), seconds(1), {});
   end_of(0).tell(false);
   rtpus->change();
   rtpus->run(milliseconds(5));
