@@ -47,6 +47,7 @@ class Nonsense {
   /// Returns the first error, or "".
   std::string run() {
     Rig rig(component_.name);
+    if (component_.name == std::string_view("csv_player")) rig.joined("out", "signal", "1", 0);
     shape(rig);
     const bool is_hostile = draw(4) != 0;
     for (std::uint32_t i = 0; i < component_.n_ports; ++i)
@@ -156,7 +157,7 @@ class Nonsense {
     told_ += text;
   }
   void text(Rig& rig, const chimera_port_decl& port, std::uint32_t e, std::uint32_t instance, bool is_hostile) {
-    std::array<char, 64> bytes{};
+    std::array<char, 256> bytes{};
     if (is_hostile) bytes.fill(draw(2) == 0 ? 'x' : '%');
     bytes[port.element_size - 1] = '\0';
     sized<1>(rig, port, e, instance, bytes.data());
