@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parses measures such as a maximum, a root mean square and a settling time, and computes them sample by sample.
-#include "chimera/cli/batch/measure.h"
+#include "chimera/cli/run/measure.h"
 
 #include <algorithm>
 #include <array>
