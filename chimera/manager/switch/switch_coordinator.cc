@@ -213,10 +213,8 @@ void SwitchCoordinator::find_late_off(ForeseenSwitch& foreseen) const {
   const TaskBits after = target_of(foreseen.plan);
   for (const TaskId task : foreseen.plan.leaving) {
     const TaskSpec& spec = state_.spec().tasks[task.index];
-    const Profile profile = state_.profile(task);
-    const bool was_called = profile.execution[static_cast<int>(Method::kOff)].count != 0;
-    const Nanoseconds needed = IdleGap::needed(spec, profile, Method::kOff);
-    if (was_called || !members_.needs_gaps(task) || needed <= longest_gap(state_.spec(), after, spec.rtpu)) continue;
+    const Nanoseconds needed = IdleGap::needed(spec, state_.profile(task), Method::kOff);
+    if (!members_.needs_gaps(task) || needed <= longest_gap(state_.spec(), after, spec.rtpu)) continue;
     foreseen.late_off = task;
     foreseen.needed = needed;
     return;

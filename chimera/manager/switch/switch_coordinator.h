@@ -39,7 +39,7 @@ struct ForeseenSwitch {
   SwitchPlan plan;        ///< empty for a refusal
   std::string remedy;
   Nanoseconds expected;   ///< estimated time from the request to the change, without gaps, inputs and `safe_when`
-  TaskId late_off;        ///< its `off` was never called and fits no gap: it comes IdleGap::kLongestWait late
+  TaskId late_off;        ///< its `off` fits no gap: it comes IdleGap::kLongestWait late
   Nanoseconds needed;     ///< idle time that the `off` of late_off needs
 };
 
