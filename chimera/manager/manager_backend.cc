@@ -215,7 +215,7 @@ void ManagerBackend::signal(const Request& request) {
   const auto wanted = static_cast<Signal>(at - std::begin(kSignals));
   if (wanted == Signal::kOn && loop_.switches().is_under_way())
     return request.reply(RpcResponse::refused("under-way", loop_.switches().under_way() + ", is under way", "",
-                                              "ask again when it is over"));
+                                              loop_.switches().way_out()));
   loop_.command(wanted, std::get<0>(std::move(tasks)),
                   [this, reply = request.reply](const subsystem::CommandAnswer& answer) {
                     reply(signal_answer(state(), answer));
@@ -271,7 +271,8 @@ void ManagerBackend::cancel(const Request& request) {
   };
   if (!switches.cancel({request.caller.role, request.caller.user}, answer))
     request.reply(RpcResponse::refused(
-        "too-late", switches.under_way() + ", cannot be cancelled: it is " + switches.progress(), ""));
+        "too-late", switches.under_way() + ", cannot be cancelled: it is " + switches.progress(), "",
+        switches.way_out()));
 }
 
 void ManagerBackend::switch_to(const Request& request) {
@@ -294,10 +295,10 @@ void ManagerBackend::drill(const Request& request) {
   if (loop_.drill().is_under_way())
     return refuse("under-way", "another one is under way", "ask again when it is over");
   if (loop_.switches().is_under_way())
-    return refuse("under-way", loop_.switches().under_way() + ", is under way", "ask again when it is over");
+    return refuse("under-way", loop_.switches().under_way() + ", is under way", loop_.switches().way_out());
   if (!state().logic.is_settled())
     return refuse("under-way", "tasks are being brought up",
-                  "`chimera status` shows which; ask again when they are ON");
+                  loop_.switches().way_out("`chimera status` shows which; ask again when they are ON"));
   if (const Json flag = flag_json(state()); truth_at(flag, "up"))
     return refuse("flag-up", "the flag is up already, so it would measure nothing", "`chimera status` says by whom");
   const std::uint64_t wait_ms = control::number(request.parameters, "wait_ms", 10'000);

@@ -269,6 +269,7 @@ bool ManagerLoop::step(Nanoseconds at_most, int also, int or_else) {
   steps_->look(now());
   if (is_ready_) {  // before that, the tasks that are ON are not known
     switches_->look(now());
+    for (const RtpuId rtpu : switches_->overdue(now())) end_rtpu(rtpu);
     wishes_->look(now());
     takeovers_->look(now());
   }

@@ -127,7 +127,7 @@ DEFECTS = (
     ("the flag stays up after a slow switch", "switch/slow_switch.cc", "  flag.hold(false);\n", ""),
     ("hardware has no time to see the flag before a constant changes", "switch/slow_switch.cc",
      "  if (waits && now < held_since_ + lead) {", "  if (false && now < held_since_ + lead) {"),
-    ("users are re-initialised before who makes their constants on the way back", "switch/slow_switch.cc",
+    ("users are re-initialised before who makes their constants on the way back", "plan/slow_plan.cc",
      "  return is_reinit ? first_reinit_ + end_of_reinits_ - 1 - step : step;", "  return (void)is_reinit, step;"),
     ("who stays is not re-initialised with a constant that changes", "plan/slow_plan.cc",
      "  add(SlowAct::kReinit, users);\n", ""),

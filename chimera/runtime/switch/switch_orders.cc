@@ -115,6 +115,12 @@ bool SwitchOrders::abort(const OrderedSwitch& present) noexcept {
   return true;
 }
 
+bool SwitchOrders::find_plan_of(const SwitchOrder& order) noexcept {
+  for (std::size_t t = 0; t < statuses_.size(); ++t)
+    statuses_[t] = {order.on.has(TaskId(t)) ? State::kOn : State::kOff, false};
+  return static_cast<bool>(planner_.plan(order.target, statuses_, plan_));
+}
+
 bool SwitchOrders::are_over(std::uint16_t plan, std::uint16_t contexts) const noexcept {
   for (std::uint32_t c = 0; c < kMaxContexts; ++c)
     if ((contexts >> c & 1u) != 0 && members_.is_busy_with(c, plan)) return false;
@@ -124,7 +130,10 @@ bool SwitchOrders::are_over(std::uint16_t plan, std::uint16_t contexts) const no
 void SwitchOrders::collect(const OrderedSwitch& over, NoSwitch otherwise, Nanoseconds now,
                            SwitchReceipt& receipt) const noexcept {
   const PlanWord word = agreement().plan();
-  const bool is_committed = word.number == over.order.number && word.phase == SwitchPhase::kCommitted;
+  Nanoseconds at = kNever;
+  if (otherwise == NoSwitch::kDamaged) at = on() == over.order.target ? told_change(over, now) : kNever;
+  else if (word.number == over.order.number && word.phase == SwitchPhase::kCommitted) at = agreement().at(word);
+  const bool is_committed = at != kNever;
   SwitchReceipt empty;
   empty.tasks = receipt.tasks.first(0);
   empty.variables = receipt.variables.first(0);
@@ -140,7 +149,7 @@ void SwitchOrders::collect(const OrderedSwitch& over, NoSwitch otherwise, Nanose
   receipt.way = over.way;
   receipt.tries = over.tries;
   receipt.end = is_committed ? SwitchEnd::kDone : SwitchEnd::kAborted;
-  if (is_committed) receipt.at = agreement().at(word);
+  receipt.at = at;
   for (std::uint32_t c = 0; c < kMaxContexts; ++c) {
     SwitchReceipt part;
     const bool is_member = (over.order.members >> c & 1u) != 0;
@@ -149,6 +158,16 @@ void SwitchOrders::collect(const OrderedSwitch& over, NoSwitch otherwise, Nanose
   if (receipt.ended == kNever) receipt.ended = now;
   if (!is_committed && receipt.why == NoSwitch::kNone) receipt.why = otherwise;
   sort(receipt);
+}
+
+// The instant of the change in the part of a context; `otherwise`, which is later, if no part has it.
+Nanoseconds SwitchOrders::told_change(const OrderedSwitch& over, Nanoseconds otherwise) const noexcept {
+  for (std::uint32_t c = 0; c < kMaxContexts; ++c) {
+    SwitchReceipt part;
+    if ((over.order.members >> c & 1u) == 0 || !members_.read_part(c, over.order.number, part)) continue;
+    if (part.end == SwitchEnd::kDone && part.at >= over.asked && part.at <= otherwise) return part.at;
+  }
+  return otherwise;
 }
 
 bool SwitchOrders::is_of(TaskId task, std::uint32_t context) const noexcept {
