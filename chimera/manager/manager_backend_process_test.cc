@@ -273,7 +273,8 @@ TEST_F(ManagerBackendTest, EventsNameWhoCausedThem) {
   good("flag", {{"up", true}});
   (void)good("end");
   std::string causes;
-  for (const Json& event : good("events", {{"since", last + 1}})["events"])
+  const Json told = good("events", {{"since", last + 1}});
+  for (const Json& event : told["events"])
     if (event.contains("by")) causes += event["kind"].as_string() + " " + event["by"].as_string() + "\n";
   EXPECT_EQ(causes, "command configure:root\nset configure:root\nflag configure:root\ncommand configure:root\n");
   EXPECT_EQ(state().acting, "");

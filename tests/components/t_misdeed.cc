@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Does to its process what no component should, in its cycles, while a file exists.
 #include <fcntl.h>
+#include <linux/filter.h>
 #include <linux/seccomp.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -59,8 +60,12 @@ struct Misdeed {
     if (is("top")) set_policy(SCHED_FIFO, 99);
     if (is("strays")) stray();
     if (is("unlocked")) ::munlockall();
+<<<<<<< ours
     if (is("strict")) ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_STRICT);
     if (is("traced")) ::ptrace(PTRACE_TRACEME, 0, nullptr, nullptr);
+=======
+    if (is("strict")) end_thread_at_next_call();
+>>>>>>> theirs
     if (is("close") && *number < 0) ::close_range(3, ~0u, 0);
     if (is("close") && *number >= 0) ::close(static_cast<int>(*number));
   }
@@ -71,6 +76,12 @@ struct Misdeed {
       std::snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
       if (::readlink(link, what, sizeof what - 1) > 0 && std::strstr(what, "timerfd") != nullptr) ::close(fd);
     }
+  }
+  static void end_thread_at_next_call() {
+    sock_filter kill{BPF_RET | BPF_K, 0, 0, SECCOMP_RET_KILL_THREAD};
+    const sock_fprog program{1, &kill};
+    ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+    ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program);
   }
   // In a process whose parent has ended, in a session of its own.
   static bool detached() {

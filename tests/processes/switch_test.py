@@ -70,7 +70,7 @@ class Switch(unittest.TestCase):
             system.call("end")
             system.disconnect()
             self.assertEqual(system.wait(), 1)
-            self.assertIn(f"FAILED: 2 receipts were not filed: {system.receipt_file}: ", system.told())
+            self.assertIn(f"FAILED: 2 receipts were not filed: {system.receipt_file}: ", system.said())
 
     def test_receipts_are_read_when_nothing_runs_and_numbers_begin_anew_in_each_run(self):
         with System(SWITCH) as system:
