@@ -60,12 +60,8 @@ struct Misdeed {
     if (is("top")) set_policy(SCHED_FIFO, 99);
     if (is("strays")) stray();
     if (is("unlocked")) ::munlockall();
-<<<<<<< ours
-    if (is("strict")) ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_STRICT);
-    if (is("traced")) ::ptrace(PTRACE_TRACEME, 0, nullptr, nullptr);
-=======
     if (is("strict")) end_thread_at_next_call();
->>>>>>> theirs
+    if (is("traced")) ::ptrace(PTRACE_TRACEME, 0, nullptr, nullptr);
     if (is("close") && *number < 0) ::close_range(3, ~0u, 0);
     if (is("close") && *number >= 0) ::close(static_cast<int>(*number));
   }

@@ -75,7 +75,7 @@ DEFECTS = (
     ("a task of a loop arms with what its partner wrote long ago", "state/sources.cc",
      "handover.variable == variable && is_armed(handover.to.task)", "(void)is_armed, handover.variable == variable"),
     ("an off that was never called waits for a gap for ten seconds", "switch/switching.cc",
-     "is_unknown ? IdleGap::kLongestWait : kSwitchPatience;", "(void)is_unknown, kSwitchPatience;"),
+     "gap_.soon() : IdleGap::kLongestWait;", "gap_.soon() : kSwitchPatience;"),
     ("virtual time goes the slow way where real threads need no gap", "cycle/releases.cc",
      "!threads_.preempt()", "true"),
     ("a switch that was only late is not tried again", "switch/switch_orders.cc",

@@ -69,6 +69,14 @@ std::string asker_text(const BegunSwitch& begun, const ApplicationSpec& spec) {
   return control::asked_by({begun.order.after, begun.cause, begun.by}, spec);
 }
 
+/// Typical time of the method; for a method that was never called, the guess of IdleGap.
+Nanoseconds method_time(const ManagerState& state, TaskId task, Method method) {
+  const Nanoseconds budget = state.spec().tasks[task.index].budget;
+  const Nanoseconds guess = budget > Nanoseconds{} ? budget : IdleGap::kUnknownMethod;
+  const Profile profile = state.profile(task);
+  return profile.execution[static_cast<int>(method)].count == 0 ? guess : profile.of_late(method);
+}
+
 }  // namespace
 
 // True if one of the tasks in `tasks` shares a resource with `task`.
@@ -232,26 +240,18 @@ void SwitchCoordinator::find_late_off(ForeseenSwitch& foreseen) const {
   }
 }
 
-/// Typical time of the method; for a method that was never called, the guess of IdleGap.
-Nanoseconds SwitchCoordinator::method_time(TaskId task, Method method) const {
-  const Nanoseconds budget = state_.spec().tasks[task.index].budget;
-  const Nanoseconds guess = budget > Nanoseconds{} ? budget : IdleGap::kUnknownMethod;
-  const Profile profile = state_.profile(task);
-  return profile.execution[static_cast<int>(method)].count == 0 ? guess : profile.of_late(method);
-}
-
 /// Estimated time to the change, if only the flag must be waited for. Requires: orders_ has judged.
 Nanoseconds SwitchCoordinator::expected() {
   Nanoseconds sum;
   const std::uint8_t slow = orders_.way().slow;
   if (slow == 0) {
-    for (const TaskId task : orders_.plan().arriving) sum = sum + method_time(task, Method::kOn);
+    for (const TaskId task : orders_.plan().arriving) sum = sum + method_time(state_, task, Method::kOn);
     return sum + orders_.lead();
   }
   const Method methods[] = {Method::kCycle, Method::kOff, Method::kKill, Method::kInit, Method::kReinit, Method::kOn};
   static_assert(std::size(methods) == static_cast<std::size_t>(SlowAct::kOn) + 1);
   for (const SlowStep& step : slow_.plan(orders_.plan(), orders_.constants_in_force(), slow))
-    if (step.act != SlowAct::kCheck) sum = sum + method_time(step.task, methods[static_cast<int>(step.act)]);
+    if (step.act != SlowAct::kCheck) sum = sum + method_time(state_, step.task, methods[static_cast<int>(step.act)]);
   return (slow & kSlowForConstants) != 0 ? sum + flag_lead(state_.spec(), orders_.on()) : sum;
 }
 

@@ -105,7 +105,6 @@ class SwitchCoordinator {
   std::uint64_t words_of_progress() const;
   Nanoseconds overdue_at() const noexcept;
   void assess(TaskBits& target, SwitchOutcome& outcome);
-  Nanoseconds method_time(TaskId task, Method method) const;
   Nanoseconds expected();
   void find_late_off(ForeseenSwitch& foreseen) const;
   bool is_tried_again(const SwitchReceipt& receipt, Nanoseconds now);

@@ -17,6 +17,19 @@ void append_within(std::span<T>& list, const T& item, std::size_t room) noexcept
   list.back() = item;
 }
 
+// Tasks by what happens to them, tasks that were re-initialised in the order of initialisation.
+void sort(SwitchReceipt& receipt, std::span<const TaskId> init_order) noexcept {
+  const auto is_before = [](const TaskPart& a, const TaskPart& b) { return a.move < b.move; };
+  const auto begin = receipt.tasks.begin();
+  for (auto part = begin; part != receipt.tasks.end(); ++part)  // std::stable_sort allocates
+    std::rotate(std::upper_bound(begin, part, *part, is_before), part, part + 1);
+  const std::span<TaskId> list = receipt.reinitialised;
+  std::size_t n = 0;
+  for (const TaskId next : init_order)
+    for (std::size_t i = n; i < list.size(); ++i)
+      if (list[i] == next) std::swap(list[n++], list[i]);
+}
+
 }  // namespace
 
 void SwitchOrders::prepare(const ApplicationSpec& spec, bool is_alone, SetupMemory& memory) {
@@ -35,30 +48,27 @@ PlanAnswer SwitchOrders::judge(TaskBits& target, SwitchCause cause) noexcept {
   look();
   way_ = {};
   if (cause != SwitchCause::kScript) {
-    keep_standbys(target);
-    if (const TaskId kept = first_kept_off(target); kept.is_valid()) return {NoSwitch::kKeptOff, kept};
+    if (const TaskId kept = heed_persons(target); kept.is_valid()) return {NoSwitch::kKeptOff, kept};
   }
   const PlanAnswer answer = planner_.plan(target, statuses_, plan_);
   way_ = answer ? ways_.judge(plan_, statuses_, constants_in_force(), members_.constants(), *this) : SwitchWay();
   return answer;
 }
 
-// The tasks that are ON are no set of the description: where one stands in for a task of the target, it took over.
-void SwitchOrders::keep_standbys(TaskBits& target) const noexcept {
-  if (set_of(*spec_, on()) != kNoSet) return;
-  for (const StandbySpec& each : spec_->standbys)
-    for (const TaskId by : {each.standby, each.primary})
-      for (std::size_t t = 0; t < statuses_.size(); ++t) {
-        if (!target.has(TaskId(t)) || is_on(TaskId(t)) || !is_on(by) || target.has(by)) continue;
-        if (!spec_->stand_in(TaskId(t), by)) continue;
-        target.remove(TaskId(t));
-        target.add(by);
-      }
-}
-
-TaskId SwitchOrders::first_kept_off(const TaskBits& target) const noexcept {
-  for (const TaskId id : spec_->on_order)
-    if (target.has(id) && !is_on(id) && members_.is_kept_off(id)) return id;
+// The first task of the target that is kept OFF. Where the tasks that are ON are no set of the description, and one of
+// them stands in for a task of the target, it took over and stays.
+TaskId SwitchOrders::heed_persons(TaskBits& target) const noexcept {
+  const bool may_have_taken_over = set_of(*spec_, on()) == kNoSet;
+  for (const TaskId id : spec_->on_order) {
+    if (!target.has(id) || is_on(id)) continue;
+    if (members_.is_kept_off(id)) return id;
+    for (const TaskId by : spec_->on_order) {
+      if (!may_have_taken_over || !is_on(by) || target.has(by) || !spec_->stand_in(id, by)) continue;
+      target.remove(id);
+      target.add(by);
+      break;
+    }
+  }
   return {};
 }
 
@@ -157,7 +167,7 @@ void SwitchOrders::collect(const OrderedSwitch& over, NoSwitch otherwise, Nanose
   }
   if (receipt.ended == kNever) receipt.ended = now;
   if (!is_committed && receipt.why == NoSwitch::kNone) receipt.why = otherwise;
-  sort(receipt);
+  sort(receipt, spec_->init_order);
 }
 
 // The instant of the change in the part of a context; `otherwise`, which is later, if no part has it.
@@ -204,19 +214,6 @@ void SwitchOrders::add_lists(const SwitchReceipt& part, std::uint32_t context, S
   }
   for (const TaskId each : part.reinitialised)
     if (is_of(each, context)) append_within(to.reinitialised, each, n_tasks);
-}
-
-// Tasks by what happens to them, tasks that were re-initialised in the order of initialisation.
-void SwitchOrders::sort(SwitchReceipt& receipt) const noexcept {
-  const auto is_before = [](const TaskPart& a, const TaskPart& b) { return a.move < b.move; };
-  const auto begin = receipt.tasks.begin();
-  for (auto part = begin; part != receipt.tasks.end(); ++part)  // std::stable_sort allocates
-    std::rotate(std::upper_bound(begin, part, *part, is_before), part, part + 1);
-  const std::span<TaskId> list = receipt.reinitialised;
-  std::size_t n = 0;
-  for (const TaskId next : spec_->init_order)
-    for (std::size_t i = n; i < list.size(); ++i)
-      if (list[i] == next) std::swap(list[n++], list[i]);
 }
 
 bool SwitchOrders::make_next_try(OrderedSwitch& over, NoSwitch why, Nanoseconds now) noexcept {

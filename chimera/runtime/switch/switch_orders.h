@@ -122,14 +122,12 @@ class SwitchOrders : private NeededGaps {
 
  private:
   Nanoseconds for_on(TaskId task) const noexcept override;
-  void keep_standbys(TaskBits& target) const noexcept;
-  TaskId first_kept_off(const TaskBits& target) const noexcept;
+  TaskId heed_persons(TaskBits& target) const noexcept;
   Nanoseconds told_change(const OrderedSwitch& over, Nanoseconds otherwise) const noexcept;
   bool is_of(TaskId task, std::uint32_t context) const noexcept;
   void make_order(OrderedSwitch& next, const TaskBits& target, Nanoseconds until) const noexcept;
   void add_part(const SwitchReceipt& part, std::uint32_t context, Nanoseconds now, SwitchReceipt& to) const noexcept;
   void add_lists(const SwitchReceipt& part, std::uint32_t context, SwitchReceipt& to) const noexcept;
-  void sort(SwitchReceipt& receipt) const noexcept;
 
   SwitchMembers& members_;
   const ApplicationSpec* spec_ = nullptr;
