@@ -49,7 +49,13 @@ void CyclingThread::start() {
   thread_ = std::thread([this] { run(); });
 }
 
+bool CyclingThread::is_gone() const noexcept {
+  const pid_t number = number_;
+  return number != 0 && used_by(number) == kNever && !has_ended_;  // in this order: it may end in between
+}
+
 void CyclingThread::run() {
+  number_ = this_thread();
   const int ceiling = priority_of(place_.spec, place_.me, place_.priority);
   const RealtimeGrant grant = enter_realtime({ceiling, static_cast<int>(self().cpu), true});
   if (self().preemptive)

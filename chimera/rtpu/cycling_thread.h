@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "chimera/platform/clock.h"
+#include "chimera/platform/thread.h"
 #include "chimera/platform/wake.h"
 #include "chimera/rtpu/rtpu_control.h"
 #include "chimera/runtime/executive/executive.h"
@@ -48,6 +49,8 @@ class CyclingThread {
   void start();
   /// True if all tasks are killed and no task cycles any more. Any thread.
   bool has_ended() const noexcept { return has_ended_; }
+  /// True if the thread is gone without has_ended(): a component ended it. Any thread; one system call.
+  bool is_gone() const noexcept;
   /// Context: setup; blocks until the thread has ended.
   void join() { thread_.join(); }
 
@@ -69,6 +72,7 @@ class CyclingThread {
   std::unique_ptr<ComputingClock> job_clock_;
   std::unique_ptr<Executive> executive_;
   std::unique_ptr<PreemptiveExecutor> preemptive_;  // one of the two
+  std::atomic<pid_t> number_{0};        // of the thread; 0: it has not begun
   std::atomic<bool> has_ended_{false};  // stored last by the thread, loaded by the main thread before it joins
   std::thread thread_;
 };

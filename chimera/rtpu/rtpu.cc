@@ -59,6 +59,7 @@ class Rtpu {
   void end(bool is_alone);
   bool hangs();
   bool loop_hangs();
+  bool has_lost_thread();
   bool give_up(std::uint32_t method, Nanoseconds waited);
   std::uint64_t jobs_of(TaskId task) const;
 
@@ -212,6 +213,7 @@ int Rtpu::run() {
   while (!cycling_->has_ended()) {
     listen(kSuperviseEveryMs);
     attend();
+    if (has_lost_thread()) return kThreadLost;
     if (hangs()) return kMethodHangs;
     if (!is_ending_ && edge_->hanging().any()) {
       is_giving_up_ = give_up(edge_->hanging().job(), edge_->hanging().age());
@@ -223,6 +225,15 @@ int Rtpu::run() {
   cycling_->join();
   service_->stop();
   return is_giving_up_ ? kMethodHangs : ends_alone_ ? kTerminated : 0;
+}
+
+// True if a component ended a thread of this process, in a method or for its next system call. Tasks cannot be turned
+// off then.
+bool Rtpu::has_lost_thread() {
+  const bool is_loop = cycling_->is_gone();
+  if (!is_loop && !service_->is_gone()) return false;
+  const BlockHead& head = block_.head();
+  return give_up(!is_loop ? head.serving : self().preemptive ? head.at_edge : head.running, {});
 }
 
 // True if a method does not return. Only the end of the process can end such a method.
@@ -343,7 +354,7 @@ int run_rtpu(const RtpuStart& start) {
   if (rtpu.is_without_keeper()) end_children_of_this_rtpu();
   // A process other than the keeper sent SIGTERM. The keeper then sees this signal as the cause of the death.
   if (code == kTerminated) end_by_signal(SIGTERM);
-  if (code == kMethodHangs) std::_Exit(kMethodHangs);  // threads still run component code, so no destructor may run
+  if (code == kMethodHangs || code == kThreadLost) std::_Exit(code);  // threads may run component code: no destructor
   return code;
 }
 

@@ -23,6 +23,7 @@ void ServiceThread::ask(TaskId task) noexcept {
 }
 
 void ServiceThread::run(TaskSet& tasks) {
+  number_ = this_thread();
   LinuxClock clock;
   ComputingClock job_clock(clock);
   const Doorbell bell(word_);

@@ -5,6 +5,7 @@
 #include "chimera/base/hosted/wording.h"
 #include "chimera/platform/descriptor.h"
 #include "chimera/platform/process.h"
+#include "chimera/rtpu/rtpu.h"
 #include "chimera/runtime/task_word.h"
 #include "chimera/task/signal.h"
 
@@ -32,6 +33,7 @@ std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, 
     return "was ended: " + hung;
   std::string text = "ended with status " + std::to_string(ended.code);
   if (ended.by_signal == 0 && ended.code == kDescriptorLost) text += " (its descriptors were closed)";
+  if (ended.by_signal == 0 && ended.code == kThreadLost) text += " (a component ended one of its threads)";
   if (ended.by_signal != 0) text = "ended by " + std::string(signal_text(ended.code).view());
   if (!made.empty()) {
     text += " " + made;
