@@ -209,6 +209,7 @@ void ManagerLoop::look_at_keeper() {
   face_watch_.look(*state_, now());
   if (is_ending_ || !state_->is_ending()) return;
   is_ending_ = true;
+  receipts_->try_again(now());  // before the run client asks which ones are not filed
   state_->tell("ending", TaskId{}, RtpuId{}, "the subsystem is ending", now());
 }
 

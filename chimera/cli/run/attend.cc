@@ -37,6 +37,7 @@ constexpr Nanoseconds kStartPatience = seconds(20), kStartAnswer = milliseconds(
 constexpr Nanoseconds kSwitchLimit = seconds(15);  // what is not committed within 10 s is aborted
 constexpr std::size_t kEventsAtOnce = 1000;
 constexpr Nanoseconds kLastOutput = seconds(1);  // half of the time that the keeper waits for the run client to finish
+constexpr Nanoseconds kFilingLimit = milliseconds(500);  // until the disk has the last receipts
 constexpr Nanoseconds kEndLimit = seconds(600);  // the keeper ends a process that takes too long: not judged here
 
 std::string limit_text(Nanoseconds time) { return formatted("%g s", to_seconds(time)); }
@@ -424,6 +425,15 @@ void RemoteTarget::judge_end(RunReport& report, const Json& before) {
         " of the acts of --at were carried out: the process that asked for them died");
   if (ended.empty() && !names_.tasks.empty())
     report.verdict.failures.emplace_back("the manager did not answer at the end: how the tasks ended is not known");
+  const Nanoseconds until = clock_.now() + kFilingLimit;
+  for (bool is_last = !after; !is_last; clock_.wait_until(clock_.now() + kStartLook)) {
+    const auto answer = line_.ask("receipts", {{"last", 1}});
+    const auto unfiled = static_cast<std::uint64_t>(answer ? whole_at(*answer, "unfiled") : 0);
+    is_last = unfiled == 0 || clock_.now() >= until;
+    if (unfiled > 0 && is_last)
+      report.verdict.failures.push_back(counted(unfiled, "receipt was", "receipts were") + " not filed: " +
+                                        text_at(*answer, "fault", "the disk does not answer"));
+  }
 }
 
 /// Prints the refusal. The tasks that were made are turned off and killed nevertheless, and that is judged.
