@@ -18,7 +18,8 @@ Workplace Workplace::around(const std::string& program) {
   made.unit_files = {prefix + "/share/chimera/units.xml", prefix + "/../../share/chimera/units.xml"};
   made.documents = prefix + "/share/chimera";
   const std::filesystem::path checkout = std::filesystem::path(prefix).parent_path().parent_path();
-  if (std::filesystem::is_directory(checkout / "docs/formats")) made.documents = checkout.string();
+  std::error_code unknown;
+  if (std::filesystem::is_directory(checkout / "docs/formats", unknown)) made.documents = checkout.string();
   return made;
 }
 
@@ -39,6 +40,12 @@ Error no_component(const std::string& name, const Library& library) {
   else if (!nearest.empty()) message += did_you_mean(nearest);
   else message += "; `chimera list` names those that are, CHIMERA_PATH says where to look";
   return {ErrorCode::kNotFound, {message}, {}};
+}
+
+std::string absolute_path(const std::string& path) {
+  std::error_code unknown;
+  const std::filesystem::path whole = std::filesystem::absolute(path, unknown);
+  return unknown ? path : whole.string();
 }
 
 std::string program_path() {

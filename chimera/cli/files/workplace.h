@@ -26,6 +26,9 @@ struct Workplace {
 /// The error "no component NAME is installed", with the nearest installed name. Context: setup.
 Error no_component(const std::string& name, const Library& library);
 
+/// The path from the root; `path` itself if the present folder is gone. Context: setup.
+std::string absolute_path(const std::string& path);
+
 /// The path of the running program. Context: setup.
 std::string program_path();
 

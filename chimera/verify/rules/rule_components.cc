@@ -47,7 +47,7 @@ void refuse_unknown(Model& model, const DraftTask& task) {
   const std::string near = model.library.nearest_name(name);
   std::string remedy = "'chimera list' shows the library; CHIMERA_PATH adds folders to it";
   for (const std::string& folder : model.library.missing_folders())
-    remedy += "; CHIMERA_PATH names " + folder + ", which is no folder";
+    remedy += "; CHIMERA_PATH names " + folder;
   model.error("component-unknown", task.component.at, component + "is not in the library", name,
               "a component of the library", near, near.empty() ? remedy : "");
 }
