@@ -9,6 +9,7 @@
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/un.h>
+#include <sys/utsname.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -54,7 +55,7 @@ struct Parts {
 void set_priority(const RealtimeRequest& request, RealtimeGrant& grant, Parts& report) noexcept {
   if (request.priority == 0) {
     grant.priority = true;
-    report.miss() << "ordinary scheduling was asked for (priority 0): any job may come late";
+    report.miss() << kAskedWords << " (priority 0): any job may come late";
     return;
   }
   const int error = set_fifo(request.priority) ? 0 : errno;
@@ -125,16 +126,22 @@ void lock_memory(const RealtimeRequest& request, RealtimeGrant& grant, Parts& re
                 << "): set RLIMIT_MEMLOCK to unlimited (ulimit -l, LimitMEMLOCK=) or give CAP_IPC_LOCK";
 }
 
+bool has_preempt_rt() noexcept {
+  utsname kernel{};
+  return ::uname(&kernel) == 0 && std::strstr(kernel.version, "PREEMPT_RT") != nullptr;
+}
+
 void write_report(const Parts& parts, RealtimeGrant& grant) noexcept {
   Message report;
   if (!parts.missing.empty()) {
-    report << "WARNING: not real time" << parts.missing.view();
+    report << kMissingWords << parts.missing.view();
     if (!parts.granted.empty()) report << "\n  granted: " << parts.granted.view();
   } else {
     report << "Real-time OK: " << parts.granted.view() << ".";
     if (grant.throttle_share < 1)
       report << " Kernel limit for RT threads: " << std::lround(grant.throttle_share * 100) << " % of each "
              << realtime_period().count / 1'000'000 << " ms.";
+    if (!has_preempt_rt()) report << " But " << kUnboundWords << ".";
   }
   grant.report.assign(report.view());
 }
@@ -201,6 +208,24 @@ double realtime_share() noexcept {
 
 Nanoseconds realtime_period() noexcept {
   return microseconds(std::strtol(FileStart("/proc/sys/kernel/sched_rt_period_us").bytes, nullptr, 10));
+}
+
+FixedString<400> not_real_time(std::string_view report) noexcept {
+  Message line;
+  if (const std::size_t begin = report.find(kMissingWords); begin != report.npos) {
+    report = report.substr(0, report.find("\n  granted: ")).substr(begin + kMissingWords.size());
+    for (std::size_t at = 0; at < report.size(); ++at) {
+      const bool is_break = report.substr(at).starts_with("\n  ");
+      if (is_break) at += 2;
+      else line << report.substr(at, 1);
+      if (is_break && !line.empty()) line << "; ";
+    }
+  } else if (report.find(kUnboundWords) != report.npos) {
+    line << kUnboundWords;
+  }
+  FixedString<400> text;
+  text.assign(line.view());
+  return text;
 }
 
 RealtimeGrant enter_realtime(const RealtimeRequest& request) noexcept {

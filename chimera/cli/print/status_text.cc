@@ -223,6 +223,7 @@ std::string rtpu_remarks(const Json& rtpu) {
   if (truth_at(rtpu, "flag")) line += ", FLAG";
   if (const std::int64_t bytes = whole_of(rtpu, "resident_bytes"); bytes > 0) line += ", " + memory_text(bytes);
   if (const std::string lost = text_of(rtpu, "lost_rights"); !lost.empty()) line += ", RIGHTS LOST: " + lost;
+  if (!text_of(rtpu, "not_real_time").empty()) line += ", NOT REAL TIME";
   if (const std::int64_t lost = whole_of(rtpu, "lost_events"); lost > 0)
     line += ", " + std::to_string(lost) + " events lost";
   if (const std::string end = text_of(rtpu, "last_end"); !end.empty()) line += "; last end: " + end;
@@ -255,6 +256,9 @@ std::string status_text(const Json& status) {
   for (const Json& rtpu : status["rtpus"])
     if (const std::string lost = text_of(rtpu, "lost_rights"); !lost.empty())
       text += text_of(rtpu, "name") + ": RIGHTS LOST: " + lost + "\n";
+  for (const Json& rtpu : status["rtpus"])
+    if (const std::string why = text_of(rtpu, "not_real_time"); !why.empty())
+      text += text_of(rtpu, "name") + ": NOT REAL TIME: " + why + "\n";
   if (const Columns tasks = task_table(status); !tasks.empty()) text += "\n" + tasks.text();
   for (const Json& task : status["tasks"])
     if (const std::string fault = text_of(task, "fault"); !fault.empty())

@@ -364,7 +364,8 @@ std::vector<RtpuFate> RemoteTarget::rtpus_of(const Json& status) const {
                   static_cast<std::uint64_t>(whole_at(json, "restarts")),
                   kNever,
                   truth_at(json, "given_up"),
-                  {}};
+                  {},
+                  text_at(json, "not_real_time")};
     if (const auto at = restarted_.find(rtpu.name); at != restarted_.end() && started_ != kNever)
       rtpu.restarted = at->second - started_;
     rtpus.push_back(std::move(rtpu));

@@ -22,6 +22,7 @@
 #include "chimera/cli/run/watch_plot.h"
 #include "chimera/control/receipt/receipt_json.h"
 #include "chimera/control/receipt/receipt_text.h"
+#include "chimera/platform/realtime.h"
 #include "chimera/platform/standard_streams.h"
 #include "chimera/runtime/record/tap_ring.h"
 
@@ -143,6 +144,9 @@ std::vector<RtpuFate> LocalTarget::fates() {
     if (peers->died(RtpuId(r)) != kNever)
       fates.push_back({.name = std::string(application_.spec().rtpus[r].name),
                        .died = peers->died(RtpuId(r)) - loop_->origin()});
+  if (!request_.virtual_time)
+    fates.push_back({.name = std::string(application_.spec().rtpus[0].name),
+                     .not_real_time = not_real_time(loop_->description()).c_str()});
   std::ranges::stable_sort(fates, {}, [](const RtpuFate& fate) { return fate.died.count; });
   return fates;
 }

@@ -9,6 +9,7 @@
 #include "chimera/analysis/task_profile.h"
 #include "chimera/manager/state/cause.h"
 #include "chimera/manager/watch/face_watch.h"
+#include "chimera/platform/realtime.h"
 #include "chimera/text/json.h"
 
 namespace chimera::manager {
@@ -75,11 +76,13 @@ Json rtpu_json(const ManagerState& state, RtpuId rtpu) {
                {"lost_events", 0},
                {"resident_bytes", record.resident_bytes},
                {"first_resident_bytes", record.first_resident_bytes},
+               {"not_real_time", Json()},
                {"lost_rights", record.is_alive ? or_null(record.lost_rights) : Json()},
                {"flag", false}};
   if (!segment.is_there()) return json;
   const BlockHead& head = segment.block().head();
   json["grant"] = grant_of(head);
+  json["not_real_time"] = or_null(not_real_time(grant_of(head)).c_str());
   if (record.is_alive) json["running"] = or_null(running_text(state.spec(), head.running));
   json["lost_events"] = head.lost_posts.load(std::memory_order_relaxed);
   json["flag"] = head.flag.load(std::memory_order_relaxed) != 0;
