@@ -8,6 +8,7 @@
 #include "chimera/control/receipt/switch_reason.h"
 #include "chimera/manager/act/operator_acts.h"
 #include "chimera/manager/answer/status_json.h"
+#include "chimera/manager/state/asker.h"
 #include "chimera/manager/state/cause.h"
 #include "chimera/manager/state/command_text.h"
 #include "chimera/runtime/hosted/asked_set.h"
@@ -175,6 +176,7 @@ void ManagerBackend::call(const control::MethodRule& method, const Json& paramet
                           control::Reply reply) {
   if (const auto answer = reads_.answer(method.id, parameters, caller.role)) return reply(*answer);
   const Request request{parameters, caller, reply};
+  const Acting acting(state(), Asker{caller.role, caller.user}.text());
   switch (method.id) {
     case MethodId::kReceipts: return receipts(request);
     case MethodId::kPlan: return plan(request);
@@ -313,6 +315,7 @@ void ManagerBackend::drill(const Request& request) {
 }
 
 void ManagerBackend::end(const Request& request) {
+  state().tell("command", TaskId{}, RtpuId{}, "end: done", now());
   loop_.end(static_cast<std::int32_t>(std::min<std::uint64_t>(control::number(request.parameters, "code", 0), 255)));
   request.reply(RpcResponse::good(Json::object()));
 }

@@ -241,6 +241,30 @@ TEST_F(ManagerBackendTest, SetPublishesAndSaveWritesItBackInTheWordsOfADescripti
   EXPECT_EQ(good("get", {{"variables", {"kp"}}})["values"]["kp"]["text"], "[100 90] N.m/rad");
 }
 
+TEST_F(ManagerBackendTest, EventsNameWhoCausedThem) {
+  const std::uint64_t last = state().log.last();
+  (void)good("signal", {{"signal", "off"}, {"tasks", {"law"}}});
+  (void)good("set", {{"values", {{"kp", "[3 4] N.m/rad"}}}});
+  good("flag", {{"up", true}});
+  (void)good("end");
+  std::string causes;
+  const Json told = good("events", {{"since", last + 1}});
+  for (const Json& event : told["events"])
+    if (event.contains("by")) causes += event["kind"].as_string() + " " + event["by"].as_string() + "\n";
+  EXPECT_EQ(causes, "command configure:root\nset configure:root\nflag configure:root\ncommand configure:root\n");
+  EXPECT_EQ(state().acting, "");
+}
+
+TEST_F(ManagerBackendTest, AStatusAndWhySayThatAnRtpuIsNotRealTime) {
+  std::strcpy(fake_.rtpu(1).block().head().grant,
+              "WARNING: not real time\n  memory not locked\n  CPU 1 refused\n  granted: SCHED_FIFO 80");
+  EXPECT_EQ(good("status")["rtpus"][0]["not_real_time"], nullptr);
+  EXPECT_EQ(good("status")["rtpus"][1]["not_real_time"], "memory not locked; CPU 1 refused");
+  fake_.rtpu(1).block().profile(fake_.task("law")).missed = 3;
+  EXPECT_EQ(good("why", {{"variable", "tau"}})["chain"][0]["timing"],
+            "3 missed, spare is not real time: memory not locked; CPU 1 refused");
+}
+
 TEST_F(ManagerBackendTest, TheOperatorsFlagStaysUntilItIsLowered) {
   EXPECT_EQ(good("flag", {{"up", true}}), (Json{{"up", true}, {"by", {"operator"}}}));
   EXPECT_EQ(good("status")["flag"], (Json{{"up", true}, {"by", {"operator"}}}));

@@ -296,6 +296,7 @@ Json event_json(const ManagerState& state, const LoggedEvent& event) {
                {"text", event.text}};
   if (event.task.is_valid()) json["task"] = state.name(event.task);
   if (event.rtpu.is_valid()) json["rtpu"] = state.name(event.rtpu);
+  if (!event.by.empty()) json["by"] = event.by;
   return json;
 }
 

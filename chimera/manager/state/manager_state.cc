@@ -50,7 +50,7 @@ FaultRecord ManagerState::fault(TaskId task) const noexcept {
 
 void ManagerState::tell(std::string kind, TaskId task, RtpuId rtpu, std::string text, Nanoseconds at) {
   own.block().memory().events.store(log.last() + 1, std::memory_order_release);
-  log.add({0, at, wall_ns(at), std::move(kind), task, rtpu, std::move(text)});
+  log.add({0, at, wall_ns(at), std::move(kind), task, rtpu, std::move(text), acting});
 }
 
 void ManagerState::announce() noexcept {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chimera/manager/state/bundle.h"
@@ -57,6 +58,7 @@ struct ManagerState {
   std::vector<std::uint32_t> tap_users;  ///< by task: subscriptions that want its publications
   std::int32_t keeper_pid = 0;
   std::string keeper_hang;  ///< "" while it runs
+  std::string acting;       ///< Asker::text() of the request that is being carried out; "": none is
 
   const ApplicationSpec& spec() const noexcept { return peers.spec(); }
   /// State as users see it: a task of an rtpu that does not run counts as ERROR, like a task of a dead rtpu.
@@ -85,6 +87,19 @@ struct ManagerState {
   void tell(std::string kind, TaskId task, RtpuId rtpu, std::string text, Nanoseconds at);
   /// Wakes all peers to read this manager's block, because it has changed.
   void announce() noexcept;
+};
+
+/// While this lives, each event names `by`, an Asker::text(), as the author of its request. Context: setup.
+class Acting {
+ public:
+  Acting(ManagerState& state, std::string by) : state_(state), before_(std::exchange(state.acting, std::move(by))) {}
+  Acting(const Acting&) = delete;
+  Acting& operator=(const Acting&) = delete;
+  ~Acting() { state_.acting = std::move(before_); }
+
+ private:
+  ManagerState& state_;
+  std::string before_;
 };
 
 /// The time of the manager: CLOCK_MONOTONIC, or the clock of use_clock(). Context: any; wait-free.
