@@ -31,6 +31,11 @@ struct SolvedExtent {
   std::optional<std::uint32_t> known;
 };
 
+/// True for a port that may be left out: a repeated in-var of at most one instance. `on` alone reads it.
+inline bool may_be_left_out(const PortDescriptor& port) noexcept {
+  return port.kind == CHIMERA_IN_VAR && port.repeated && port.max_instances == 1;
+}
+
 /// The source of the value of an in-const.
 enum class ConstSource : std::uint8_t { kNobody, kOwn, kVariable, kDefault };
 

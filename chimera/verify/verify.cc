@@ -16,6 +16,7 @@ void link(Model& model) {
   place_tasks(model);
   make_sets(model);
   pair_standbys(model);
+  link_left_out(model);
   collect_variables(model);
 }
 

@@ -25,6 +25,11 @@ void make_sets(Model& model);
 /// Makes Model::standbys of the standbys that name a known task.
 void pair_standbys(Model& model);
 
+// rule_components.cc, once the configurations are known
+/// A port that may be left out, without alias, joins the variable of its name, if each configuration with the task has
+/// a producer of that name, type and unit.
+void link_left_out(Model& model);
+
 // rule_links.cc
 /// Makes Model::variables; no name stands for a state variable and a constant.
 void collect_variables(Model& model);
