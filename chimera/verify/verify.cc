@@ -21,13 +21,14 @@ void link(Model& model) {
 
 void judge_links(Model& model) {
   refuse_two_producers(model);
-  refuse_unmet_inputs(model);
+  find_unmet_inputs(model);
   settle_constants(model);
 }
 
 void judge_values(Model& model) {
   agree_on_types(model);
   agree_on_units(model);
+  refuse_unmet_inputs(model);
   agree_on_shapes(model);
   share_maxima(model);
   limit_table(model);

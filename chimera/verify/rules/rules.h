@@ -32,7 +32,10 @@ void collect_variables(Model& model);
 std::vector<PortRef> producers_of(const Model& model, const VariableModel& variable, const SetModel& set);
 /// 1994 paper, equation 1: in each configuration no variable has two producers.
 void refuse_two_producers(Model& model);
-/// 1994 paper, equation 2: in each configuration every input has a producer.
+/// 1994 paper, equation 2: in each configuration every input has a producer. Makes Model::unmet; an input that no task
+/// produces for joins no other of its name.
+void find_unmet_inputs(Model& model);
+/// Reports them; called when units are known, because a suggestion has the unit of the input.
 void refuse_unmet_inputs(Model& model);
 
 // rule_constants.cc
