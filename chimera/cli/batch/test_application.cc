@@ -135,11 +135,11 @@ bool is_place_of_cases(const std::string& word, const Library& library) {
 int test_application(const CasesRequest& request, const Workplace& workplace, std::FILE* out, std::FILE* err) {
   RunRequest words;
   words.json = request.json;
-  const auto library = anywhere(workplace).library();
-  if (!library) return refuse_run(words, library.error(), out, err);
   std::string faults;
   auto files = read_all(request, faults);
   if (!files) return refuse_run(words, files.error(), out, err);
+  const auto library = anywhere(workplace).library(files->empty() ? "" : files->front().description);
+  if (!library) return refuse_run(words, library.error(), out, err);
   if (!faults.empty() && request.json) return refuse_run(words, refusal(faults.substr(0, faults.find('\n'))), out, err);
   if (!faults.empty()) {
     std::fputs(for_terminal(faults).c_str(), err);

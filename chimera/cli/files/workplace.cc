@@ -2,6 +2,7 @@
 // Finds the installed components, units and templates from the place of the program and from the environment.
 #include "chimera/cli/files/workplace.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "chimera/text/nearest.h"
@@ -22,10 +23,15 @@ Workplace Workplace::around(const std::string& program) {
   return made;
 }
 
-Result<Library> Workplace::library() const {
+Result<Library> Workplace::library(const std::string& description) const {
   auto units = UnitSystem::load(unit_files);
   if (!units) return units.error();
-  return Library::make(component_folders, *std::move(units));
+  std::vector<std::string> folders = component_folders;
+  std::error_code unknown;
+  const auto built = absolute(std::filesystem::path(description).parent_path() / "build/components", unknown);
+  const auto behind_path = static_cast<std::ptrdiff_t>(std::min(chimera::component_folders({}).size(), folders.size()));
+  if (std::filesystem::is_directory(built, unknown)) folders.insert(folders.begin() + behind_path, built.string());
+  return Library::make(folders, *std::move(units));
 }
 
 Error no_component(const std::string& name, const Library& library) {
