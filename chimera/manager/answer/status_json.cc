@@ -86,7 +86,7 @@ Json rtpu_json(const ManagerState& state, RtpuId rtpu) {
   return json;
 }
 
-Json inputs_json(const ManagerState& state, TaskId task, Nanoseconds at) {
+Json inputs_json(const ManagerState& state, TaskId task) {
   Json inputs = Json::array();
   for (const ConfiguredPort& port : state.configuration->tasks()[task.index].ports) {
     if (port.kind != CHIMERA_IN_VAR) continue;
@@ -98,7 +98,7 @@ Json inputs_json(const ManagerState& state, TaskId task, Nanoseconds at) {
     inputs.push_back({{"port", port.name},
                       {"variable", port.variable},
                       {"age_ns", is_operators ? Json(0)
-                                 : is_there   ? Json(reading.age(at).count)
+                                 : is_there   ? Json(std::max(reading.age(now()), Nanoseconds{1}).count)
                                               : Json()}});
   }
   return inputs;
@@ -149,7 +149,7 @@ Json task_json(const ManagerState& state, TaskId task, Nanoseconds at) {
           {"exhausted", p.exhausted},
           {"fault", or_null(fault_text(state, task))},
           {"faults", fault.count},
-          {"inputs", state.configuration ? inputs_json(state, task, at) : Json::array()}};
+          {"inputs", state.configuration ? inputs_json(state, task) : Json::array()}};
 }
 
 Json port_json(const ConfiguredPort& port) {

@@ -112,7 +112,7 @@ VariableFacts facts_of(const ManagerState& state, VariableId variable, Nanosecon
   facts.stale_after = patience(state, variable);
   facts.is_written = reading.is_valid;
   facts.published = {reading.slot.published_ns};
-  facts.age = reading.age(at);
+  facts.age = reading.age(std::max(at, now()));  // it may be younger than the question
   facts.is_finite = is_finite(reading.form, reading.value);
   facts.value = short_text(reading.form, reading.value);
   if (state.readings->is_operators(variable)) {
