@@ -78,6 +78,18 @@ static bool has_rival_in(const ManagerState& state, TaskId task, const TaskBits&
   return false;
 }
 
+/// Changes if a word by which the rtpus show their progress does.
+static std::uint64_t words_of_progress(const ManagerState& state) {
+  std::uint64_t words = state.page.switching.plan.load(std::memory_order_acquire);
+  words = words * 31 + state.page.switching.turn.load(std::memory_order_acquire);
+  for (std::uint32_t r = 0; r < state.peers.n_rtpus(); ++r) {
+    if (!state.peers[RtpuId(r)].is_there()) continue;
+    const SwitchProgress& progress = state.peers[RtpuId(r)].block().head().switching;
+    words = (words * 31 + progress.adopted) * 31 + progress.over;
+  }
+  return words;
+}
+
 TaskStatus last_status(const ManagerState& state, TaskId task) {
   TaskStatus status = state.peers.status(task);
   SwitchAgreement agreement(state.page.switching, state.keeper.origin);
@@ -354,17 +366,6 @@ void SwitchCoordinator::look_at_page(Nanoseconds now) {
   if (present_ && present_->damaged_at == kNever) present_->damaged_at = now;
 }
 
-std::uint64_t SwitchCoordinator::words_of_progress() const {
-  std::uint64_t words = state_.page.switching.plan.load(std::memory_order_acquire);
-  words = words * 31 + state_.page.switching.turn.load(std::memory_order_acquire);
-  for (std::uint32_t r = 0; r < state_.peers.n_rtpus(); ++r) {
-    if (!state_.peers[RtpuId(r)].is_there()) continue;
-    const SwitchProgress& progress = state_.peers[RtpuId(r)].block().head().switching;
-    words = (words * 31 + progress.adopted) * 31 + progress.over;
-  }
-  return words;
-}
-
 /// A job of a task that leaves may take its whole period.
 Nanoseconds SwitchCoordinator::overdue_at() const noexcept {
   Nanoseconds longest;
@@ -396,7 +397,7 @@ std::vector<RtpuId> SwitchCoordinator::held_up_by() {
 /// Leaves an rtpu that does not run to RtpuWatch: a debugger may hold it.
 std::vector<RtpuId> SwitchCoordinator::overdue(Nanoseconds now) {
   if (!present_ || state_.is_ending()) return {};
-  const std::uint64_t words = words_of_progress();
+  const std::uint64_t words = words_of_progress(state_);
   if (std::exchange(present_->words, words) != words) present_->moved_at = now;
   if (now < overdue_at()) return {};
   present_->moved_at = now;

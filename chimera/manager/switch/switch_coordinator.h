@@ -102,7 +102,6 @@ class SwitchCoordinator {
   void announce();
   void look_at_page(Nanoseconds now);
   std::vector<RtpuId> held_up_by();
-  std::uint64_t words_of_progress() const;
   Nanoseconds overdue_at() const noexcept;
   void assess(const TaskBits& target, SwitchOutcome& outcome);
   Nanoseconds method_time(TaskId task, Method method) const;

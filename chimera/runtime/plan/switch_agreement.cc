@@ -70,7 +70,8 @@ void SwitchAgreement::write(const SwitchOrder& order, const PlanWord& plan, std:
   page_->order[words.size()].store(sum_of(words), std::memory_order_relaxed);
   page_->turn.store(TurnWord{order.number, run, order.members}.word(), std::memory_order_release);
   std::uint64_t before = page_->plan.load(std::memory_order_acquire);
-  while (!page_->plan.compare_exchange_weak(before, plan.word(), std::memory_order_acq_rel, std::memory_order_acquire)) {
+  const std::uint64_t after = plan.word();
+  while (!page_->plan.compare_exchange_weak(before, after, std::memory_order_acq_rel, std::memory_order_acquire)) {
   }
 }
 
