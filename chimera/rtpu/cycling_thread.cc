@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "chimera/platform/realtime.h"
+#include "chimera/platform/thread.h"
 #include "chimera/platform/wake.h"
 #include "chimera/schedule/bands.h"
 #include "chimera/schedule/shares.h"
@@ -50,6 +51,7 @@ void CyclingThread::start() {
 }
 
 void CyclingThread::run() {
+  use_decimal_point();
   const int ceiling = priority_of(place_.spec, place_.me, place_.priority);
   const RealtimeGrant grant = enter_realtime({ceiling, static_cast<int>(self().cpu), true});
   if (self().preemptive)

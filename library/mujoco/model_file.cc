@@ -9,6 +9,7 @@
 #include <iterator>
 #include <memory>
 
+#include "chimera/base/hosted/classic_locale.h"
 #include "library/mujoco/urdf_meshes.h"
 
 namespace chimera::library {
@@ -45,6 +46,7 @@ std::string one_line(const char* text) {
 }
 
 mjModel* load(const char* path, const mjVFS* files, std::string& why) {
+  const ClassicLocale decimal_point;
   char said[1000] = "";
   mjModel* model = mj_loadXML(path, files, said, sizeof said);
   why = one_line(said);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Walks from the root of a URDF model to a tip and collects its joints.
+#include "chimera/base/hosted/classic_locale.h"
 #include "chimera/base/hosted/ordinary_file.h"
 #include "library/urdf_model/urdf_chain.h"
 
@@ -131,6 +132,7 @@ Result<UrdfChain> read_urdf(const std::string& path, const std::string& tip) {
   if (text.size() > kLongest) return bad(path + ": is longer than 4 MiB");
   urdf::ModelInterfaceSharedPtr model;
   {
+    const ClassicLocale decimal_point;
     FirstReason reason;
     model = urdf::parseURDF(text);
     if (!model) return bad(path + ": " + reason.text());
