@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "chimera/platform/realtime.h"
+#include "chimera/platform/thread.h"
 #include "chimera/platform/wake.h"
 #include "chimera/schedule/bands.h"
 #include "chimera/schedule/shares.h"
@@ -56,6 +57,7 @@ bool CyclingThread::is_gone() const noexcept {
 
 void CyclingThread::run() {
   thread_id_ = this_thread();
+  use_decimal_point();
   const int ceiling = priority_of(place_.spec, place_.me, place_.priority);
   const RealtimeGrant grant = enter_realtime({ceiling, static_cast<int>(self().cpu), true, place_.room});
   if (self().preemptive)

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <memory>
 
+#include "chimera/base/hosted/classic_locale.h"
 #include "library/mujoco/mujoco_guard.h"
 #include "library/mujoco/urdf_meshes.h"
 
@@ -46,6 +47,7 @@ std::string one_line(const char* text) {
 }
 
 mjModel* load(const char* path, const mjVFS* files, std::string& why) {
+  const ClassicLocale decimal_point;
   struct Call {
     const char* path;
     const mjVFS* files;
