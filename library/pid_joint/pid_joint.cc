@@ -2,7 +2,6 @@
 // The PID joint position controller of figure 4 (1994 paper): one independent axis for each joint.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include "chimera/task/component.h"
@@ -89,7 +88,7 @@ struct PidJoint {
   }
   double error_of(std::size_t i) const {
     const double e = q_ref[i] - q[i];
-    return is_continuous[i] ? std::remainder(e, 2 * std::numbers::pi) : e;
+    return is_continuous[i] ? e - 2 * math::kPi * math::floor(e / (2 * math::kPi) + 0.5) : e;
   }
   library::PidGains gains(std::size_t i) const { return {kp[i], ki[i], kd[i]}; }
 
