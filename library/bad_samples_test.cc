@@ -36,7 +36,7 @@ class Sample {
       : component_(component), port_(port), rig_(component.name) {
     const bool plays = std::string_view(component.name) == "csv_player";  // a file of one column
     rig_.shape("n", plays ? 1 : 2, 1);
-    if (plays) rig_.instances("out", 1);
+    if (plays) rig_.instances("out", 1), rig_.joined("out", "signal", "1");
     rig_.extent("points", 2);
     for (std::uint32_t i = 0; i < component.n_ports; ++i) give(component.ports[i]);
     if (std::string_view(component.name) == "joint_trajectory") rig_.set("duration", 0.5);

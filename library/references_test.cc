@@ -22,7 +22,7 @@ constexpr double kNoEnd = 1e9;
 
 std::string file_of_rows() {
   const std::string path = testing::TempDir() + "references_" + std::to_string(::getpid()) + ".csv";
-  std::ofstream(path) << "t,q\n0,0.5\n100,0.6\n";
+  std::ofstream(path) << "t(s),q\n0,0.5\n100,0.6\n";
   return path;
 }
 
@@ -67,6 +67,7 @@ void give_wave(Rig& rig) {
 void give_rows(Rig& rig) {
   rig.extent("n", 1), rig.extent("m", 1);
   rig.instances("out", 1);
+  rig.joined("out", "q", "1"), rig.joined("start", "measured", "1");
   rig.set("is_interpolated", true);
   rig.resource("file", file_of_rows().c_str());
 }
