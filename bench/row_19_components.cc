@@ -254,7 +254,7 @@ std::vector<ComponentCase> joint_cases() {
       {"joint_trajectory", "jerk; 6 quintics", [](BenchRig& r) { give_motion(r, "jerk"); },
        six_quintics},
       {"csv_player", "6 lines between rows", [](BenchRig& r) {
-         r.instances("out", 1), r.resource("file", "row_19.csv");
+         r.instances("out", 1), r.joined("out", "q", "1", 0), r.resource("file", "row_19.csv");
          r.set("is_repeated", true), r.set("is_interpolated", true); },
        between_rows},
   };
@@ -268,7 +268,7 @@ int main(int argc, char** argv) {
   const bench::Stage stage;
   {
     std::ofstream file("row_19.csv");
-    file << "t,a,b,c,d,e,f\n";
+    file << "t,q[0],q[1],q[2],q[3],q[4],q[5]\n";
     for (int i = 0; i <= 1000; ++i) file << i * 1e-2 << ",1,2,3,4,5,6\n";
   }
   int worst = 0;

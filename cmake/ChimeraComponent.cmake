@@ -81,6 +81,9 @@ function(chimera_component name)
   add_library(${objects} OBJECT ${arg_UNPARSED_ARGUMENTS})
   target_link_libraries(${objects} PRIVATE chimera::component ${arg_LIBRARIES})
   target_compile_options(${objects} PRIVATE ${CHIMERA_COMPONENT_FLAGS})
+  if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES AND NOT "${CMAKE_C_FLAGS} ${CMAKE_CXX_FLAGS}" MATCHES "-O")
+    target_compile_options(${objects} PRIVATE -O2)  # a component without a build type is no slower than the library
+  endif()
 
   set(module component_${name})
   add_library(${module} MODULE $<TARGET_OBJECTS:${objects}>)

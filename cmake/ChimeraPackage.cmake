@@ -66,7 +66,9 @@ install(DIRECTORY docs/formats/ DESTINATION share/chimera/schema COMPONENT docum
 install(DIRECTORY examples docs DESTINATION share/chimera COMPONENT documents
   PATTERN CMakeLists.txt EXCLUDE PATTERN man EXCLUDE)
 install(FILES README.md CONTRIBUTING.md DESTINATION share/chimera COMPONENT documents)
-file(GLOB sheets RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS library/README.md library/*/README.md)
+# The recordings and stores are those that lessons name as ../../library/...
+file(GLOB sheets RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS
+  library/README.md library/*/README.md library/*/*.events library/*/*.store)
 foreach(sheet IN LISTS sheets)
   get_filename_component(folder ${sheet} DIRECTORY)
   install(FILES ${sheet} DESTINATION share/chimera/${folder} COMPONENT documents)

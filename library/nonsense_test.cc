@@ -11,11 +11,12 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <cstring>
 #include <map>
 #include <random>
 
-#include "chimera/base/testing/tree_path.h"
 #include "chimera/task/rig.h"
+#include "library/testing/sound_inputs.h"
 
 namespace chimera {
 namespace {
@@ -24,22 +25,6 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kHostile[] = {NAN,    kUnbounded, -kUnbounded, 0,   -0.0, -1,  1e308,
                                -1e308, 5e-324,     1e-300,      1e6, -1e6, 1e18};
 
-/// A valid resource for a port of a component.
-std::string sound_resource(const std::string& component, const std::string& port) {
-  const std::string library = source_path("library/");
-  const std::map<std::string, std::string> kKnown{
-      {"accel", "0:0 2:1"}, {"brake", "0:0 2:1"}, {"car", "0:0 200:0.06"}, {"electric_car", "0:0 200:0.06"},
-      {"ccui", "0:0 2:100"}, {"camera_targets", "file:/dev/null"}, {"csv_log", "/dev/null"},
-      {"csv_player", library + "csv_player/csv_player_example.csv"}, {"puma_torque", "puma560.xml"},
-      {"mujoco_robot", library + "puma_torque/puma560.xml"}, {"rmms", library + "rmms/rmms_a.store"},
-      {"mujoco_robot_torque", library + "puma_torque/puma560.xml"},
-      {"mujoco_robot_velocity", library + "puma_torque/puma560.xml"},
-      {"tball", library + "tball/wave.events"}, {"urdf_model", library + "urdf_model/puma560.urdf"},
-      {"udp_frame", "127.0.0.1:9"}, {"visual_servo_interface", "here:nonsense"}};
-  const auto known = kKnown.find(component);
-  return known == kKnown.end() ? "/dev/null/" + port : known->second;
-}
-
 class Nonsense {
  public:
   Nonsense(const chimera_component& component, unsigned seed) : component_(component), random_(seed) {}
@@ -47,6 +32,7 @@ class Nonsense {
   /// Returns the first error, or "".
   std::string run() {
     Rig rig(component_.name);
+    if (component_.name == std::string_view("csv_player")) rig.joined("out", "signal", "1", 0);
     shape(rig);
     const bool is_hostile = draw(4) != 0;
     for (std::uint32_t i = 0; i < component_.n_ports; ++i)
@@ -132,22 +118,11 @@ class Nonsense {
     }
   }
   void put(Rig& rig, const chimera_port_decl& port, std::uint32_t e, std::uint32_t instance, bool is_hostile) {
-    const double value = is_hostile ? kHostile[draw(std::size(kHostile))] : sound(port);
+    const double value = is_hostile ? kHostile[draw(std::size(kHostile))] : library::sound_number(port);
     if (is_hostile) note(value);
-    const auto whole = [value](double most) { return std::isnan(value) ? 0 : std::clamp(value, -most, most); };
-    switch (port.type) {
-      case CHIMERA_BOOL: return rig.set(port.name, value > 0, e, instance);
-      case CHIMERA_INT32: return rig.set(port.name, static_cast<std::int32_t>(whole(2147483647)), e, instance);
-      case CHIMERA_INT64: return rig.set(port.name, static_cast<std::int64_t>(whole(9e18)), e, instance);
-      case CHIMERA_FLOAT32: return rig.set(port.name, static_cast<float>(value), e, instance);
-      case CHIMERA_STRING: return text(rig, port, e, instance, is_hostile);
-      case CHIMERA_STRUCT: return structure(rig, port, e, instance, is_hostile);
-      default: return rig.set(port.name, value, e, instance);
-    }
-  }
-  static double sound(const chimera_port_decl& port) {
-    if ((port.flags & CHIMERA_PORT_HAS_RANGE) == 0) return 0.5;
-    return std::min(std::max({port.min, 0.5, port.type == CHIMERA_INT32 ? 1.0 : 0.0}), port.max);
+    if (port.type == CHIMERA_STRING) return text(rig, port, e, instance, is_hostile);
+    if (port.type == CHIMERA_STRUCT) return structure(rig, port, e, instance, is_hostile);
+    library::put_number(rig, port, e, instance, value);
   }
   void note(double value) {
     is_extreme_ = is_extreme_ || !(std::abs(value) < 1e100);
@@ -156,32 +131,18 @@ class Nonsense {
     told_ += text;
   }
   void text(Rig& rig, const chimera_port_decl& port, std::uint32_t e, std::uint32_t instance, bool is_hostile) {
-    std::array<char, 64> bytes{};
+    std::array<char, 256> bytes{};
     if (is_hostile) bytes.fill(draw(2) == 0 ? 'x' : '%');
     bytes[port.element_size - 1] = '\0';
-    sized<1>(rig, port, e, instance, bytes.data());
+    library::put_bytes(rig, port, e, instance, bytes.data());
   }
-  /// All structs of the library have only float64 members. The orientation of a pose starts with element 3.
   void structure(Rig& rig, const chimera_port_decl& port, std::uint32_t e, std::uint32_t instance, bool is_hostile) {
-    std::array<double, 64> numbers;
-    numbers.fill(0.1);
-    if (std::string_view(port.type_name) == "Pose") numbers = {0.3, 0.2, 0.1, 1};
+    std::array<double, 64> numbers = library::sound_struct(port);
     if (is_hostile) note(numbers[draw(port.element_size / 8)] = kHostile[draw(std::size(kHostile))]);
-    sized<1>(rig, port, e, instance, reinterpret_cast<const char*>(numbers.data()));
-  }
-  template <std::size_t kWords>
-  void sized(Rig& rig, const chimera_port_decl& port, std::uint32_t e, std::uint32_t instance, const char* bytes) {
-    if constexpr (kWords <= 64) {
-      if (port.element_size != 8 * kWords) return sized<kWords + 1>(rig, port, e, instance, bytes);
-      struct alignas(8) Element { char bytes[8 * kWords]; } element;
-      std::memcpy(element.bytes, bytes, sizeof element);
-      rig.set(port.name, element, e, instance);
-    } else {
-      wrong_ = "an element of " + std::to_string(port.element_size) + " bytes";
-    }
+    library::put_bytes(rig, port, e, instance, reinterpret_cast<const char*>(numbers.data()));
   }
   std::string resource(const chimera_port_decl& port, bool is_hostile) {
-    if (!is_hostile) return sound_resource(component_.name, port.name);
+    if (!is_hostile) return library::sound_resource(component_.name, port.name);
     const char* kBad[] = {"", "/", "/dev/null", "no/such/thing", ":", "0:nan", "tcp:127.0.0.1:99999", "%s%n",
                           "0:1e400 1:x"};
     told_ += "resource ";

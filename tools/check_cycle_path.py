@@ -52,13 +52,14 @@ PATHS = (
           r'chimera::EdgeAccess::(claim|used_by_job|is_blocked|call)\('],
          PLAIN + WAKES + LEVELS,
          ASSERTS | SIGNALS | RESERVED | {r'chimera::enter_realtime\(': 'the start of a thread',
+                                         r'chimera::use_decimal_point\(': 'the start of a thread',
                                          r'chimera::Processor::check(_holder)?\(': 'in tests only',
                                          r'chimera::EdgeAccess::look_up_blocked\(': 'outside the section'}),
     Path('edges of an rtpu', [r'chimera::RtpuControl::(take|publish|told|show|show_profiles|missed|gave_way|hangs'
                               r'|stop_all)\(',
                               r'chimera::(Doorbell|Outbox)::'],
          PLAIN + WAKES,
-         ASSERTS | SIGNALS | RESERVED),
+         ASSERTS | SIGNALS | RESERVED | {r'chimera::RtpuEnd::is_awaited\(': 'once the rtpu ends'}),
 )
 
 

@@ -32,8 +32,8 @@ C_MEMORY = {"memcpy", "memmove", "memset", "memcmp", "memchr", "strlen", "strcmp
 ARITHMETIC = re.compile(r"__aeabi_(?!read_tp)\w+$|__atomic_(load|store|exchange|compare_exchange)_8$|__popcountdi2$")
 # std::string_view and std::span out of range: ends the program, never in a cycle.
 ENDING = re.compile(r"_ZSt\d+__throw_\w+|abort$|_ZSt21__glibcxx_assert_failPKciS0_S0_$")
-# A number of type double in the text of a refused output (%g): every C library for microcontrollers can write it.
-TEXT = {"chimera/runtime/job/safety.cc": {"snprintf"}}
+# A number in the text of a refused output or input: every C library for microcontrollers can write it.
+TEXT = {"chimera/runtime/job/safety.cc": {"snprintf"}, "library/pid_joint/pid_joint.cc": {"snprintf"}}
 
 
 def is_known(name, symbol):

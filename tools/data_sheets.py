@@ -26,7 +26,7 @@ def number(value):
 
 
 def initial(port):
-    """The initial value of an out-var, the default of an in-const: one for all elements, or the list."""
+    """The initial value of an out-var, the default of an input: one for all elements, or the list."""
     texts = [("true" if v else "false") if isinstance(v, bool) else f'"{v}"' if isinstance(v, str) else
              "given" if isinstance(v, dict) else number(v) for v in port.get("initial", [])]
     return texts[0] if len(set(texts)) == 1 else ", ".join(texts)
@@ -62,7 +62,7 @@ def values_of(port):
     if "one_of" in port:
         parts.append(" ".join(f"`{word}`" for word in port["one_of"]))
     if port.get("initial"):
-        parts.append(("default " if port["kind"] == "in-const" else "initially ") + initial(port))
+        parts.append(("initially " if port["kind"] == "out-var" else "default ") + initial(port))
     return ", ".join(parts)
 
 

@@ -5,9 +5,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <string>
 
 #include "chimera/catalogue/descriptor_json.h"
+#include "chimera/catalogue/library.h"
 #include "chimera/load/component_state.h"
 #include "chimera/load/shared_object.h"
 #include "chimera/task/signal.h"
@@ -42,6 +44,17 @@ void print_methods(const Descriptor& descriptor) {
               descriptor.event_source ? "; event_source" : "");
 }
 
+/// The first unit that is unknown, with the port; "": all are known, or there is no unit file to judge by.
+std::string wrong_unit(const Descriptor& descriptor) {
+  std::error_code none;
+  const auto prefix = std::filesystem::read_symlink("/proc/self/exe", none).parent_path().parent_path();
+  const std::string files[] = {prefix / "share/chimera/units.xml", prefix / "../../share/chimera/units.xml"};
+  auto units = UnitSystem::load(files);
+  if (!units) return {};
+  const Library library = Library::of({descriptor}, *std::move(units));
+  return library.faults().empty() ? std::string() : std::string(library.faults()[0].message.view());
+}
+
 int describe_object(const std::string& object, const std::string& output) {
   const auto opened = SharedObject::open(object);
   if (!opened) return refuse(object, opened.error().message.view());
@@ -53,6 +66,7 @@ int describe_object(const std::string& object, const std::string& output) {
   if (!sample) return refuse(object, sample.error().message.view());
   const auto descriptor = describe(**component);
   if (!descriptor) return refuse(object, descriptor.error().message.view());
+  if (const std::string wrong = wrong_unit(*descriptor); !wrong.empty()) return refuse(object, wrong);
   if (!write_file(output, to_json(*descriptor))) return refuse(output, std::strerror(errno));
   print_methods(*descriptor);
   return 0;

@@ -2,6 +2,7 @@
 // The process that writes safe frames; started by the keeper only. It ends when the keeper is gone and no rtpu lives
 // any more.
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -11,12 +12,14 @@
 #include "chimera/guard/guard.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/platform/shared_memory.h"
+#include "chimera/runtime/hosted/pages.h"
 
 namespace {
 
 using namespace chimera;  // NOLINT: a main() of this project
 
 constexpr int kHighest = 99;
+constexpr Nanoseconds kBeatEvery = milliseconds(250);
 
 /// "--silent TASK:PERIODS", as often as there are such tasks. Empty where one is no such pair, too: create() refuses.
 std::vector<SilenceLimit> limits_of(int argc, char** argv) {
@@ -36,13 +39,18 @@ Result<void> guard(int argc, char** argv) {
   if (!bytes) return bytes.error();
   const auto image = ApplicationImage::decode(bytes->bytes());
   if (!image) return image.error();
+  const auto decision = SharedPages::open(kGuardDecisionDescriptor, sizeof(DecisionPage));
+  if (!decision) return decision.error();
+  std::atomic<std::uint64_t>& beats = reinterpret_cast<DecisionPage*>(decision->bytes().data())->guard_beats;
   const auto made = Guard::create(Channel(kGuardChannelDescriptor), *image, limits_of(argc, argv));
   if (!made) return made.error();
   // Above all bands, which are counted down from the priority of the run.
   const int top = image->settings().priority;
-  const RealtimeGrant grant = enter_realtime({.priority = top == 0 ? 0 : std::min(top + 1, kHighest)});
+  const int priority = top == 0 ? 0 : std::min(top + 1, kHighest);
+  const RealtimeGrant grant = enter_realtime({.priority = priority, .room = (*made)->room()});
   (*made)->say_ready(top == 0 || grant.is_complete());
-  while ((*made)->step()) continue;
+  do beats.fetch_add(1, std::memory_order_relaxed);
+  while ((*made)->step(kBeatEvery));
   return {};
 }
 

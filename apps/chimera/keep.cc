@@ -2,10 +2,12 @@
 // Verifies a description, claims its CPUs, and runs its processes as their keeper.
 #include "apps/chimera/keep.h"
 
+#include <grp.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 
 #include "chimera/cli/files/file_refusal.h"
 #include "chimera/cli/run/run_plan.h"
@@ -77,7 +79,8 @@ std::vector<std::string> face_of(const KeepRequest& request, const cli::RunPlan&
                                     "--parent=" + std::to_string(::getpid())};
   words.insert(words.end(), request.face.begin(), request.face.end());
   for (const cli::Expectation& expectation : plan.expectations)
-    words.push_back("--bound=" + exact(expectation.bound()));
+    words.push_back("--bound=" + exact(expectation.bound().value) + ":" + exact(expectation.bound().to_written.factor) +
+                    ":" + exact(expectation.bound().to_written.offset));
   return words;
 }
 
@@ -104,6 +107,17 @@ std::string sibling(const char* name) {
   return mine.substr(0, mine.rfind('/') + 1) + name;
 }
 
+/// The socket is not in the folder of another user: members of a group name its path.
+void say_to_members(const KeepRequest& request, const std::string& socket) {
+  for (const auto& [group, may] : {std::pair{request.observe_group, "observe"},
+                                   {request.operate_group, "operate"}, {request.configure_group, "configure"}}) {
+    const struct group* found = group ? ::getgrgid(*group) : nullptr;
+    if (found == nullptr) continue;
+    std::printf("members of %s may %s: chimera status --subsystem %s\n", found->gr_name, may, socket.c_str());
+  }
+  (void)flush_and_look(stdout);
+}
+
 Result<int> keep(const KeepRequest& request, const cli::RunPlan& plan) {
   RunSettings settings;
   settings.priority = request.run.priority;
@@ -118,6 +132,7 @@ Result<int> keep(const KeepRequest& request, const cli::RunPlan& plan) {
   const bool for_others = request.observe_group || request.operate_group || request.configure_group;
   const auto place = SocketPlace::open(socket_folder().c_str(), plan.configuration.subsystem(), for_others);
   if (!place) return place.error();
+  if (!request.run.json) say_to_members(request, place->path());
   const auto n_rtpus = static_cast<std::uint32_t>(plan.configuration.rtpus().size());
   Keeper keeper({.peers = {.rtpu_program = sibling("chimera-rtpu"),
                            .manager_program = sibling("chimera-manager"),

@@ -7,11 +7,13 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <system_error>
 
 #include "apps/chimera/commands.h"
 #include "apps/chimera/option_values.h"
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/cli/files/file_refusal.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/platform/standard_streams.h"
@@ -34,6 +36,10 @@ bool memory_is_limited() {
   if (!std::current_exception() && !memory_is_limited()) tell_defect();
   try {
     if (std::current_exception()) throw;
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::fprintf(stderr, "chimera: %s: %s\n", for_terminal(error.path1().string()).c_str(),
+                 error.code().message().c_str());
+    ::_exit(cli::kRefused);
   } catch (const std::system_error& error) {
     if (error.code() != std::errc::resource_unavailable_try_again) tell_defect();
     why = "no thread can be started: Resource temporarily unavailable";

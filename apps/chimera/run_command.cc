@@ -3,6 +3,7 @@
 #include <grp.h>
 #include <unistd.h>
 
+#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -58,12 +59,15 @@ const std::vector<Option>& printing_options() {
        .repeats = Repeats::kManyEach},
       {.name = "--every",
        .value = "DURATION",
-       .help = "how often --watch prints (1 s)",
-       .manual = "How often `--watch` prints (1 s)."},
+       .help = "how often --watch prints (1 s); of --svg: the shortest period",
+       .manual = "How often `--watch` prints (1 s). The default of a picture by `--svg` is the shortest period."},
       {.name = "--expect",
        .value = "COMPARISON",
-       .help = "what must hold at the end, such as 'error_now <= 2 mrad'; may be repeated",
-       .manual = "What must hold at the end, such as 'error_now <= 2 mrad' or '|error| < 1 deg'. May be repeated.",
+       .help = "what must hold at the end, such as 'error_now <= 2 mrad'; virtual time: also 'max |u| <= 1 V'; may be "
+               "repeated",
+       .manual = "What must hold at the end, such as 'error_now <= 2 mrad' or '|error| < 1 deg'. In virtual time also "
+                 "what cases and `sweep` know: 'max |u| <= 1 V', 'settling error <= 2 mrad within 0.5 s'. May be "
+                 "repeated.",
        .repeats = Repeats::kManyEach},
       {.name = "--trace",
        .value = "FILE",
@@ -115,6 +119,8 @@ const std::vector<Option>& own_options() {
        .manual = "Real time: SCHED_FIFO priority (80); 0 runs as an ordinary process.",
        .kind = WordKind::kNumber,
        .most = 99},
+      {.name = "--cpu", .value = "RTPU=N", .help = "place this rtpu on CPU N, not on that of the file; may be repeated",
+       .repeats = Repeats::kManyEach},
       {.name = "--may-miss",
        .value = "TASK",
        .help = "real time: run although this task is not guaranteed to keep its deadlines; may be repeated",
@@ -191,6 +197,11 @@ bool AskedRun::read(const Call& call) {
   run.may_miss = call.values("--may-miss");
   run.svg = call.value("--svg");
   run.settings = settings_of(call);
+  for (const std::string& text : call.values("--cpu")) {
+    const std::size_t equals = std::min(text.find('='), text.size());
+    run.settings.push_back({"rtpus." + text.substr(0, equals) + ".cpu",
+                            text.substr(std::min(equals + 1, text.size())), "--cpu " + text});
+  }
   read_number(call, "--priority", run.priority);
   if (!read_printing(call)) return false;
   const char* wrong = nullptr;
@@ -267,10 +278,17 @@ int idle(const Call& call, const cli::Workplace& workplace) {
   return keep_idle(call.has("--subsystem") ? call.value("--subsystem") : "idle", workplace);
 }
 
-/// The bounds of the expectations, in the units of their variables.
-std::vector<double> bounds_of(const Call& call) {
-  std::vector<double> bounds;
-  for (const std::string& text : call.values("--bound")) bounds.push_back(std::strtod(text.c_str(), nullptr));
+/// The bounds of the expectations: "VALUE:FACTOR:OFFSET" (cli/run/expectation.h).
+std::vector<cli::Bound> bounds_of(const Call& call) {
+  std::vector<cli::Bound> bounds;
+  for (const std::string& text : call.values("--bound")) {
+    cli::Bound& bound = bounds.emplace_back();
+    const char* at = text.data();
+    for (double* number : {&bound.value, &bound.to_written.factor, &bound.to_written.offset}) {
+      at = std::from_chars(at, text.data() + text.size(), *number).ptr;
+      at += at < text.data() + text.size() ? 1 : 0;
+    }
+  }
   return bounds;
 }
 
@@ -281,7 +299,7 @@ int attend(const Call& call, const cli::Workplace&) {
   ::sigaddset(&held, SIGTERM);
   ::sigprocmask(SIG_UNBLOCK, &held, nullptr);
   AskedRun asked;
-  const std::vector<double> bounds = bounds_of(call);
+  const std::vector<cli::Bound> bounds = bounds_of(call);
   if (!asked.read_printing(call) || bounds.size() != asked.run.expect.size()) return kUsage;
   int parent = 0;
   read_number(call, "--parent", parent);
@@ -345,6 +363,7 @@ FileCommand idle_row() {
                 .example = "chimera idle &",
                 .manual = "Runs a subsystem with nothing loaded: it serves `check`, `schedule` and `library` of the "
                           "control protocol to editors and pages, until Ctrl-C or `chimera end`.",
+                .is_rare = true,
                 .outlives_reader = true},
       .carry_out = idle};
 }

@@ -3,8 +3,7 @@
 #include "chimera/catalogue/descriptor_json.h"
 
 #include <cmath>
-#include <iomanip>
-#include <sstream>
+#include <cstdio>
 
 #include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/base/hosted/wording.h"
@@ -40,9 +39,9 @@ std::uint32_t word_at(const JsonCursor& at, std::string_view what, const std::ve
 std::string optional_text(const JsonCursor& at, std::string_view key) { return at.has(key) ? at.at(key).text() : ""; }
 
 std::string hex(std::uint64_t value) {
-  std::ostringstream out;
-  out << std::hex << std::setfill('0') << std::setw(16) << value;
-  return out.str();
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
+  return text;
 }
 
 // Reading.

@@ -23,6 +23,15 @@ Error unit_fault(const std::string& place, const Error& error, const std::string
   return {ErrorCode::kBadInput, std::string_view(text), std::string_view(file)};
 }
 
+/// "is no folder"; "" for a folder that can be read.
+std::string unreadable(const std::string& folder) {
+  std::error_code failed;
+  const std::filesystem::directory_iterator first(folder, failed);
+  if (!failed) return "";
+  const bool is_none = failed == std::errc::no_such_file_or_directory || failed == std::errc::not_a_directory;
+  return is_none ? "is no folder" : "cannot be read: " + failed.message();
+}
+
 /// Refuses the first unit of `descriptor` that is unknown.
 Result<void> check_units(const LibraryEntry& entry, const UnitSystem& units) {
   for (const PortDescriptor& port : entry.descriptor.ports) {
@@ -49,8 +58,9 @@ Library Library::make(std::span<const std::string> folders, UnitSystem units) {
     };
     if (std::none_of(folders.begin(), folder, is_same)) library.read_folder(*folder);  // CHIMERA_PATH may repeat it
   }
-  for (std::string& folder : component_folders({}))
-    if (!std::filesystem::is_directory(folder)) library.missing_folders_.push_back(std::move(folder));
+  for (const std::string& folder : component_folders({}))
+    if (const std::string why = unreadable(folder); !why.empty())
+      library.missing_folders_.push_back(folder + ", which " + why);
   return library;
 }
 

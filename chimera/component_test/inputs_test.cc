@@ -96,6 +96,13 @@ TEST(Recorded, TakesTheNamesOfALogFromTheUser) {
 TEST(Recorded, RefusesTextThatIsNoRecording) {
   EXPECT_EQ(refusal(""), "run.csv:1:1: no row of values");
   EXPECT_EQ(refusal("v,t\n"), "run.csv:1:1: the first column is 'v', expected 't(s)', the time in s");
+  EXPECT_EQ(refusal("t(ms),v\n0,1\n"), "run.csv:1:1: the first column is 't(ms)', expected 't(s)', the time in s");
+  EXPECT_EQ(refusal("0,1\n1,2\n"),
+            "run.csv:1:1: is a row of numbers: the first line is a head, such as t(s),q[0](rad)");
+  EXPECT_EQ(refusal("t;v\n0;0,5\n"),
+            "run.csv:1:1: has ';' between its fields: write ',' there, and a decimal point in numbers");
+  EXPECT_EQ(refusal("t,v\n0 ,1\n"), "run.csv:2:1: has a blank: write no blank beside a comma or in a field");
+  EXPECT_EQ(refusal("\xEF\xBB\xBFt,v\r\n0,1\r\n"), "accepted");
   EXPECT_EQ(refusal("t,v\n"), "run.csv:2:1: no row of values");
   EXPECT_EQ(refusal("t,v,v\n0,1,1\n"), "run.csv:1:5: 'v' is there twice");
   EXPECT_EQ(refusal("t,q[2]\n0,1\n"), "run.csv:1:3: no in-var of the component is called 'q[2]'");

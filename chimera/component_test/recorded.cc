@@ -5,21 +5,12 @@
 #include <cstring>
 #include <optional>
 
+#include "chimera/base/hosted/recording_text.h"
 #include "chimera/base/message.h"
 #include "chimera/component_test/inputs.h"
 
 namespace chimera::component_test {
 namespace {
-
-std::vector<std::string_view> split(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (;;) {
-    const std::size_t comma = line.find(',');
-    fields.push_back(line.substr(0, comma));
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
-}
 
 struct RecordingPlace {
   const std::string& file;
@@ -40,16 +31,6 @@ std::string renamed(std::string_view word, std::span<const std::string> names) {
   return names[number] + std::string(end + 1, word.data() + word.size());
 }
 
-/// "q[0](rad)": a name and an optional unit.
-struct Heading {
-  std::string_view name, unit;
-};
-Heading heading_of(std::string_view word) {
-  const std::size_t open = word.find('(');
-  if (open == std::string_view::npos || !word.ends_with(')')) return {word, {}};
-  return {word.substr(0, open), word.substr(open + 1, word.size() - open - 2)};
-}
-
 const InputChannel* find(const InputForm& form, const std::string& name) {
   for (const InputChannel& channel : form.channels)
     if (channel.name == name || channel.port_name == name) return &channel;
@@ -58,15 +39,14 @@ const InputChannel* find(const InputForm& form, const std::string& name) {
 
 Result<std::vector<const InputChannel*>> read_head(const InputForm& form, std::string_view line,
                                                    std::span<const std::string> names, RecordingPlace place) {
-  const auto words = split(line);
-  if (words[0] != "t(s)" && words[0] != "t")
-    return place.refuse(Message() << "the first column is '" << words[0] << "', expected 't(s)', the time in s");
+  if (const std::string why = foreign_head(line); !why.empty()) return place.refuse(Message() << why);
+  const auto words = fields_of(line);
   if (words.size() > kMaxColumns)
     return place.refuse(Message() << words.size() << " columns, at most " << kMaxColumns << " are read");
   std::vector<const InputChannel*> columns;
   for (std::size_t i = 1; i < words.size(); ++i) {
     place.column += words[i - 1].size() + 1;
-    const Heading heading = heading_of(words[i]);
+    const ColumnHead heading = column_head(words[i]);
     const std::string name = renamed(heading.name, names);
     const InputChannel* channel = find(form, name);
     if (channel == nullptr) return place.refuse(Message() << "no in-var of the component is called '" << name << "'");
@@ -97,7 +77,8 @@ struct RecordingReader {
   std::vector<std::byte> rows{};
 
   Result<void> read(std::string_view line, RecordingPlace place) {
-    const auto fields = split(line);
+    if (const std::string why = foreign_line(line); !why.empty()) return place.refuse(Message() << why);
+    const auto fields = fields_of(line);
     if (fields.size() != columns.size() + 1)
       return place.refuse(Message() << fields.size() << " fields, expected " << columns.size() + 1);
     const auto time = read_number(fields[0], place);
@@ -123,9 +104,9 @@ struct RecordingReader {
 Result<void> read_all(RecordingReader& reader, std::string_view text, std::span<const std::string> names,
                       RecordingPlace place) {
   for (; !text.empty(); ++place.line) {
-    std::string_view line = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(text.size(), line.size() + 1));
-    if (line.ends_with('\r')) line.remove_suffix(1);
+    const std::string_view raw = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(text.size(), raw.size() + 1));
+    const std::string_view line = recording_line(raw);
     if (place.line == 1) {
       auto columns = read_head(reader.form, line, names, place);
       if (!columns) return columns.error();

@@ -326,7 +326,7 @@ void read_rtpus(const Node& node, Draft& draft, Report& report) {
     if (expect(item, Node::Kind::kMap, what, report, true)) {
       refuse_unknown_keys(item, kRtpuKeys, what, report);
       if (const Node* cpu = item.find("cpu"))
-        rtpu.cpu = read_whole(*cpu, 0, 1023, "'cpu' of " + what, report).value_or(rtpu.cpu);
+        rtpu.cpu = read_whole(*cpu, 0, kLastCpu, "'cpu' of " + what, report).value_or(rtpu.cpu);
       if (const Node* policy = item.find("policy"))
         if (const auto index = read_choice(*policy, kPolicyNames, "'policy' of " + what, report))
           rtpu.policy = {static_cast<Policy>(index->value), index->at};

@@ -103,6 +103,8 @@ struct DraftTask {
   bool is_partial = false;  ///< some key could not be read: report nothing as missing in this task
 };
 
+inline constexpr std::uint32_t kLastCpu = 1023;
+
 struct DraftRtpu {
   Word name;
   Located<std::uint32_t> cpu;

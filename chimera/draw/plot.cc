@@ -219,6 +219,10 @@ class PlotPage {
     }
     // A single point is a line of length 0; its round ends make it a dot.
     body_ += is_drawn ? "<path d=\"" + path.substr(1) + "\" stroke-linecap=\"round\" " + style(index) + "/>\n" : "";
+    for (const PlotPoint& point : curve.points)
+      if (curve.has_marks && std::isfinite(point.value))
+        body_ += "<circle cx=\"" + number(x(point.at)) + "\" cy=\"" + number(y(panel, point.value)) + "\" r=\"3\" " +
+                 style(index) + "/>\n";
     return is_drawn;
   }
 

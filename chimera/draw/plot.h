@@ -21,6 +21,7 @@ struct Curve {
   std::vector<PlotPoint> points;  ///< in order of time
   int panel = 0;                  ///< curves of one unit with an equal number share a panel
   bool is_held = false;  ///< a value holds until the next one: drawn as steps, not as a line from one to the next
+  bool has_marks = false;  ///< each point has a circle
 };
 
 /// A time range with missing values: hatched over the whole height, with its text.

@@ -50,6 +50,14 @@ TEST(Plot, MarksAreRoundNumbersWithinTheRange) {
     }
 }
 
+TEST(Plot, AMarkedCurveHasACircleForEachFinitePoint) {
+  Curve curve = wave("gain", "1", 7);
+  curve.points[3].value = kNothing;
+  EXPECT_EQ(count(svg(plot_of({curve})), "<circle"), 0u);
+  curve.has_marks = true;
+  EXPECT_EQ(count(svg(plot_of({curve})), "<circle"), 6u);
+}
+
 TEST(Plot, OverFrequencyEveryDecadeIsAsWide) {
   EXPECT_EQ(decade_marks(1, 10), (std::vector<double>{1, 2, 5, 10}));
   EXPECT_EQ(decade_marks(0.3, 30), (std::vector<double>{0.5, 1, 2, 5, 10, 20}));

@@ -38,6 +38,8 @@ class Guard {
   Guard(const Guard&) = delete;
   Guard& operator=(const Guard&) = delete;
 
+  /// Bytes that it maps later, at most. Context: setup.
+  std::uint64_t room() const noexcept;
   /// Reports to the keeper that it watches, and whether it has the requested rights. Context: setup.
   void say_ready(bool has_rights) noexcept;
   /// One round: waits until a message or a death arrives, a step is due, or `at_most` is over, and handles it. False
@@ -45,12 +47,17 @@ class Guard {
   bool step(Nanoseconds at_most = kNever) noexcept;
 
  private:
-  struct Rtpu {
+  struct Life {
     OwnedDescriptor process;  // readable when the rtpu is dead; -1: none lives
     Channel line;
     PeerSegment segment;
     std::uint32_t incarnation = 0;
+  };
+  struct Rtpu {
+    Life life;
+    Life next;  // the successor, if the keeper has started it before the guard saw the death
     bool is_writing = false;
+    std::uint32_t written_of = 0;  // the incarnation that died last
     Nanoseconds died{};
   };
   Guard(Channel keeper, const ApplicationImage& image);
@@ -58,13 +65,16 @@ class Guard {
   void wait(Nanoseconds at_most) noexcept;
   void listen_to_keeper() noexcept;
   void take(const GuardMessage& message, OwnedDescriptor passed) noexcept;
-  void listen_to_rtpu(std::uint32_t index) noexcept;
+  void listen_to(Life& life, std::uint32_t index) noexcept;
+  bool listen_once(Life& life, std::uint32_t index) noexcept;
+  void open_segment(Life& life, std::uint32_t index, int descriptor) noexcept;
   void bury(std::uint32_t index) noexcept;
   void finish(std::uint32_t index, bool is_at_once = false) noexcept;
   void look_for_silence() noexcept;
   bool is_there(std::uint32_t index) const noexcept;
   TaskStatus status(TaskId task) const noexcept;
   void tell(GuardMessage message) noexcept;
+  void tell_unguarded(std::uint32_t index, std::uint32_t incarnation, int error) noexcept;
   bool is_needed() const noexcept;
 
   Channel keeper_;

@@ -6,12 +6,14 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <functional>
 #include <optional>
 #include <string>
 
 #include "chimera/base/testing/await.h"
+#include "chimera/base/testing/few_descriptors.h"
 #include "chimera/platform/allocation_count.h"
 #include "chimera/platform/process.h"
 #include "chimera/rtpu/guard_link.h"
@@ -225,6 +227,66 @@ TEST_F(GuardTest, ASuccessorHasDevicesOfItsOwn) {
   EXPECT_EQ(told(), kWritten + "1/0");
   EXPECT_EQ(before.heard(), "first");
   EXPECT_EQ(after.heard(), "third");
+}
+
+/// The guard was stopped while an rtpu died and its successor began to drive one of two devices.
+TEST_F(GuardTest, WritesNoLateFrameToADeviceThatTheSuccessorDrives) {
+  start();
+  const Device driven, left_alone, own;
+  const auto first = begin();
+  ASSERT_TRUE(first->link.keep(TaskId(std::size_t{0}), 0, driven.ends[1], {}));
+  ASSERT_TRUE(first->link.keep(TaskId(std::size_t{1}), 0, left_alone.ends[1], {}));
+  first->put(0, 0, "first");
+  first->put(1, 0, "first");
+  step();
+  first->process.signal(SIGKILL);
+  const auto second = begin();
+  ASSERT_TRUE(second->link.keep(TaskId(std::size_t{0}), 0, own.ends[1], {}));
+  second->put(0, 0, "second");
+  EXPECT_EQ(told(), kWritten + "1/0");
+  EXPECT_EQ(last.late, 1u);
+  EXPECT_EQ(last.incarnation, 1u);
+  EXPECT_EQ(driven.heard(), "");
+  EXPECT_EQ(left_alone.heard(), "first") << "the successor has no frame for it: it commands nothing yet";
+  second->process.signal(SIGKILL);
+  EXPECT_EQ(told(), kWritten + "1/0");
+  EXPECT_EQ(last.incarnation, 2u);
+  EXPECT_EQ(own.heard(), "second");
+}
+
+TEST_F(GuardTest, WritesTheFramesOfEveryLifeThatItMissed) {
+  start();
+  const Device devices[3];
+  std::vector<std::unique_ptr<Life>> lives;
+  for (const Device& device : devices) {
+    lives.push_back(begin());
+    ASSERT_TRUE(lives.back()->link.keep(TaskId(std::size_t{0}), 0, device.ends[1], {}));
+    if (&device != &devices[1]) lives.back()->put(0, 0, "stop");
+    lives.back()->process.signal(SIGKILL);
+  }
+  EXPECT_EQ(told(), kWritten + "1/0") << "the second one had not begun to drive";
+  EXPECT_EQ(told(), kWritten + "0/0");
+  EXPECT_EQ(told(), kWritten + "1/0");
+  EXPECT_EQ(devices[0].heard() + devices[1].heard() + devices[2].heard(), "stopstop");
+}
+
+TEST_F(GuardTest, SaysWhyItCannotWriteTheFramesOfAnRtpu) {
+  const std::string unguarded = std::to_string(static_cast<int>(GuardMessage::Kind::kUnguarded)) + " 0/";
+  // Room for: nothing; process and line; the memory as well, but not its mapping; all but the second device.
+  for (const int room : {0, 2, 3, 4}) {
+    start();
+    const Device device;
+    const auto life = begin();
+    ASSERT_TRUE(life->link.keep(TaskId(std::size_t{0}), 0, device.ends[1], {}));
+    ASSERT_TRUE(life->link.keep(TaskId(std::size_t{1}), 0, device.ends[1], {}));
+    {
+      const FewDescriptors few(room);
+      for (int i = 0; i < 3; ++i) step();
+    }
+    EXPECT_EQ(told(), unguarded + std::to_string(EMFILE)) << room;
+    EXPECT_EQ(last.index, 0u);
+    EXPECT_EQ(last.incarnation, incarnation);
+  }
 }
 
 TEST_F(GuardTest, ADeviceThatTakesNothingHoldsUpNoOther) {

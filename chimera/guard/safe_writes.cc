@@ -22,11 +22,15 @@ void SafeWrites::keep(std::uint32_t task, std::uint32_t frame, OwnedDescriptor d
   kept.pause = std::clamp(pause, Nanoseconds{0}, kDeviceLimit);
 }
 
-void SafeWrites::begin(TaskId task, const BlockView& block, Nanoseconds now) noexcept {
+void SafeWrites::begin(TaskId task, const BlockView& block, const BlockView& successor, Nanoseconds now) noexcept {
   for (std::uint32_t i = 0; i < kSafeFrames; ++i) {
     Frame& frame = of(task)[i];
     const auto bytes = block.safe_frame(task, i).last_words();
     if (bytes.empty() || frame.device.fd < 0) continue;
+    if (successor.is_there() && !successor.safe_frame(task, i).last_words().empty()) {
+      frame.stage = Stage::kLate;
+      continue;
+    }
     std::memcpy(frame.bytes, bytes.data(), bytes.size());
     frame.size = static_cast<std::uint32_t>(bytes.size());
     frame.put = 0;
@@ -66,7 +70,8 @@ bool SafeWrites::is_on_its_way(TaskId task) noexcept {
 void SafeWrites::finish(TaskId task, WrittenFrames& written) noexcept {
   for (Frame& frame : of(task)) {
     if (frame.stage == Stage::kWritten) ++written.good;
-    if (frame.stage == Stage::kLost || frame.stage == Stage::kWaits) ++written.bad;
+    if (frame.stage == Stage::kLost) ++written.bad;
+    if (frame.stage == Stage::kLate || frame.stage == Stage::kWaits) ++written.late;
     written.at = std::max(written.at, frame.at);
     frame.device = OwnedDescriptor();
     frame.stage = Stage::kNone;

@@ -16,6 +16,7 @@ namespace chimera {
 /// Results of the frames of one rtpu.
 struct WrittenFrames {
   std::uint32_t good = 0, bad = 0;
+  std::uint32_t late = 0;  ///< not written, because the device is the successor's already
   Nanoseconds at{};  ///< when a device accepted the last byte; 0: none did
 };
 
@@ -29,18 +30,19 @@ class SafeWrites {
   /// From here on a frame of `task` goes to `descriptor`, which it owns, instead of any earlier one. A frame without a
   /// descriptor goes nowhere. An unknown task or frame is ignored.
   void keep(std::uint32_t task, std::uint32_t frame, OwnedDescriptor descriptor, Nanoseconds pause) noexcept;
-  /// Begins to write the frames of `task` in `block`. Requires: its process is dead.
-  void begin(TaskId task, const BlockView& block, Nanoseconds now) noexcept;
+  /// Begins to write the frames of `task` in `block`. Requires: its process is dead. A frame that `successor` (may be
+  /// empty) has as well is left out: the successor drives the device.
+  void begin(TaskId task, const BlockView& block, const BlockView& successor, Nanoseconds now) noexcept;
   /// Writes the frames that are due, as far as the devices accept them.
   void advance(Nanoseconds now) noexcept;
   /// Time when advance() is due; kNever: no frame is being written.
   Nanoseconds due() const noexcept;
   bool is_on_its_way(TaskId task) noexcept;
-  /// Adds the results of the frames of the task to `written` and closes their descriptors.
+  /// Adds the results of the frames of the task to `written`, gives up those that wait, and closes their descriptors.
   void finish(TaskId task, WrittenFrames& written) noexcept;
 
  private:
-  enum class Stage : std::uint8_t { kNone, kWaits, kWritten, kLost };
+  enum class Stage : std::uint8_t { kNone, kWaits, kWritten, kLost, kLate };
   struct Frame {
     OwnedDescriptor device;
     Nanoseconds pause{}, due = kNever, until = kNever, at{};

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "chimera/platform/descriptor.h"
+#include "chimera/platform/realtime.h"
 
 namespace chimera {
 namespace {
@@ -19,6 +20,10 @@ constexpr Nanoseconds kManagerPatience = milliseconds(1500);  // a killed manage
 constexpr Nanoseconds kFacePatience = seconds(30);            // longer than the run client waits for an answer, 20 s
 constexpr Nanoseconds kStartPatience = seconds(10);           // a starting manager first verifies the description
 
+// Descriptors of the keeper: signals, two pages, guard and run client with two each; process, channel and memory of
+// each peer. And those of one more start: channel, line to the guard, pipe, and seven in the child before its exec.
+constexpr std::uint64_t kOwnDescriptors = 7, kPeerDescriptors = 3, kStartDescriptors = 13;
+
 }  // namespace
 
 Keeper::Keeper(KeeperPlan plan) : plan_(std::move(plan)), peers_(plan_.peers), face_(plan_.face) {}
@@ -26,6 +31,9 @@ Keeper::Keeper(KeeperPlan plan) : plan_(std::move(plan)), peers_(plan_.peers), f
 Keeper::~Keeper() = default;
 
 Result<void> Keeper::start() {
+  const std::uint64_t n_peers = plan_.peers.n_rtpus + 1;
+  const auto may = may_open_here(kOwnDescriptors + n_peers * kPeerDescriptors + kStartDescriptors);
+  if (!may) return may.error();
   constexpr int kTaken[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGCHLD}, kIgnored[] = {SIGPIPE};
   auto signals = SignalQueue::open(kTaken, kIgnored);
   if (!signals) return signals.error();
@@ -206,6 +214,7 @@ bool Keeper::advance() {
     for (std::uint32_t index = 0; index < peers_.manager_index(); ++index) peers_[index].signal(SIGKILL);
     enter(Phase::kRtpusDie, kSigkillLimit);
   } else if (phase_ == Phase::kRtpusDie && (!peers_.any_rtpu_lives() || is_late)) {
+    peers_.give_up_rtpus();
     enter(Phase::kFaceFinishes, plan_.face_limit);
   } else if (phase_ == Phase::kFaceFinishes && (!face_.lives() || is_late)) {
     if (face_.lives())

@@ -21,7 +21,8 @@ class KeeperPages {
   int decision_descriptor() const noexcept { return decision_.descriptor(); }
   int keeper_descriptor() const noexcept { return keeper_.descriptor(); }
 
-  /// Shows that `incarnation` of the peer lives; 0: no process of the peer lives. Wakes no process: ring_all() does.
+  /// Shows that `incarnation` of the peer lives, and that it is guarded; 0: no process of the peer lives. Wakes no
+  /// process: ring_all() does.
   void show_life(std::uint32_t index, std::uint32_t incarnation) noexcept;
   /// Wakes every process of the run.
   void ring_all() noexcept;
@@ -29,6 +30,11 @@ class KeeperPages {
   void beat() noexcept { keeper().beats.fetch_add(1, std::memory_order_release); }
   /// Shows how often and by which signal the run client died, and whether its output is lost. Wakes all processes.
   void show_face(const FacePage& face) noexcept;
+  /// Shows whether there is a guard (0: none), and its state. Wakes all processes.
+  void show_guard(std::int32_t pid, GuardState state) noexcept;
+  /// Shows why no safe frame of that incarnation of an rtpu can be written (errno); nothing if another incarnation
+  /// lives. Wakes all processes.
+  void show_unguarded(std::uint32_t index, std::uint32_t incarnation, std::int32_t error) noexcept;
   /// Shows that the run ends.
   void show_ending() noexcept { keeper().ending.store(1, std::memory_order_release); }
 

@@ -52,6 +52,26 @@ TEST_F(KeeperPagesTest, ShowsTheFaceAndWakesAllForIt) {
   EXPECT_EQ(rings(2), 1u);
 }
 
+TEST_F(KeeperPagesTest, ShowTheGuardAndWakeAllForIt) {
+  pages_.show_guard(4711, GuardState::kLate);
+  EXPECT_EQ(seen().guard_pid, 4711);
+  EXPECT_EQ(seen().guard_state, GuardState::kLate);
+  EXPECT_EQ(rings(2), 1u);
+}
+
+TEST_F(KeeperPagesTest, ShowAnRtpuWithoutAGuardAsLongAsThatIncarnationLives) {
+  pages_.show_life(1, 4);
+  pages_.show_unguarded(1, 3, 24);  // a late word about its predecessor
+  pages_.show_unguarded(7, 0, 24);  // no such rtpu
+  EXPECT_EQ(seen().unguarded[1], 0);
+  EXPECT_EQ(rings(2), 0u);
+  pages_.show_unguarded(1, 4, 24);
+  EXPECT_EQ(seen().unguarded[1], 24);
+  EXPECT_EQ(rings(2), 1u);
+  pages_.show_life(1, 5);
+  EXPECT_EQ(seen().unguarded[1], 0);
+}
+
 TEST_F(KeeperPagesTest, BeatsAndTheEndAreShown) {
   pages_.beat();
   pages_.beat();

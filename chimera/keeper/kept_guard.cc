@@ -2,7 +2,7 @@
 // Starts the guard, introduces rtpus to it, and passes its news on to the manager.
 #include "chimera/keeper/kept_guard.h"
 
-#include <algorithm>
+#include <cerrno>
 #include <csignal>
 
 #include "chimera/platform/descriptor.h"
@@ -10,23 +10,30 @@
 
 namespace chimera {
 
-Result<void> KeptGuard::start(const std::string& program, std::span<const std::string> limits, int image) {
+Result<void> KeptGuard::start(const std::string& program, std::span<const std::string> limits, int image,
+                              KeeperPages& pages) {
   auto ends = Channel::pair();
   if (!ends) return ends.error();
   const std::string parent = std::to_string(own_process_id());
   std::vector<const char*> words = {program.c_str(), "--parent", parent.c_str()};
   for (const std::string& limit : limits) words.insert(words.end(), {"--silent", limit.c_str()});
-  const int passed[] = {ends->second.descriptor(), image};
+  const int passed[] = {ends->second.descriptor(), image, pages.decision_descriptor()};
   auto process = Process::start(program.c_str(), words, passed);
   if (!process) return process.error();
   process_ = *std::move(process);
   channel_ = std::move(ends->first);
+  pages_ = &pages;
+  pages.show_guard(pid(), GuardState::kWell);
   return {};
 }
 
-Channel KeptGuard::make_line() {
-  auto ends = lives() ? Channel::pair() : Result<std::pair<Channel, Channel>>(std::pair<Channel, Channel>());
-  if (!ends) return {};  // the rtpu then runs as without a guard
+Channel KeptGuard::make_line(std::uint32_t index, std::uint32_t incarnation) {
+  if (!lives()) return {};
+  auto ends = Channel::pair();
+  if (!ends) {
+    pages_->show_unguarded(index, incarnation, errno);
+    return {};
+  }
   new_line_ = std::move(ends->first);
   return std::move(ends->second);
 }
@@ -51,12 +58,14 @@ void KeptGuard::poll(std::vector<KeeperMessage>& news) {
     const OwnedDescriptor unwanted(passed);
     KeeperMessage message{.index = said.index, .incarnation = said.incarnation};
     if (said.kind == GuardMessage::Kind::kReady && said.good == 0) {
-      state_.code = KeeperMessage::kGuardIsSlow;
-      introduce(news);
+      pages_->show_guard(pid(), GuardState::kLate);
+    } else if (said.kind == GuardMessage::Kind::kUnguarded) {
+      pages_->show_unguarded(said.index, said.incarnation, static_cast<int>(said.bad));
     } else if (said.kind == GuardMessage::Kind::kWritten) {
       message.kind = KeeperMessage::Kind::kFramesWritten;
       message.code = static_cast<std::int32_t>(said.good);
       message.letter = said.bad;
+      message.late = said.late;
       message.at = said.at;
       message.silent = said.died;
       news.push_back(message);
@@ -70,12 +79,7 @@ void KeptGuard::poll(std::vector<KeeperMessage>& news) {
   ProcessEnd how;
   if (!process_.is_held() || !process_.has_ended(how)) return;
   channel_ = Channel();
-  state_.code = KeeperMessage::kGuardIsDead;
-  introduce(news);
-}
-
-void KeptGuard::introduce(std::vector<KeeperMessage>& news) const {
-  if (state_.code != KeeperMessage::kGuardIsWell) news.push_back(state_);
+  pages_->show_guard(0, GuardState::kDead);
 }
 
 void KeptGuard::end(Nanoseconds limit) {

@@ -46,8 +46,10 @@ Result<void> KeptPeers::start_all() {
   auto pages = KeeperPages::create(plan_.n_rtpus, clock_.now());
   if (!pages) return pages.error();
   pages_ = *std::move(pages);
-  if (!plan_.guard_program.empty())
-    if (auto started = guard_.start(plan_.guard_program, plan_.guard_limits, plan_.image); !started) return started;
+  if (!plan_.guard_program.empty()) {
+    auto started = guard_.start(plan_.guard_program, plan_.guard_limits, plan_.image, pages_);
+    if (!started) return started;
+  }
   // The manager starts first, because its start takes longest. It gets the inventory piece by piece as the rtpus start.
   if (auto started = start(manager_index()); !started) return started;
   for (std::uint32_t rtpu = 0; rtpu < manager_index(); ++rtpu) {
@@ -64,10 +66,10 @@ Result<void> KeptPeers::start(std::uint32_t index) {
   std::vector<int> passed = {plan_.image, pages_.decision_descriptor(), pages_.keeper_descriptor()};
   if (is_manager) passed.insert(passed.end(), {plan_.listening, plan_.bundle});
   else passed.push_back(plan_.objects);
-  const Channel line = is_manager ? Channel() : guard_.make_line();
-  if (line.is_open()) passed.push_back(line.descriptor());
   pages_.show_life(index, incarnation);  // before the process reads the page
   pages_.ring_all();
+  const Channel line = is_manager ? Channel() : guard_.make_line(index, incarnation);
+  if (line.is_open()) passed.push_back(line.descriptor());
   const auto started = peers_[index].start({.program = is_manager ? plan_.manager_program : plan_.rtpu_program,
                                             .passed = passed,
                                             .origin_prefix = orphans_.prefix(),
@@ -100,9 +102,6 @@ void KeptPeers::introduce(std::uint32_t newcomer) {
     if (!lives) tell_life(rtpu);
   }
   peer.pass_segment_to(peer);  // the memory of its predecessor
-  std::vector<KeeperMessage> news;
-  guard_.introduce(news);
-  for (const KeeperMessage& message : news) peer.send(message);
   peer.send({.kind = Kind::kComplete});
 }
 
@@ -145,6 +144,14 @@ void KeptPeers::show_end(std::uint32_t index) {
 void KeptPeers::finish_rtpus() {
   pages_.show_ending();
   for (std::uint32_t index = 0; index < manager_index(); ++index) peers_[index].send({.kind = Kind::kFinish});
+}
+
+void KeptPeers::give_up_rtpus() {
+  for (std::uint32_t index = 0; index < manager_index(); ++index) {
+    if (!peers_[index].lives()) continue;
+    peers_[index].note_end({.by_signal = true, .code = SIGKILL}, clock_.now());
+    show_end(index);
+  }
 }
 
 void KeptPeers::finish_manager() { peers_[manager_index()].send({.kind = Kind::kFinish}); }

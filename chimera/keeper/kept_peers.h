@@ -45,6 +45,8 @@ class KeptPeers {
   bool has_ended(std::uint32_t index, std::vector<KeeperMessage>& wishes);
   /// Asks every rtpu to end its tasks. The keeper page shows all processes that the run ends.
   void finish_rtpus();
+  /// Reports each rtpu that still lives, though SIGKILL was sent, as ended by it: its tasks may not be OFF.
+  void give_up_rtpus();
   /// Asks the manager to finish its work and end.
   void finish_manager();
   /// Ends the processes that dead rtpus left behind. Spares `other`, a child that other code of this process waits for.

@@ -216,8 +216,9 @@ Verdict element_rule(const PortDescriptor& port, const std::byte* element) {
 
 Verdict initial_rule(const PortDescriptor& port) {
   if (port.initial.empty()) return {};
-  if (port.kind != CHIMERA_OUT_VAR && port.kind != CHIMERA_IN_CONST) {
-    return "an initial value on an " + std::string(kind_name(port.kind)) + "; it is for out-vars and in-consts";
+  if (port.kind > CHIMERA_IN_CONST || (port.kind == CHIMERA_IN_VAR && port.repeated)) {
+    return "an initial value on a" + std::string(port.repeated ? " repeated " : "n ") +
+           std::string(kind_name(port.kind)) + "; it is for out-vars, in-consts and in-vars that are not repeated";
   }
   const std::uint32_t count = port.initial_count();
   if (port.initial.size() != std::size_t{count} * port.element_size || (count != 1 && count != port.max_count())) {

@@ -214,8 +214,11 @@ TEST(DeclarationRules, RefusesInitialValuesOfAWrongCountOrNone) {
   sample.ports[1].shape = "[3]";
   EXPECT_EQ(sample.refusal(), "component tderiv: port dx: initial value 2: is not a number");
   sample.set_initial(0, three, 1);
+  EXPECT_EQ(sample.refusal(), "component tderiv: port dx: initial value 2: is not a number") << "x is optional";
+  sample.ports[0].kind = CHIMERA_OUT_CONST;
   EXPECT_EQ(sample.refusal(),
-            "component tderiv: port x: an initial value on an in-var; it is for out-vars and in-consts");
+            "component tderiv: port x: an initial value on an out-const; it is for out-vars, in-consts and in-vars "
+            "that are not repeated");
 }
 
 TEST(DeclarationRules, RefusesFieldsThatOverlapOrLeaveTheElement) {

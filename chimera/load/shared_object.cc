@@ -6,6 +6,7 @@
 #include "chimera/base/message.h"
 #include "chimera/load/elf_check.h"
 #include "chimera/platform/linked_object.h"
+#include "chimera/platform/thread.h"
 
 namespace chimera {
 namespace {
@@ -63,6 +64,7 @@ Result<std::string> SharedObject::read(const std::string& path) {
 Result<SharedObject> SharedObject::link(Result<OwnedDescriptor> copy, const std::string& path) {
   if (!copy) return copy.error();
   if (const auto why = elf_fault(copy->fd); !why.empty()) return unfit(path, why.view());
+  use_decimal_point();
   const auto object = link_object(*std::move(copy));
   if (!object)
     return (Message() << "cannot be loaded: " << object.error().message.view()).error(ErrorCode::kBadInput, path);

@@ -8,8 +8,10 @@
 #include "chimera/control/receipt/switch_reason.h"
 #include "chimera/manager/act/operator_acts.h"
 #include "chimera/manager/answer/status_json.h"
+#include "chimera/manager/state/asker.h"
 #include "chimera/manager/state/cause.h"
 #include "chimera/manager/state/command_text.h"
+#include "chimera/manager/watch/guard_news.h"
 #include "chimera/runtime/hosted/asked_set.h"
 #include "chimera/text/json.h"
 #include "chimera/text/json_text.h"
@@ -176,6 +178,7 @@ void ManagerBackend::call(const control::MethodRule& method, const Json& paramet
                           control::Reply reply) {
   if (const auto answer = reads_.answer(method.id, parameters, caller.role)) return reply(*answer);
   const Request request{parameters, caller, reply};
+  const Acting acting(state(), Asker{caller.role, caller.user}.text());
   switch (method.id) {
     case MethodId::kReceipts: return receipts(request);
     case MethodId::kPlan: return plan(request);
@@ -212,7 +215,7 @@ void ManagerBackend::signal(const Request& request) {
   const auto wanted = static_cast<Signal>(at - std::begin(kSignals));
   if (wanted == Signal::kOn && loop_.switches().is_under_way())
     return request.reply(RpcResponse::refused("under-way", loop_.switches().under_way() + ", is under way", "",
-                                              "ask again when it is over"));
+                                              loop_.switches().way_out()));
   loop_.command(wanted, std::get<0>(std::move(tasks)),
                   [this, reply = request.reply](const subsystem::CommandAnswer& answer) {
                     reply(signal_answer(state(), answer));
@@ -268,7 +271,8 @@ void ManagerBackend::cancel(const Request& request) {
   };
   if (!switches.cancel({request.caller.role, request.caller.user}, answer))
     request.reply(RpcResponse::refused(
-        "too-late", switches.under_way() + ", cannot be cancelled: it is " + switches.progress(), ""));
+        "too-late", switches.under_way() + ", cannot be cancelled: it is " + switches.progress(), "",
+        switches.way_out()));
 }
 
 void ManagerBackend::switch_to(const Request& request) {
@@ -284,17 +288,17 @@ void ManagerBackend::switch_to(const Request& request) {
 }
 
 void ManagerBackend::drill(const Request& request) {
-  const auto refuse = [&](const char* kind, const std::string& why, const char* remedy) {
+  const auto refuse = [&](const char* kind, const std::string& why, const std::string& remedy) {
     request.reply(RpcResponse::refused(kind, "the drill is refused: " + why, "", remedy));
   };
   if (state().is_ending()) return request.reply(RpcResponse::error(control::kEnding, "the subsystem is ending"));
   if (loop_.drill().is_under_way())
     return refuse("under-way", "another one is under way", "ask again when it is over");
   if (loop_.switches().is_under_way())
-    return refuse("under-way", loop_.switches().under_way() + ", is under way", "ask again when it is over");
+    return refuse("under-way", loop_.switches().under_way() + ", is under way", loop_.switches().way_out());
   if (!state().logic.is_settled())
     return refuse("under-way", "tasks are being brought up",
-                  "`chimera status` shows which; ask again when they are ON");
+                  loop_.switches().way_out("`chimera status` shows which; ask again when they are ON"));
   if (const Json flag = flag_json(state()); truth_at(flag, "up"))
     return refuse("flag-up", "the flag is up already, so it would measure nothing", "`chimera status` says by whom");
   const std::uint64_t wait_ms = control::number(request.parameters, "wait_ms", 10'000);
@@ -306,6 +310,8 @@ void ManagerBackend::drill(const Request& request) {
     const auto at = std::ranges::find(names, name);
     if (at == names.end()) return request.reply(RpcResponse::no_such("rtpu", name, names));
     to_kill = RtpuId(static_cast<std::size_t>(at - names.begin()));
+    if (const NoGuard lack = no_guard(state(), to_kill); !lack.why.empty())
+      return refuse("no-guard", lack.why, lack.remedy);
   }
   loop_.drill().begin(wait, to_kill, now(), [this, reply = request.reply](const DrillOutcome& outcome) {
     reply(RpcResponse::good(drill_json(state(), outcome)));
@@ -313,6 +319,7 @@ void ManagerBackend::drill(const Request& request) {
 }
 
 void ManagerBackend::end(const Request& request) {
+  state().tell("command", TaskId{}, RtpuId{}, "end: done", now());
   loop_.end(static_cast<std::int32_t>(std::min<std::uint64_t>(control::number(request.parameters, "code", 0), 255)));
   request.reply(RpcResponse::good(Json::object()));
 }

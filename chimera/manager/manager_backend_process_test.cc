@@ -5,11 +5,13 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <optional>
 
 #include "chimera/manager/act/operator_acts.h"
 #include "chimera/manager/answer/large_readings.h"
+#include "chimera/manager/answer/status_json.h"
 #include "chimera/manager/answer/value_json.h"
 #include "chimera/manager/testing/fake_subsystem.h"
 #include "chimera/runtime/task_word.h"
@@ -97,6 +99,28 @@ TEST_F(ManagerBackendTest, ADrillBeginsWithTheFlagDown) {
             "{\"kind\":\"flag-up\",\"remedy\":\"`chimera status` says by whom\",\"where\":\"\"}");
 }
 
+TEST_F(ManagerBackendTest, ADrillKillsNoRtpuThatTheGuardCannotServe) {
+  const auto refused = [this] { return refusal("drill", {{"kill", "servo"}}); };
+  const auto text = [](const std::string& why, const std::string& remedy) {
+    return "-32000 the drill is refused: " + why + " {\"kind\":\"no-guard\",\"remedy\":\"" + remedy +
+           "\",\"where\":\"\"}";
+  };
+  EXPECT_EQ(refused(), text("the subsystem has no guard: no task has a device", "leave out `--kill`"));
+  fake_.page().guard_pid = 4711;
+  state().guard_hang = "does not run: stopped by a signal (state T), for 1.6 s";
+  EXPECT_EQ(refused(), text("the guard does not run: stopped by a signal (state T), for 1.6 s",
+                            "`kill -CONT 4711` continues a stopped one"));
+  fake_.page().unguarded[0] = EMFILE;
+  EXPECT_EQ(refused(), text("no safe frame can be written: Too many open files",
+                            "raise the limits of open files (ulimit -n) and locked memory (ulimit -l), and start the "
+                            "run again"));
+  fake_.page().guard_state = GuardState::kDead;
+  EXPECT_EQ(refused(), text("the guard is dead: no safe frames are written until the next run",
+                            "end the run and start it again"));
+  EXPECT_EQ(fake_.killed, std::nullopt);
+  EXPECT_EQ(fake_.told("drill"), "");
+}
+
 TEST_F(ManagerBackendTest, NoDrillWhileASwitchIsUnderWay) {
   const Asker ann{control::Role::kOperate, 4'000'000'001u};
   fake_.loop().switches().ask({1, SwitchCause::kScript, {}}, ann, seconds(10), now(),
@@ -144,7 +168,8 @@ TEST_F(ManagerBackendTest, StatusIsReadOutOfTheBlocks) {
   EXPECT_EQ(law["fault"], nullptr);
   ASSERT_EQ(law["inputs"].size(), 2u);
   EXPECT_EQ(law["inputs"][0]["port"], "y");
-  EXPECT_TRUE(law["inputs"][0]["age_ns"].is_number());  // 0 if it is written while the answer is made
+  EXPECT_TRUE(law["inputs"][0]["age_ns"].is_number());
+  EXPECT_GT(status_json(state(), {})["tasks"][2]["inputs"][0]["age_ns"].as_int64(), 0) << "0 is of operator variables";
   EXPECT_LT(law["inputs"][0]["age_ns"].as_int64(), 1'000'000'000);
   EXPECT_EQ(law["inputs"][1], (Json{{"port", "kp"}, {"variable", "kp"}, {"age_ns", 0}})) << "never old";
 }
@@ -239,6 +264,30 @@ TEST_F(ManagerBackendTest, SetPublishesAndSaveWritesItBackInTheWordsOfADescripti
   EXPECT_EQ(refusal("set", {{"values", {{"tau", 3}}}}),
             "-32000 tau is produced by task law, not by the operator {\"kind\":\"not-operator\",\"where\":\"tau\"}");
   EXPECT_EQ(good("get", {{"variables", {"kp"}}})["values"]["kp"]["text"], "[100 90] N.m/rad");
+}
+
+TEST_F(ManagerBackendTest, EventsNameWhoCausedThem) {
+  const std::uint64_t last = state().log.last();
+  (void)good("signal", {{"signal", "off"}, {"tasks", {"law"}}});
+  (void)good("set", {{"values", {{"kp", "[3 4] N.m/rad"}}}});
+  good("flag", {{"up", true}});
+  (void)good("end");
+  std::string causes;
+  const Json told = good("events", {{"since", last + 1}});
+  for (const Json& event : told["events"])
+    if (event.contains("by")) causes += event["kind"].as_string() + " " + event["by"].as_string() + "\n";
+  EXPECT_EQ(causes, "command configure:root\nset configure:root\nflag configure:root\ncommand configure:root\n");
+  EXPECT_EQ(state().acting, "");
+}
+
+TEST_F(ManagerBackendTest, AStatusAndWhySayThatAnRtpuIsNotRealTime) {
+  std::strcpy(fake_.rtpu(1).block().head().grant,
+              "WARNING: not real time\n  memory not locked\n  CPU 1 refused\n  granted: SCHED_FIFO 80");
+  EXPECT_EQ(good("status")["rtpus"][0]["not_real_time"], nullptr);
+  EXPECT_EQ(good("status")["rtpus"][1]["not_real_time"], "memory not locked; CPU 1 refused");
+  fake_.rtpu(1).block().profile(fake_.task("law")).missed = 3;
+  EXPECT_EQ(good("why", {{"variable", "tau"}})["chain"][0]["timing"],
+            "3 missed, spare is not real time: memory not locked; CPU 1 refused");
 }
 
 TEST_F(ManagerBackendTest, TheOperatorsFlagStaysUntilItIsLowered) {

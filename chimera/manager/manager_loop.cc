@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "chimera/control/state_folder.h"
-#include "chimera/manager/watch/guard_news.h"
 #include "chimera/platform/descriptor.h"
 #include "chimera/platform/wake.h"
 
@@ -156,7 +155,7 @@ bool ManagerLoop::take_messages() {
 void ManagerLoop::take(const KeeperMessage& message, int passed) {
   using Kind = KeeperMessage::Kind;
   Events events;
-  if (message.kind == Kind::kPeer && passed >= 0 && message.index < state_->peers.n_rtpus()) {
+  if (message.kind == Kind::kPeer && message.index < state_->peers.n_rtpus()) {
     if (is_ready_) takeovers_->look(now());  // reads the words of the incarnation before, which are unmapped next
     rtpu_links_->mapped(message, std::exchange(passed, -1));
   } else if (message.kind == Kind::kStarted) {
@@ -214,8 +213,10 @@ int ManagerLoop::take_listening() noexcept { return std::exchange(mapped_->liste
 
 void ManagerLoop::look_at_keeper() {
   face_watch_.look(*state_, now());
+  guard_watch_.look(*state_, now());
   if (is_ending_ || !state_->is_ending()) return;
   is_ending_ = true;
+  receipts_->try_again(now());  // before the run client asks which ones are not filed
   state_->tell("ending", TaskId{}, RtpuId{}, "the subsystem is ending", now());
 }
 
@@ -268,6 +269,7 @@ bool ManagerLoop::step(Nanoseconds at_most, int also, int or_else) {
   steps_->look(now());
   if (is_ready_) {  // before that, the tasks that are ON are not known
     switches_->look(now());
+    for (const RtpuId rtpu : switches_->overdue(now())) end_rtpu(rtpu);
     wishes_->look(now());
     takeovers_->look(now());
   }

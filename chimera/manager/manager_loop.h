@@ -15,6 +15,7 @@
 #include "chimera/manager/switch/takeover_receipts.h"
 #include "chimera/manager/watch/bell_watch.h"
 #include "chimera/manager/watch/face_watch.h"
+#include "chimera/manager/watch/guard_news.h"
 #include "chimera/manager/watch/rtpu_health.h"
 #include "chimera/manager/watch/rtpu_watch.h"
 #include "chimera/platform/local_socket.h"
@@ -109,6 +110,7 @@ class ManagerLoop {
   bool is_ending_ = false;
   bool is_finished_ = false;
   FaceWatch face_watch_;
+  GuardWatch guard_watch_;
 };
 
 }  // namespace chimera::manager

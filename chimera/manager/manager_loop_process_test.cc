@@ -87,8 +87,8 @@ TEST(ManagerLoop, TheNextManagerKnowsTheTasksOfAnRtpuWithUnreadableMemory) {
   fake.start_manager();
   ASSERT_TRUE(fake.until([&] { return fake.loop().state().rtpus[1].restarts == 1; }));
   EXPECT_EQ(fake.told("fault"),
-            "its memory cannot be read, something in it has overwritten it (not a state variable table: the first 8 "
-            "bytes are not CHIMTBL1)\n");
+            "something in it has overwritten its memory (not a state variable table: the first 8 bytes are not "
+            "CHIMTBL1)\n");
   EXPECT_TRUE(fake.until_on("law"));
   fake.kill_manager();  // tasks that were ON are goals now, and this memory is gone
   bool is_off = false;
@@ -105,7 +105,7 @@ TEST(ManagerLoop, TheNextManagerKnowsTheTasksOfAnRtpuWithUnreadableMemory) {
   EXPECT_EQ(fake.loop().state().state(fake.task("law")), State::kOff) << "as it was";
 }
 
-TEST(ManagerLoop, ReportsALivingRtpuWithOverwrittenMemoryAndItsRemedy) {
+TEST(ManagerLoop, EndsALivingRtpuWithOverwrittenMemory) {
   FakeSubsystem fake;
   fake.start_manager();
   ASSERT_TRUE(fake.until_on("law"));
@@ -114,9 +114,10 @@ TEST(ManagerLoop, ReportsALivingRtpuWithOverwrittenMemoryAndItsRemedy) {
   fake.start_manager();  // it has no message about a death
   ASSERT_TRUE(fake.until([&] { return !fake.told("fault").empty(); }));
   EXPECT_EQ(fake.told("fault"),
-            "its memory cannot be read, something in it has overwritten it (not a state variable table: the first 8 "
-            "bytes are not CHIMTBL1): the manager cannot send commands to it; `kill -KILL " +
-                std::to_string(fake.loop().state().rtpus[1].pid) + "` restarts it\n");
+            "something in it has overwritten its memory (not a state variable table: the first 8 bytes are not "
+            "CHIMTBL1): its states and numbers are not shown, and it is ended\n");
+  EXPECT_TRUE(fake.until([&] { return fake.killed == 1u; }));
+  EXPECT_EQ(fake.loop().state().state(fake.task("law")), State::kError);
   fake.kill_rtpu(1, SIGKILL);
   EXPECT_TRUE(fake.until([&] { return fake.loop().state().rtpus[1].restarts == 1; }));
   EXPECT_TRUE(fake.until_on("law"));
@@ -152,8 +153,11 @@ TEST(ManagerLoop, ReportsImpossibleCountersAsAFaultAndNotAsNumbers) {
   ASSERT_TRUE(fake.until_on("law"));
   fake.rtpu(1).block().profile(fake.task("law")).overrun = 6'510'615'555'426'900'570u;
   ASSERT_TRUE(fake.until([&] { return !fake.told("fault").empty(); }));
-  EXPECT_EQ(fake.told("fault"), "law: its counters are wrong: something in its rtpu has overwritten them\n");
+  EXPECT_EQ(fake.told("fault"),
+            "something in it has overwritten its memory (the counters of law): its states and numbers are not shown, "
+            "and it is ended\n");
   EXPECT_EQ(fake.told("overrun"), "");
+  EXPECT_TRUE(fake.until([&] { return fake.killed == 1u; }));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 
 #include "chimera/platform/clock.h"
@@ -51,6 +52,23 @@ bool set_path(sockaddr_un& address, const std::string& path) noexcept {
   std::memcpy(address.sun_path, path.c_str(), path.size());
   return true;
 }
+
+OwnedDescriptor make_socket() noexcept {
+  return OwnedDescriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+}
+
+/// The address of a name of claim_name(), which is cut to its room.
+struct AbstractAddress {
+  explicit AbstractAddress(std::string_view name) noexcept {
+    const std::size_t bytes = std::min(name.size(), sizeof un.sun_path - 1);
+    un.sun_family = AF_UNIX;
+    std::memcpy(un.sun_path + 1, name.data(), bytes);  // a zero before the name: abstract
+    size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + bytes);
+  }
+  const sockaddr* get() const noexcept { return reinterpret_cast<const sockaddr*>(&un); }
+  sockaddr_un un{};
+  socklen_t size = 0;
+};
 
 bool connect_socket(int socket, const sockaddr_un& address) noexcept {
   return ::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
@@ -111,6 +129,7 @@ Channel::Got Channel::receive(std::span<std::byte> bytes, int& passed) const noe
   while (got < 0 && (errno == EINTR || errno == ECONNRESET));
   if (got < 0) return errno == EAGAIN ? Got::kNothing : Got::kClosed;
   passed = passed_in(message);
+  if (passed < 0 && (message.msg_flags & MSG_CTRUNC) != 0) passed = kLostDescriptor;
   if (static_cast<std::size_t>(got) == bytes.size() && (message.msg_flags & MSG_TRUNC) == 0) return Got::kMessage;
   if (passed >= 0) ::close(std::exchange(passed, -1));
   return Got::kClosed;
@@ -130,7 +149,7 @@ OwnedDescriptor connect_to_path(const std::string& path, Nanoseconds limit) {
 bool is_listened_at(const std::string& path) {
   sockaddr_un address{};
   if (!set_path(address, path)) return false;
-  const OwnedDescriptor asking(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const OwnedDescriptor asking = make_socket();
   return connect_socket(asking.fd, address) || errno == EAGAIN;
 }
 
@@ -156,6 +175,27 @@ std::int64_t send_now(int socket, std::string_view bytes) noexcept {
 int unread_by_other_end(int socket) noexcept {
   int unread = 0;
   return ::ioctl(socket, SIOCOUTQ, &unread) == 0 ? unread : -1;
+}
+
+OwnedDescriptor claim_name(std::string_view name) noexcept {
+  OwnedDescriptor claim = make_socket();
+  const AbstractAddress address(name);
+  if (claim.fd >= 0 && ::bind(claim.fd, address.get(), address.size) == 0 && ::listen(claim.fd, 64) == 0) return claim;
+  const int why = errno;
+  claim = OwnedDescriptor();
+  errno = why;
+  return claim;
+}
+
+NameHolder holder_of_name(std::string_view name) noexcept {
+  const OwnedDescriptor asking = make_socket();
+  const AbstractAddress address(name);
+  ucred holder{};
+  socklen_t size = sizeof holder;
+  if (asking.fd < 0 || ::connect(asking.fd, address.get(), address.size) != 0 ||
+      ::getsockopt(asking.fd, SOL_SOCKET, SO_PEERCRED, &holder, &size) != 0)
+    return {};
+  return {holder.pid, holder.uid};
 }
 
 std::optional<SocketPeer> peer_of(int socket) {

@@ -21,6 +21,9 @@
 
 namespace chimera {
 
+/// Channel::receive(): the message came with a descriptor, for which this process had no room (ulimit -n).
+inline constexpr int kLostDescriptor = -2;
+
 /// One end of a SOCK_SEQPACKET pair. Move-only; closes. Never blocks.
 class Channel {
  public:
@@ -37,8 +40,8 @@ class Channel {
   /// Sends `bytes` whole, with one descriptor (-1: none). False if the other end is gone or its buffer is full.
   [[nodiscard]] bool send(std::span<const std::byte> bytes, int passed = -1) const noexcept;
   /// Receives the next message, which must have bytes.size() bytes; a message of another length is from a stranger:
-  /// kClosed. `passed` becomes the descriptor that came with the message (-1: none), close-on-exec; the caller closes
-  /// `passed`.
+  /// kClosed. `passed` becomes the descriptor that came with the message (-1: none; or kLostDescriptor), close-on-exec;
+  /// the caller closes `passed`.
   Got receive(std::span<std::byte> bytes, int& passed) const noexcept;
 
  private:
@@ -62,6 +65,17 @@ std::int64_t receive_now(int socket, std::span<char> to) noexcept;
 std::int64_t send_now(int socket, std::string_view bytes) noexcept;
 /// Number of sent bytes that the other end has not read; -1 if the system does not say. Context: setup.
 int unread_by_other_end(int socket) noexcept;
+
+/// Claims a name of at most 107 bytes on this machine (in one network namespace) until the descriptor is closed: an
+/// abstract Unix socket, which no file stands for. -1 with errno, EADDRINUSE if another process holds the name.
+/// Context: setup; never blocks.
+OwnedDescriptor claim_name(std::string_view name) noexcept;
+struct NameHolder {
+  pid_t process = 0;  ///< 0: it does not answer
+  uid_t user = 0;
+};
+/// The process that holds the name. Context: setup; never blocks.
+NameHolder holder_of_name(std::string_view name) noexcept;
 
 /// The process that made a connection.
 struct SocketPeer {

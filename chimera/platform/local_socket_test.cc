@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <iterator>
 
+#include "chimera/base/testing/few_descriptors.h"
 #include "chimera/platform/shared_memory.h"
 
 namespace chimera::local_socket_test {
@@ -59,6 +60,19 @@ TEST(Channel, PassesADescriptorThatExecCloses) {
   EXPECT_EQ(::fcntl(passed, F_GETFD), FD_CLOEXEC);
   EXPECT_EQ(FrozenBytes::open(passed)->bytes().size(), 8u);
   ::close(passed);
+}
+
+TEST(Channel, SaysThatADescriptorFoundNoRoom) {
+  const auto [here, there] = make_pair();
+  ASSERT_TRUE(here.send(letter(1), here.descriptor()));
+  ASSERT_TRUE(here.send(letter(2)));
+  const FewDescriptors none(0);
+  Letter got{};
+  int passed = -1;
+  EXPECT_EQ(there.receive(got, passed), Channel::Got::kMessage);
+  EXPECT_EQ(passed, kLostDescriptor);
+  EXPECT_EQ(there.receive(got, passed), Channel::Got::kMessage);
+  EXPECT_EQ(passed, -1) << "a message without a descriptor lost none";
 }
 
 TEST(Channel, DeliversTheLastMessageOfAnEndThatDiedWithAnUnreadMessage) {

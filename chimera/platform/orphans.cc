@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <sys/prctl.h>
+#include <sys/ptrace.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <charconv>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 
 #include "chimera/platform/clock.h"
@@ -50,6 +52,19 @@ bool end_if_from(std::string_view origin, pid_t pid) {
 }
 
 bool is_among(std::span<const pid_t> pids, pid_t pid) { return std::find(pids.begin(), pids.end(), pid) != pids.end(); }
+
+// With __WCLONE the kernel names traced threads and processes only: all other children report their end by SIGCHLD.
+void end_tracing(std::span<const pid_t> held) {
+  constexpr int kTraced = WEXITED | WSTOPPED | WNOHANG | WNOWAIT | __WCLONE;
+  for (siginfo_t found{}; ::waitid(P_ALL, 0, &found, kTraced) == 0 && found.si_pid != 0; found = {}) {
+    const auto signal = reinterpret_cast<void*>(static_cast<std::intptr_t>(found.si_status));  // NOLINT: a number
+    const bool has_ended = found.si_code != CLD_TRAPPED && found.si_code != CLD_STOPPED;
+    if (has_ended && is_among(held, found.si_pid)) return;  // its Process reaps it
+    if (has_ended ? ::waitpid(found.si_pid, nullptr, WNOHANG | __WALL) <= 0
+                  : ::ptrace(PTRACE_DETACH, found.si_pid, nullptr, signal) != 0)
+      return;
+  }
+}
 
 /// Dead or alive. The list of living children may lack a process that is just becoming a child.
 bool has_children() {
@@ -142,6 +157,7 @@ bool Orphans::is_ours(pid_t pid, Nanoseconds now, bool& is_doubtful) {
 
 void Orphans::look(std::span<const pid_t> held, const std::function<bool(std::string_view)>& lives, Nanoseconds now) {
   due_ = kNever;
+  end_tracing(held);
   for (const pid_t pid : living(held)) {
     const std::string origin = origin_of(pid);
     const bool is_known = origin.starts_with(prefix_);

@@ -46,9 +46,11 @@ class Orphans {
   /// The begin of every origin of this keeper; unique for this process.
   const std::string& prefix() const noexcept { return prefix_; }
 
-  /// Reaps each ended child that is not among `held`, the numbers of children with a Process. Sends SIGKILL to each
-  /// child of an rtpu that does not live; to a memory holder 100 ms after the first call that found it. A child of
-  /// unknown origin stays until the end. `lives`: true if the rtpu of that origin lives.
+  /// Reaps each ended child that is not among `held`, the numbers of children with a Process. Ends the tracing of each
+  /// thread that a component had traced by this process (PTRACE_TRACEME): such a thread would stop at its next signal,
+  /// and its process would not end before this one waited for the thread. Sends SIGKILL to each child of an rtpu that
+  /// does not live; to a memory holder 100 ms after the first call that found it. A child of unknown origin stays until
+  /// the end. `lives`: true if the rtpu of that origin lives.
   void look(std::span<const pid_t> held, const std::function<bool(std::string_view)>& lives, Nanoseconds now);
   /// When to call look() again even without an event; kNever: no need.
   Nanoseconds due() const noexcept { return due_; }

@@ -173,6 +173,13 @@ bool Process::signal(int number) const noexcept { return pidfd_ >= 0 && pidfd_se
 
 bool signal_process(int pidfd, int signal) noexcept { return pidfd_send_signal(pidfd, signal); }
 
+bool has_process_ended(pid_t pid) noexcept {
+  const OwnedDescriptor held(pidfd_open(pid));
+  if (held.fd < 0) return errno == ESRCH;
+  pollfd dead{held.fd, POLLIN, 0};
+  return ::poll(&dead, 1, 0) > 0;
+}
+
 bool follow_parent(pid_t parent, int signal) noexcept {
   return ::prctl(PR_SET_PDEATHSIG, signal) == 0 && ::getppid() == parent;
 }

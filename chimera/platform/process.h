@@ -63,6 +63,10 @@ class Process {
 /// Sends `signal` to the process of that pidfd; false after its end. Context: any; one system call.
 bool signal_process(int pidfd, int signal) noexcept;
 
+/// True if process `pid` has ended, reaped or not. A process that got the same number later counts as living. Context:
+/// cycle boundary; three system calls that do not wait.
+bool has_process_ended(pid_t pid) noexcept;
+
 /// By a child: from now on the kernel sends it `signal` when its parent dies. False if `parent` is not (or no longer)
 /// the parent: then the caller should end. Context: setup.
 bool follow_parent(pid_t parent, int signal) noexcept;

@@ -7,18 +7,19 @@
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
-#include <sys/socket.h>
-#include <sys/un.h>
+#include <sys/utsname.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cmath>
-#include <cstddef>
 #include <cstdlib>
 #include <cstring>
+#include <vector>
 
 #include "chimera/base/message.h"
 #include "chimera/platform/file.h"
+#include "chimera/platform/local_socket.h"
+#include "chimera/platform/process_state.h"
 
 namespace chimera {
 namespace {
@@ -54,7 +55,7 @@ struct Parts {
 void set_priority(const RealtimeRequest& request, RealtimeGrant& grant, Parts& report) noexcept {
   if (request.priority == 0) {
     grant.priority = true;
-    report.miss() << "ordinary scheduling was asked for (priority 0): any job may come late";
+    report.miss() << kAskedWords << " (priority 0): any job may come late";
     return;
   }
   const int error = set_fifo(request.priority) ? 0 : errno;
@@ -115,7 +116,10 @@ void lock_memory(const RealtimeRequest& request, RealtimeGrant& grant, Parts& re
     grant.memory = true;
     return;
   }
+  constexpr int kPlain = MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE;
+  void* const room = request.room == 0 ? MAP_FAILED : ::mmap(nullptr, request.room, PROT_NONE, kPlain, -1, 0);
   const int error = ::mlockall(MCL_CURRENT | MCL_FUTURE) == 0 ? 0 : errno;
+  if (room != MAP_FAILED) ::munmap(room, request.room);
   grant.memory = error == 0 && has_locked_memory();
   if (grant.memory) {
     report.grant() << kLockedWords;
@@ -125,16 +129,22 @@ void lock_memory(const RealtimeRequest& request, RealtimeGrant& grant, Parts& re
                 << "): set RLIMIT_MEMLOCK to unlimited (ulimit -l, LimitMEMLOCK=) or give CAP_IPC_LOCK";
 }
 
+bool has_preempt_rt() noexcept {
+  utsname kernel{};
+  return ::uname(&kernel) == 0 && std::strstr(kernel.version, "PREEMPT_RT") != nullptr;
+}
+
 void write_report(const Parts& parts, RealtimeGrant& grant) noexcept {
   Message report;
   if (!parts.missing.empty()) {
-    report << "WARNING: not real time" << parts.missing.view();
+    report << kMissingWords << parts.missing.view();
     if (!parts.granted.empty()) report << "\n  granted: " << parts.granted.view();
   } else {
     report << "Real-time OK: " << parts.granted.view() << ".";
     if (grant.throttle_share < 1)
       report << " Kernel limit for RT threads: " << std::lround(grant.throttle_share * 100) << " % of each "
              << realtime_period().count / 1'000'000 << " ms.";
+    if (!has_preempt_rt()) report << " But " << kUnboundWords << ".";
   }
   grant.report.assign(report.view());
 }
@@ -150,40 +160,12 @@ Result<void> at_least(int resource, std::uint64_t least, const char* what, const
       .error(ErrorCode::kRefused);
 }
 
-/// The abstract address of a claim.
-struct ClaimAddress {
-  explicit ClaimAddress(int cpu) noexcept {
-    const Message name = Message() << "chimera-cpu-" << cpu;
-    un.sun_family = AF_UNIX;
-    std::memcpy(un.sun_path + 1, name.view().data(), name.view().size());  // a zero before the name: abstract
-    size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.view().size());
-  }
-  const sockaddr* get() const noexcept { return reinterpret_cast<const sockaddr*>(&un); }
-  sockaddr_un un{};
-  socklen_t size = 0;
-};
-
-OwnedDescriptor make_claim_socket() noexcept {
-  return OwnedDescriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-}
-
-// The process that holds the claim; pid 0 if the kernel does not say.
-ucred holder(const ClaimAddress& address) noexcept {
-  const OwnedDescriptor asking = make_claim_socket();
-  ucred credentials{};
-  socklen_t size = sizeof credentials;
-  if (asking.fd < 0 || ::connect(asking.fd, address.get(), address.size) != 0 ||
-      ::getsockopt(asking.fd, SOL_SOCKET, SO_PEERCRED, &credentials, &size) != 0)
-    return {};
-  return credentials;
-}
-
 // Any user may bind the name, even without a subsystem. The remedy depends on the process that holds the name.
-Error in_use(int cpu, const ucred& who) noexcept {
+Error in_use(int cpu, const NameHolder& who) noexcept {
   Message text;
   text << "CPU " << cpu << " is in use by ";
-  if (who.pid > 0)
-    text << "another real-time subsystem (process " << who.pid << " of user " << who.uid << "): end that one, ";
+  if (who.process > 0)
+    text << "another real-time subsystem (process " << who.process << " of user " << who.user << "): end that one, ";
   else
     text << "a process that does not answer: find it with `ss -xap | grep chimera-cpu-" << cpu << "` as root, end it, ";
   text << "place the rtpu on another CPU, or run with --priority 0";
@@ -201,6 +183,24 @@ double realtime_share() noexcept {
 
 Nanoseconds realtime_period() noexcept {
   return microseconds(std::strtol(FileStart("/proc/sys/kernel/sched_rt_period_us").bytes, nullptr, 10));
+}
+
+FixedString<400> not_real_time(std::string_view report) noexcept {
+  Message line;
+  if (const std::size_t begin = report.find(kMissingWords); begin != report.npos) {
+    report = report.substr(0, report.find("\n  granted: ")).substr(begin + kMissingWords.size());
+    for (std::size_t at = 0; at < report.size(); ++at) {
+      const bool is_break = report.substr(at).starts_with("\n  ");
+      if (is_break) at += 2;
+      else line << report.substr(at, 1);
+      if (is_break && !line.empty()) line << "; ";
+    }
+  } else if (report.find(kUnboundWords) != report.npos) {
+    line << kUnboundWords;
+  }
+  FixedString<400> text;
+  text.assign(line.view());
+  return text;
 }
 
 RealtimeGrant enter_realtime(const RealtimeRequest& request) noexcept {
@@ -228,16 +228,22 @@ bool may_be_realtime(int priority) noexcept {
 }
 
 Result<CpuClaim> CpuClaim::take(int cpu) noexcept {
-  const Message what = Message() << "claim of CPU " << cpu;
-  const ClaimAddress address(cpu);
-  OwnedDescriptor claim = make_claim_socket();
-  if (claim.fd < 0) return system_error(what, "socket");
-  if (::bind(claim.fd, address.get(), address.size) == 0) {
-    if (::listen(claim.fd, 64) != 0) return system_error(what, "listen");
-    return CpuClaim(std::move(claim));
-  }
-  if (errno != EADDRINUSE) return system_error(what, "bind");
-  return in_use(cpu, holder(address));
+  const Message name = Message() << "chimera-cpu-" << cpu;
+  OwnedDescriptor claim = claim_name(name.view());
+  if (claim.fd >= 0) return CpuClaim(std::move(claim));
+  if (errno != EADDRINUSE) return system_error(Message() << "claim of CPU " << cpu, "bind");
+  return in_use(cpu, holder_of_name(name.view()));
+}
+
+Result<void> may_open_here(std::uint64_t more) noexcept {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return {};
+  const std::vector<pid_t> open = numbers_in("/proc/self/fd");  // with the folder itself, and without number 0
+  const std::uint64_t least = (open.empty() ? limit.rlim_cur : open.size()) + more;
+  if (limit.rlim_cur >= least) return {};
+  return (Message() << "open files are limited to " << limit.rlim_cur << ", expected at least " << least
+                    << ", or no process could be restarted: ulimit -n 1024, or LimitNOFILE= of the service")
+      .error(ErrorCode::kRefused);
 }
 
 Result<void> may_run_here() noexcept {

@@ -18,11 +18,16 @@ struct RealtimeRequest {
   int priority = 0;         ///< SCHED_FIFO 1..99; 0 leaves the thread as it is
   int cpu = -1;             ///< the only CPU to run on; -1: any
   bool lock_memory = true;  ///< keep all pages of the process in memory
+  /// Bytes that the process maps later. Without room for them no page is locked: each later mapping would fail.
+  std::uint64_t room = 0;
 };
 
 /// Words of RealtimeGrant::report. Other processes read the granted rights behind them.
 inline constexpr std::string_view kLevelWords = "SCHED_FIFO ", kPinnedWords = "pinned to CPU ",
-                                  kLockedWords = "memory locked", kRefusedWords = " refused";
+                                  kLockedWords = "memory locked", kRefusedWords = " refused",
+                                  kMissingWords = "WARNING: not real time",
+                                  kAskedWords = "ordinary scheduling was asked for",
+                                  kUnboundWords = "no PREEMPT_RT in the kernel: nothing bounds the jitter";
 
 /// The rights of a RealtimeRequest that are in force now. A right that was not requested counts as granted.
 struct RealtimeGrant {
@@ -31,13 +36,16 @@ struct RealtimeGrant {
   bool memory = false;
   /// Share of each period in which the kernel lets real-time threads run: 0.95 by default, 1 if not throttled.
   double throttle_share = 1;
-  /// If all rights are granted: one line that names them. Otherwise a line that begins with "WARNING"; below it, each
-  /// in a line that begins with two spaces, the missing rights with the setting that gives them, and the granted
-  /// rights.
+  /// If all rights are granted: one line that names them, with kUnboundWords if they apply. Otherwise a line that
+  /// begins with "WARNING"; below it, each in a line that begins with two spaces, the missing rights with the setting
+  /// that gives them, and the granted rights.
   FixedString<400> report;
 
   bool is_complete() const noexcept { return priority && cpu && memory; }
 };
+
+/// Why a thread with that report is not real time, in one line; "" if it is. Context: any.
+FixedString<400> not_real_time(std::string_view report) noexcept;
 
 /// Applies `request` to the calling thread (memory: to the process), as far as the system allows. Without rights the
 /// program still runs, but late. Threads and processes that the thread starts later are ordinary
@@ -72,6 +80,9 @@ class CpuClaim {
   explicit CpuClaim(OwnedDescriptor descriptor) noexcept : descriptor_(std::move(descriptor)) {}
   OwnedDescriptor descriptor_;
 };
+
+/// Refuses a limit of open files (ulimit -n, LimitNOFILE=) that leaves no room for `more` descriptors. Context: setup.
+Result<void> may_open_here(std::uint64_t more) noexcept;
 
 /// Refuse limits of the shell or the service (ulimit, LimitSTACK=) under which the process would die without a message:
 /// a stack below 256 KiB, which every process needs; files below 4 MiB, which shared memory needs. Context: setup.

@@ -12,6 +12,8 @@
 #include <cstddef>
 #include <string>
 
+#include "chimera/base/testing/few_descriptors.h"
+
 namespace chimera::realtime_process_test {
 namespace {
 
@@ -82,6 +84,25 @@ TEST(CpuClaim, IsFreeAfterTheDeathOfItsProcess) {
 void lower(__rlimit_resource what, rlim_t to) {
   const rlimit limit{to, to};
   ::setrlimit(what, &limit);
+}
+
+TEST(Limits, RefusesTooFewOpenFilesWithTheRemedy) {
+  EXPECT_TRUE(may_open_here(0));
+  for (const int room : {0, 7}) {
+    const FewDescriptors few(room);
+    EXPECT_EQ(may_open_here(8).has_value(), false);
+    EXPECT_EQ(may_open_here(1).has_value(), room == 7);
+    EXPECT_EQ(may_open_here(7).has_value(), room == 7);
+  }
+  const FewDescriptors few(7);
+  rlimit limit{};
+  ::getrlimit(RLIMIT_NOFILE, &limit);
+  const auto refused = may_open_here(9);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(std::string(refused.error().message.view()),
+            "open files are limited to " + std::to_string(limit.rlim_cur) + ", expected at least " +
+                std::to_string(limit.rlim_cur + 2) +
+                ", or no process could be restarted: ulimit -n 1024, or LimitNOFILE= of the service");
 }
 
 TEST(Limits, RefusesALowLimitWithItsRemedy) {

@@ -68,6 +68,16 @@ TEST(Realtime, RefusesAMissingCpuByNumber) {
                                      std::string(kOrdinary).substr(std::string(kOrdinary).find('\n')));
 }
 
+TEST(Realtime, WhatIsMissingIsReadFromTheReportInOneLine) {
+  const auto why = [](std::string_view report) { return std::string(not_real_time(report).view()); };
+  EXPECT_EQ(why(kOrdinary), "ordinary scheduling was asked for (priority 0): any job may come late");
+  EXPECT_EQ(why("WARNING: not real time\n  memory not locked\n  CPU 7 refused\n  granted: SCHED_FIFO 80"),
+            "memory not locked; CPU 7 refused");
+  EXPECT_EQ(why("Real-time OK: SCHED_FIFO 80. But " + std::string(kUnboundWords) + "."), kUnboundWords);
+  EXPECT_EQ(why("Real-time OK: SCHED_FIFO 80."), "");
+  EXPECT_EQ(why(""), "");
+}
+
 TEST(Realtime, PriorityIsReportedAsTheKernelHasIt) {
   int policy = -1;
   const RealtimeGrant grant = enter_on_a_thread({.priority = 7, .cpu = -1, .lock_memory = false}, &policy);

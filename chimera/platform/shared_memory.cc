@@ -42,6 +42,10 @@ Result<OwnedDescriptor> make_memory_file(const char* name, std::uint64_t bytes, 
 
 /// Size of the file of `descriptor`; refuses a descriptor that is no memory file or lacks one of `seals`.
 Result<std::uint64_t> sealed_size(int descriptor, int seals) noexcept {
+  if (descriptor < 0) {
+    errno = EMFILE;
+    return memory_error("receiving its descriptor", 0);
+  }
   const int present = ::fcntl(descriptor, F_GET_SEALS);
   if (present < 0 || (present & seals) != seals)
     return (Message() << "descriptor " << descriptor

@@ -16,6 +16,7 @@
 
 #include "chimera/base/message.h"
 #include "chimera/platform/descriptor.h"
+#include "chimera/platform/local_socket.h"
 
 namespace chimera {
 namespace {
@@ -96,6 +97,21 @@ Result<void> clear_way(const sockaddr_un& address, const std::string& subsystem)
   return {};
 }
 
+/// Claims the name of the socket, which outlives the file. A process of another user that holds the name is no
+/// subsystem, because only this user may make sockets in the folder: then there is no claim.
+Result<OwnedDescriptor> claim(const std::string& path, const std::string& subsystem) {
+  OwnedDescriptor claimed = claim_name(path);
+  if (claimed.fd >= 0) return claimed;
+  if (errno != EADDRINUSE) return failed(path, "bind");
+  const NameHolder holder = holder_of_name(path);
+  if (holder.process == 0 || holder.user != ::geteuid()) return claimed;
+  const std::string process = std::to_string(holder.process);
+  return refusal("a subsystem '" + subsystem + "' runs already (process " + process +
+                     "), and its socket was removed: end it by 'kill -INT " + process +
+                     "', or give this one another name",
+                 path);
+}
+
 }  // namespace
 
 SocketFolder socket_folder() noexcept {
@@ -126,6 +142,8 @@ Result<SocketPlace> SocketPlace::open(const std::string& path, const std::string
   if (for_others)
     if (const auto passable = let_others_pass(folder->fd, path); !passable) return passable.error();
   if (auto clear = clear_way(*address, subsystem); !clear) return clear.error();
+  auto claimed = claim(place.path_, subsystem);
+  if (!claimed) return claimed.error();
   OwnedDescriptor listening(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (listening.fd < 0) return failed(place.path_, "socket");
   struct stat status {};
@@ -138,12 +156,14 @@ Result<SocketPlace> SocketPlace::open(const std::string& path, const std::string
   place.inode_ = status.st_ino;
   place.folder_ = folder->release();
   place.listening_ = listening.release();
+  place.claim_ = *std::move(claimed);
   return place;
 }
 
 SocketPlace& SocketPlace::operator=(SocketPlace&& other) noexcept {
   std::swap(folder_, other.folder_);
   std::swap(listening_, other.listening_);
+  std::swap(claim_, other.claim_);
   std::swap(inode_, other.inode_);
   std::swap(path_, other.path_);
   return *this;

@@ -8,6 +8,7 @@
 
 #include "chimera/base/fixed.h"
 #include "chimera/base/result.h"
+#include "chimera/platform/descriptor.h"
 
 namespace chimera {
 
@@ -29,13 +30,14 @@ class SocketPlace {
   /// no process listens. `for_others`: other users may connect, and the control server checks their rights; the socket
   /// has mode 0666, the folder 0711 until the last such socket is gone.
   /// Refuses a folder that is a symbolic link, another user's, or writable for others; a subsystem of that name that
-  /// runs; a path too long for a socket.
+  /// runs, even if its socket was removed; a path too long for a socket.
   static Result<SocketPlace> open(const std::string& folder, const std::string& subsystem, bool for_others);
 
   SocketPlace() noexcept = default;
   SocketPlace(SocketPlace&& other) noexcept
       : folder_(std::exchange(other.folder_, -1)),
         listening_(std::exchange(other.listening_, -1)),
+        claim_(std::move(other.claim_)),
         inode_(other.inode_),
         path_(std::move(other.path_)) {}
   SocketPlace& operator=(SocketPlace&& other) noexcept;
@@ -47,6 +49,7 @@ class SocketPlace {
 
  private:
   int folder_ = -1, listening_ = -1;
+  OwnedDescriptor claim_;  // of the name: claim_name(path)
   unsigned long inode_ = 0;
   std::string path_;
 };

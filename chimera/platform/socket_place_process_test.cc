@@ -8,8 +8,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
+
+#include "chimera/platform/local_socket.h"
 
 namespace chimera {
 namespace {
@@ -73,6 +76,41 @@ TEST_F(SocketPlaceTest, ReplacesTheSocketOfADeadKeeper) {
   ASSERT_EQ(status, 0);
   ASSERT_TRUE(std::filesystem::exists(folder_ + "/arm.sock"));
   EXPECT_EQ(refusal(), "");
+}
+
+TEST_F(SocketPlaceTest, RefusesARunningSubsystemWhoseSocketWasRemoved) {
+  const std::string process = std::to_string(::getpid());
+  {
+    const auto place = SocketPlace::open(folder_, "arm", false);
+    ASSERT_TRUE(place.has_value());
+    std::filesystem::remove(place->path());
+    EXPECT_EQ(refusal(), "a subsystem 'arm' runs already (process " + process + "), and its socket was removed: " +
+                             "end it by 'kill -INT " + process + "', or give this one another name");
+    EXPECT_EQ(refusal("leg"), "");
+  }
+  EXPECT_EQ(refusal(), "");
+}
+
+TEST_F(SocketPlaceTest, IgnoresTheClaimOfAnotherUser) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can become another user";
+  const std::string path = folder_ + "/arm.sock";
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const bool holds = ::setuid(12345) == 0 && (new OwnedDescriptor(claim_name(path)))->fd >= 0;
+    (void)!::write(ends[1], holds ? "y" : "n", 1);
+    for (;;) ::pause();
+  }
+  char said = 0;
+  ASSERT_EQ(::read(ends[0], &said, 1), 1);
+  EXPECT_EQ(said, 'y');
+  EXPECT_EQ(holder_of_name(path).process, child);
+  EXPECT_EQ(refusal(), "");
+  ::kill(child, SIGKILL);  // still ours
+  ::waitpid(child, nullptr, 0);
+  ::close(ends[0]);
+  ::close(ends[1]);
 }
 
 TEST_F(SocketPlaceTest, DoesNotRemoveAFileInItsPlace) {

@@ -5,6 +5,7 @@
 
 #include <fcntl.h>
 #include <linux/futex.h>
+#include <locale.h>
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
@@ -44,6 +45,7 @@ void* run_work(void* given) {
   sigset_t all;
   sigfillset(&all);
   pthread_sigmask(SIG_BLOCK, &all, nullptr);  // signals are for the threads that wait for them
+  use_decimal_point();
   const std::unique_ptr<std::function<void()>> work(static_cast<std::function<void()>*>(given));
   (*work)();
   return nullptr;
@@ -115,6 +117,11 @@ bool sees_a_sleep() noexcept {
 }  // namespace
 
 pid_t this_thread() noexcept { return static_cast<pid_t>(::syscall(SYS_gettid)); }
+
+void use_decimal_point() noexcept {
+  static const locale_t plain = ::newlocale(LC_ALL_MASK, "C", nullptr);
+  if (plain != nullptr) ::uselocale(plain);
+}
 
 bool set_level(pid_t thread, int level) noexcept {
   sched_param p{};

@@ -17,6 +17,10 @@ namespace chimera {
 /// Number of the calling thread. Context: setup.
 pid_t this_thread() noexcept;
 
+/// The calling thread reads and writes numbers with a decimal point, whatever locale a component sets for the process.
+/// Context: setup.
+void use_decimal_point() noexcept;
+
 /// Runs `thread` of this process (0: the calling thread) at that SCHED_FIFO level. A lowered thread goes to the head of
 /// its new level, a raised thread to the tail (sched(7)). Threads and processes that `thread` starts are ordinary
 /// (SCHED_RESET_ON_FORK); without CAP_SYS_NICE that flag cannot be taken back, so each change of a level sets it again.

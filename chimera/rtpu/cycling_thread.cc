@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "chimera/platform/realtime.h"
+#include "chimera/platform/thread.h"
 #include "chimera/platform/wake.h"
 #include "chimera/schedule/bands.h"
 #include "chimera/schedule/shares.h"
@@ -49,9 +50,16 @@ void CyclingThread::start() {
   thread_ = std::thread([this] { run(); });
 }
 
+bool CyclingThread::is_gone() const noexcept {
+  const pid_t id = thread_id_;
+  return id != 0 && used_by(id) == kNever && !has_ended_;  // in this order: it may end in between
+}
+
 void CyclingThread::run() {
+  thread_id_ = this_thread();
+  use_decimal_point();
   const int ceiling = priority_of(place_.spec, place_.me, place_.priority);
-  const RealtimeGrant grant = enter_realtime({ceiling, static_cast<int>(self().cpu), true});
+  const RealtimeGrant grant = enter_realtime({ceiling, static_cast<int>(self().cpu), true, place_.room});
   if (self().preemptive)
     make_threads(grant.priority ? ceiling : 0);
   else

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "chimera/platform/clock.h"
+#include "chimera/platform/thread.h"
 #include "chimera/platform/wake.h"
 #include "chimera/rtpu/rtpu_control.h"
 #include "chimera/runtime/executive/executive.h"
@@ -33,6 +34,7 @@ struct CyclingPlace {
   Nanoseconds origin;  ///< of the grid of releases that all rtpus share
   std::atomic<std::uint32_t>& bell;
   int over;  ///< descriptor of a WakeEvent, rung when the thread has ended
+  std::uint64_t room;  ///< bytes of other processes that this process maps later, at most
 };
 
 /// The main thread starts and joins it.
@@ -46,8 +48,12 @@ class CyclingThread {
   /// Requests real-time rights, writes the granted ones to the block, and cycles until the control ends the loop.
   /// Context: setup.
   void start();
+  /// Its id; 0: it has not begun. Any thread.
+  pid_t thread() const noexcept { return thread_id_; }
   /// True if all tasks are killed and no task cycles any more. Any thread.
   bool has_ended() const noexcept { return has_ended_; }
+  /// True if the thread is gone without has_ended(): a component ended it. Any thread; one system call.
+  bool is_gone() const noexcept;
   /// Context: setup; blocks until the thread has ended.
   void join() { thread_.join(); }
 
@@ -69,6 +75,7 @@ class CyclingThread {
   std::unique_ptr<ComputingClock> job_clock_;
   std::unique_ptr<Executive> executive_;
   std::unique_ptr<PreemptiveExecutor> preemptive_;  // one of the two
+  std::atomic<pid_t> thread_id_{0};  // stored first by the thread
   std::atomic<bool> has_ended_{false};  // stored last by the thread, loaded by the main thread before it joins
   std::thread thread_;
 };

@@ -12,7 +12,7 @@
 namespace chimera {
 
 /// Descriptors of the guard at its start.
-inline constexpr int kGuardChannelDescriptor = 3, kGuardImageDescriptor = 4;
+inline constexpr int kGuardChannelDescriptor = 3, kGuardImageDescriptor = 4, kGuardDecisionDescriptor = 5;
 /// Descriptor of an rtpu: its end of the channel to the guard; it follows those of keeper_message.h.
 inline constexpr int kRtpuGuardDescriptor = 8;
 
@@ -23,7 +23,9 @@ struct GuardMessage {
     kSegment,  ///< rtpu -> guard, with its memory
     kFrame,    ///< rtpu -> guard, with a descriptor: frame `frame` of `task` goes there; without one: it goes nowhere
     kReady,    ///< guard -> keeper: it watches; `good` 1: with the requested rights
-    kWritten,  ///< guard -> keeper: rtpu `index` is dead; `good` of its frames were written, `bad` failed
+    kUnguarded,  ///< guard -> keeper: it cannot write the frames of rtpu `index`; `bad` is the errno
+    kWritten,  ///< guard -> keeper: rtpu `index` is dead; `good` of its frames were written, `bad` failed, `late` were
+               ///< left out because its successor drives the device
     kSilent    ///< guard -> keeper: it ended rtpu `index` because `task` published nothing for too long; `good` 1: a
                ///< standby takes over
   };
@@ -34,7 +36,7 @@ struct GuardMessage {
   std::uint32_t task = 0;
   std::uint32_t frame = 0;
   std::uint32_t good = 0, bad = 0;
-  std::uint32_t reserved = 0;
+  std::uint32_t late = 0;
   Nanoseconds pause = {};  ///< kFrame: time without traffic before the frame
   Nanoseconds died = {};   ///< kWritten: when the guard saw the death, CLOCK_MONOTONIC
   Nanoseconds at = {};     ///< kWritten: when the device accepted the last byte

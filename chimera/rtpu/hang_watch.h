@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "chimera/base/time.h"
+#include "chimera/runtime/job/hang_rule.h"
 
 namespace chimera {
 
@@ -21,6 +21,17 @@ class HangWatch {
   bool loop_hangs(std::uint32_t running, std::uint64_t beats, Nanoseconds now) noexcept {
     return loop_.look(running, beats, running == 0, now) > limit_;
   }
+
+  /// As loop_hangs() for a cycle of `task`, by the rule of all executors. `thread_used`: execution time of the thread
+  /// of the loop. Context: main thread; wait-free.
+  bool job_hangs(const TaskSpec& task, std::uint32_t running, std::uint64_t beats, Nanoseconds thread_used,
+                 Nanoseconds now) noexcept {
+    const Nanoseconds used = use_.look(running, beats, false, thread_used);
+    job_used_ = used > most_use(task) ? used : Nanoseconds{};
+    return hangs(task, used, loop_.look(running, beats, false, now) - used);
+  }
+  /// Execution time that the job used at least, if it hangs because of it; else zero. Context: main thread.
+  Nanoseconds job_used() const noexcept { return job_used_; }
 
   /// True if a method that a cycle boundary or the service thread called has run for longer than the limit. `method` is
   /// that method (0: none); `progress` grows when a method begins or ends. Context: main thread; wait-free.
@@ -54,7 +65,8 @@ class HangWatch {
   };
 
   const Nanoseconds limit_;
-  Stall loop_, method_, end_;
+  Stall loop_, use_, method_, end_;  // use_: on the clock of the loop's thread
+  Nanoseconds job_used_;
 };
 
 }  // namespace chimera

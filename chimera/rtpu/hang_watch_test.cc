@@ -36,6 +36,23 @@ TEST_F(HangWatchTest, AJobThatEndsOrAnotherMethodBeginsTheLimitAnew) {
   EXPECT_TRUE(watch.loop_hangs(kOffOfFirst, 8, now + milliseconds(1701)));
 }
 
+TEST_F(HangWatchTest, AJobHangsByWhatItUsesAndNotByTheTimeThatOthersTake) {
+  TaskSpec task;
+  task.period = milliseconds(1);
+  task.budget = microseconds(5);
+  Nanoseconds used = seconds(7);  // by all jobs of the loop until now
+  EXPECT_FALSE(watch.job_hangs(task, kCycleOfFirst, 7, used, now));
+  EXPECT_FALSE(watch.job_hangs(task, kCycleOfFirst, 7, used + milliseconds(5), now + milliseconds(1900)));
+  EXPECT_EQ(watch.job_used(), Nanoseconds{});
+  EXPECT_TRUE(watch.job_hangs(task, kCycleOfFirst, 7, used + milliseconds(6), now + milliseconds(1900)));
+  EXPECT_EQ(watch.job_used(), milliseconds(6));
+  used += milliseconds(6);
+  EXPECT_FALSE(watch.job_hangs(task, kCycleOfFirst, 8, used, now + milliseconds(2000))) << "the next job";
+  EXPECT_FALSE(watch.job_hangs(task, kCycleOfFirst, 8, used, now + milliseconds(4000)));
+  EXPECT_TRUE(watch.job_hangs(task, kCycleOfFirst, 8, used, now + milliseconds(4001))) << "it sleeps";
+  EXPECT_EQ(watch.job_used(), Nanoseconds{});
+}
+
 TEST_F(HangWatchTest, OneMethodOfAnEdgeMayTakeTheLimit) {
   EXPECT_FALSE(watch.method_hangs(kOffOfFirst, 1, now));
   EXPECT_FALSE(watch.method_hangs(kOffOfFirst, 1, now + milliseconds(500)));

@@ -18,10 +18,12 @@ class HangingJobs {
   /// Event descriptor that wake_supervisor() writes to. Context: setup.
   void set_supervisor(int descriptor) noexcept { supervisor_ = descriptor; }
 
-  /// `age`: time since the release of the job; zero: the thread of the job is gone. Context: cycle boundary.
-  void note(TaskWord job, Nanoseconds age) noexcept {
+  /// `age`: time since the release of the job; zero: the thread of the job is gone. `used`: its execution time, if it
+  /// used too much. Context: cycle boundary.
+  void note(TaskWord job, Nanoseconds age, Nanoseconds used) noexcept {
     is_hanging_[job.task().index] = true;
     age_ = age.count;
+    used_ = used.count;
     job_ = job.word();
     any_ = true;
     wake_supervisor();
@@ -34,9 +36,10 @@ class HangingJobs {
 
   // Context of the rest: any thread; wait-free.
   bool any() const noexcept { return any_; }
-  /// The last noted job, as BlockHead::running, and its age at that time. Requires: any().
+  /// The last noted job, as BlockHead::running, its age at that time, and what it used. Requires: any().
   std::uint32_t job() const noexcept { return job_; }
   Nanoseconds age() const noexcept { return {age_}; }
+  Nanoseconds used() const noexcept { return {used_}; }
 
  private:
   std::vector<bool> is_hanging_;  // by task
@@ -45,7 +48,7 @@ class HangingJobs {
   // members are seen.
   std::atomic<bool> any_{false};
   std::atomic<std::uint32_t> job_{0};
-  std::atomic<std::int64_t> age_{0};
+  std::atomic<std::int64_t> age_{0}, used_{0};
 };
 
 }  // namespace chimera

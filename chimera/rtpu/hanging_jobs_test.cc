@@ -16,16 +16,17 @@ TEST(HangingJobs, TellTheLastThatWasNotedAndItsAge) {
   HangingJobs jobs(3);
   EXPECT_FALSE(jobs.any());
   const TaskWord job(TaskId(2u), Method::kCycle);
-  jobs.note(TaskWord(TaskId(0u), Method::kOn), seconds(1));
-  jobs.note(job, milliseconds(40));
+  jobs.note(TaskWord(TaskId(0u), Method::kOn), seconds(1), {});
+  jobs.note(job, milliseconds(40), milliseconds(30));
   EXPECT_TRUE(jobs.any());
   EXPECT_EQ(jobs.job(), job.word());
   EXPECT_EQ(jobs.age(), milliseconds(40));
+  EXPECT_EQ(jobs.used(), milliseconds(30));
 }
 
 TEST(HangingJobs, AreThoseOfTheTasksThatWereNoted) {
   HangingJobs jobs(3);
-  jobs.note(TaskWord(TaskId(1u), Method::kCycle), {});
+  jobs.note(TaskWord(TaskId(1u), Method::kCycle), {}, {});
   EXPECT_FALSE(jobs.has(TaskId(0u)));
   EXPECT_TRUE(jobs.has(TaskId(1u)));
 }
@@ -37,7 +38,7 @@ TEST(HangingJobs, WakeTheSupervisorWhenOneIsNoted) {
   ASSERT_TRUE(event.has_value());
   jobs.set_supervisor(event->descriptor());
   EXPECT_FALSE(is_readable(event->descriptor()));
-  jobs.note(TaskWord(TaskId(0u), Method::kCycle), {});
+  jobs.note(TaskWord(TaskId(0u), Method::kCycle), {}, {});
   EXPECT_TRUE(is_readable(event->descriptor()));
 }
 

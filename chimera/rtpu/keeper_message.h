@@ -28,20 +28,18 @@ struct KeeperMessage {
     kPeer, kStarted, kEnded, kComplete, kFinish,              // from the keeper
     kBeat,                                                    // to the keeper: the manager's loop runs
     kHung,                                                    // from the keeper: the manager's loop hung
-    kFramesWritten, kSilent, kGuardState                      // from the keeper: actions and state of the guard
+    kFramesWritten, kSilent                                   // from the keeper: actions of the guard
   };
-  /// kGuardState in `code`.
-  enum : std::int32_t { kGuardIsWell, kGuardIsSlow, kGuardIsDead };
 
   Kind kind = Kind::kSegment;
   std::uint32_t index = 0;        ///< the peer that the message is about
   std::uint32_t incarnation = 0;
   std::int32_t code = 0;          ///< kEnded: exit status or signal; kEnd: exit code; kHung: Life; kSilent: the task;
-                                  ///< kFramesWritten: number written; kGuardState
+                                  ///< kFramesWritten: number written
   std::uint32_t by_signal = 0;    ///< kEnded
   std::uint32_t core_dumped = 0;  ///< kEnded
   std::int32_t pid = 0;           ///< kStarted: for people; kHung: pid of the debugger
-  std::uint32_t reserved = 0;
+  std::uint32_t late = 0;         ///< kFramesWritten: number left out, GuardMessage::late
   Nanoseconds at = {};          ///< kStarted, kEnded: instant, CLOCK_MONOTONIC; kFramesWritten: last byte taken
   Nanoseconds silent = {};      ///< kHung: time without a beat; kFramesWritten: instant of the death
   std::uint32_t letter = 0;     ///< kHung: ProcessState::letter; kFramesWritten: number that failed

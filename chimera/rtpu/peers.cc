@@ -18,6 +18,14 @@ Result<std::unique_ptr<MappedPeers>> MappedPeers::create(const ApplicationSpec& 
   return made;
 }
 
+// Of each peer: the segment in use, the one before, and an offered one.
+std::uint64_t MappedPeers::room() const noexcept {
+  std::uint64_t bytes = 0;
+  for (const PeerLayout& each : layouts_)
+    bytes += 3 * peer_segment_bytes(each.table(), static_cast<std::uint32_t>(spec_->tasks.size()));
+  return bytes;
+}
+
 MappedPeers::~MappedPeers() {
   clear();
   for (const auto& slot : slots_) {

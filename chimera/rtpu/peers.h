@@ -25,6 +25,8 @@ class MappedPeers {
 
   std::uint32_t count() const noexcept { return static_cast<std::uint32_t>(slots_.size()); }
   const PeerLayout& layout(std::uint32_t peer) const noexcept { return layouts_[peer]; }
+  /// Bytes of all mappings, at most. Context: setup.
+  std::uint64_t room() const noexcept;
 
   /// Maps a segment and checks that it matches the application. The cycling thread adopts it at its next cycle
   /// boundary. Refuses a segment that does not match. Context: main thread; may block.

@@ -59,7 +59,8 @@ class Rtpu {
   void end(bool is_alone);
   bool hangs();
   bool loop_hangs();
-  bool give_up(std::uint32_t method, Nanoseconds waited);
+  bool has_lost_thread();
+  bool give_up(std::uint32_t method, Nanoseconds waited, Nanoseconds used = {});
   std::uint64_t jobs_of(TaskId task) const;
 
   std::atomic<std::uint32_t>& bell() { return decision_->bells[start_.peer].word; }
@@ -156,6 +157,7 @@ Result<void> Rtpu::make_segment() {
   if (auto owner = SegmentOwner::format(segment_.writable(), table); !owner) return owner.error();
   std::byte* at = segment_.writable().data() + block_offset(table);
   block_ = BlockOwner(at, start_.peer, start_.incarnation, n_tasks, peers_->count());
+  if (start_.parent != 0) block_.head().pid = own_process_id();
   return {};
 }
 
@@ -192,7 +194,8 @@ Result<void> Rtpu::make_tasks() {
   hang_watch_ = std::make_unique<HangWatch>(image_->settings().method_limit);
   switching_ = std::make_unique<SwitchLinks>(*tasks_, *others_, *peers_, *decision_, start_.peer);
   const CyclingPlace cycling{spec,        start_.peer, image_->settings().priority, *tasks_, *edge_, *others_,
-                           *switching_, writer_,     keeper_->origin,             bell(),  over_.descriptor()};
+                           *switching_, writer_,     keeper_->origin,             bell(),  over_.descriptor(),
+                           peers_->room()};
   cycling_ = std::make_unique<CyclingThread>(cycling);
   return {};
 }
@@ -212,9 +215,10 @@ int Rtpu::run() {
   while (!cycling_->has_ended()) {
     listen(kSuperviseEveryMs);
     attend();
+    if (has_lost_thread()) return kThreadLost;
     if (hangs()) return kMethodHangs;
     if (!is_ending_ && edge_->hanging().any()) {
-      is_giving_up_ = give_up(edge_->hanging().job(), edge_->hanging().age());
+      is_giving_up_ = give_up(edge_->hanging().job(), edge_->hanging().age(), edge_->hanging().used());
       end(true);
     }
     // Now all tasks are killed except the one whose job hangs.
@@ -223,6 +227,15 @@ int Rtpu::run() {
   cycling_->join();
   service_->stop();
   return is_giving_up_ ? kMethodHangs : ends_alone_ ? kTerminated : 0;
+}
+
+// True if a component ended a thread of this process, in a method or for its next system call. Tasks cannot be turned
+// off then.
+bool Rtpu::has_lost_thread() {
+  const bool is_loop = cycling_->is_gone();
+  if (!is_loop && !service_->is_gone()) return false;
+  const BlockHead& head = block_.head();
+  return give_up(!is_loop ? head.serving : self().preemptive ? head.at_edge : head.running, {});
 }
 
 // True if a method does not return. Only the end of the process can end such a method.
@@ -235,14 +248,15 @@ bool Rtpu::hangs() {
   if (hang_watch_->method_hangs(acting, edge_->supervised().progress(), now))
     // `running` is then `error`, called after the method in `acting`.
     return give_up(is_same_task ? running : acting, limit);
-  if (loop_hangs()) return give_up(running, limit);
+  if (loop_hangs()) return give_up(running, limit, hang_watch_->job_used());
   const bool end_hangs = is_ending_ && hang_watch_->end_hangs(edge_->supervised().progress(), now);
   return end_hangs && give_up(running != 0 ? running : serving, limit);
 }
 
 // Writes the hung method and its limit to the block; always true.
-bool Rtpu::give_up(std::uint32_t method, Nanoseconds waited) {
+bool Rtpu::give_up(std::uint32_t method, Nanoseconds waited, Nanoseconds used) {
   block_.head().hung_limit = waited.count;
+  block_.head().hung_used = used.count;
   block_.head().hung = method;
   return true;
 }
@@ -314,8 +328,12 @@ std::uint64_t Rtpu::jobs_of(TaskId task) const {
 // Always false on a preemptive rtpu: that executor has its own supervisor.
 bool Rtpu::loop_hangs() {
   if (self().preemptive) return false;
-  const std::uint32_t running = block_.head().running;
-  return hang_watch_->loop_hangs(running, block_.head().beats + jobs_of(TaskWord::found(running).task()), wall_.now());
+  const TaskWord word = TaskWord::found(block_.head().running);
+  const std::uint64_t beats = block_.head().beats + jobs_of(word.task());
+  const bool is_cycle = word.has_method() && word.method() == Method::kCycle;
+  const Nanoseconds used = is_cycle ? used_by(cycling_->thread()) : kNever;  // kNever also if that thread is gone
+  if (used == kNever) return hang_watch_->loop_hangs(word.word(), beats, wall_.now());
+  return hang_watch_->job_hangs(image_->spec().tasks[word.task().index], word.word(), beats, used, wall_.now());
 }
 
 // True if the keeper is gone. A process that ends closes its channels first and loses its children a little later. A
@@ -343,7 +361,7 @@ int run_rtpu(const RtpuStart& start) {
   if (rtpu.is_without_keeper()) end_children_of_this_rtpu();
   // A process other than the keeper sent SIGTERM. The keeper then sees this signal as the cause of the death.
   if (code == kTerminated) end_by_signal(SIGTERM);
-  if (code == kMethodHangs) std::_Exit(kMethodHangs);  // threads still run component code, so no destructor may run
+  if (code == kMethodHangs || code == kThreadLost) std::_Exit(code);  // threads may run component code: no destructor
   return code;
 }
 

@@ -9,6 +9,9 @@
 
 namespace chimera {
 
+/// Exit code of an rtpu one of whose threads is gone.
+inline constexpr int kThreadLost = 6;
+
 /// Arguments of the start of an rtpu, which takes ownership of the descriptors.
 struct RtpuStart {
   std::uint32_t peer = 0;
@@ -19,8 +22,8 @@ struct RtpuStart {
 };
 
 /// Runs until the keeper says `finish`, SIGTERM comes, or the keeper is gone; then ends its tasks. Returns the exit
-/// code: 0 ended in order; 1 could not start (`grant` of its block holds the reason); 3 a method exceeded its limit.
-/// After 3 the process must exit at once, because a thread still runs the method. Context: setup; blocks.
+/// code: 0 ended in order; 1 could not start (`grant` of its block holds the reason). A method that exceeds its limit
+/// or a lost thread ends the process at once, with 3 or kThreadLost. Context: setup; blocks.
 int run_rtpu(const RtpuStart& start);
 
 }  // namespace chimera

@@ -208,10 +208,17 @@ void RtpuControl::took_over(TaskId task, TaskId from, Nanoseconds after, Nanosec
   this->post(post);
 }
 
-void RtpuControl::hangs(TaskWord job, Nanoseconds age, Nanoseconds now) noexcept {
-  post_event(EventKind::kHang, job.task(), static_cast<std::uint64_t>(age.count), now);
+void RtpuControl::hangs(TaskWord job, Nanoseconds age, Nanoseconds used, Nanoseconds now) noexcept {
+  Post post;
+  post.at = now;
+  post.task = job.task();
+  post.kind = PostKind::kEvent;
+  post.happening = EventKind::kHang;
+  post.detail = static_cast<std::uint64_t>(age.count);
+  post.used = static_cast<std::uint64_t>(used.count);
+  this->post(post);
   others_.keep_last_words(true, tasks_);
-  hanging_.note(job, age);
+  hanging_.note(job, age, used);
 }
 
 void RtpuControl::stop_all(BoundarySignals& signals, TaskId stopped_by, Nanoseconds now) noexcept {

@@ -45,7 +45,7 @@ class RtpuControl final : public BoundaryListener {
   void missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds now) noexcept override;
   void gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept override;
   void took_over(TaskId task, TaskId from, Nanoseconds after, Nanoseconds now) noexcept override;
-  void hangs(TaskWord job, Nanoseconds age, Nanoseconds now) noexcept override;
+  void hangs(TaskWord job, Nanoseconds age, Nanoseconds used, Nanoseconds now) noexcept override;
   /// Publishes the state of the rtpu before its first cycle boundary. Context: setup.
   void begin() noexcept;
   /// The reaction `stop` of a task: turns all tasks of the rtpu OFF.

@@ -2,7 +2,18 @@
 // Ends the tasks of an rtpu step by step, and waits a limited time for tasks of other rtpus that must end first.
 #include "chimera/rtpu/rtpu_end.h"
 
+#include "chimera/platform/process.h"
+
 namespace chimera {
+namespace {
+
+// Also without a keeper, which would show the death.
+bool has_died(const PeerSegment* peer) noexcept {
+  const std::int32_t pid = peer == nullptr ? 0 : peer->block().head().pid.load(std::memory_order_relaxed);
+  return pid > 0 && has_process_ended(pid);
+}
+
+}  // namespace
 
 bool RtpuEnd::go_on(BoundarySignals& signals, Nanoseconds now) noexcept {
   others_.keep_last_words(is_alone_, tasks_);
@@ -17,14 +28,22 @@ bool RtpuEnd::go_on(BoundarySignals& signals, Nanoseconds now) noexcept {
   return true;
 }
 
-// True if no task of this rtpu is ON any more. Tasks of other rtpus that must end first are waited for, for a limited
-// time.
+// True if the task of another rtpu must be OFF first. If this rtpu ends alone, the others stay ON. A dead rtpu is not
+// waited for, and no rtpu again after the whole limit.
+bool RtpuEnd::is_awaited(TaskId id, Nanoseconds now) noexcept {
+  const std::uint32_t rtpu = tasks_.spec().tasks[id.index].rtpu.index, bit = 1u << rtpu;
+  if (is_alone_ || hanging_.any() || (passed_over_ & bit) != 0 || others_.state(id) != State::kOn) return false;
+  if (now < patience_ && !has_died(others_.at(rtpu))) return true;
+  passed_over_ |= bit;
+  return false;
+}
+
+// True if no task of this rtpu is ON any more.
 bool RtpuEnd::turn_off_next(BoundarySignals& signals, Nanoseconds now) noexcept {
   for (; next_off_ < tasks_.spec().end_order.size(); ++next_off_) {
     const TaskId id = tasks_.spec().end_order[next_off_];
     if (!tasks_.is_mine(id)) {
-      const bool is_awaited = !is_alone_ && !hanging_.any();  // if this rtpu ends alone, the others stay ON
-      if (is_awaited && others_.state(id) == State::kOn && now < patience_) return false;
+      if (is_awaited(id, now)) return false;
       continue;
     }
     if (tasks_.tasks()[id.index].state != State::kOn) continue;

@@ -32,6 +32,7 @@ class RtpuEnd {
   bool go_on(BoundarySignals& signals, Nanoseconds now) noexcept;
 
  private:
+  bool is_awaited(TaskId id, Nanoseconds now) noexcept;
   bool turn_off_next(BoundarySignals& signals, Nanoseconds now) noexcept;
   bool kill_next(BoundarySignals& signals, Nanoseconds now) noexcept;
 
@@ -43,6 +44,7 @@ class RtpuEnd {
   bool has_begun_ = false;
   std::size_t next_off_ = 0;  // in ApplicationSpec::end_order
   Nanoseconds patience_;      // end of the wait for tasks of others and for late jobs
+  std::uint32_t passed_over_ = 0;  // bit: an rtpu that is not waited for any more
   // The main thread calls tell(), boundaries read. Sequentially consistent: a reader that sees is_told_ also sees
   // is_alone_.
   std::atomic<bool> is_told_{false};

@@ -2,7 +2,13 @@
 #include "chimera/rtpu/rtpu_end.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
+
+#include "chimera/base/testing/await.h"
+#include "chimera/platform/process.h"
 #include "chimera/rtpu/testing/test_rtpus.h"
 
 namespace chimera {
@@ -17,6 +23,12 @@ struct EndedGiver {
 struct EndedTaker {
   In<double> x{"x", "1"};
   void cycle(Cycle) {}
+};
+
+struct EndedLink {
+  In<double> x{"x", "1"};
+  Out<double> y{"y", "1", initial = 0.0};
+  void cycle(Cycle) { *y = *x; }
 };
 
 constexpr TaskId kEndedGiver{0u}, kEndedTaker{1u};
@@ -65,8 +77,24 @@ TEST_F(RtpuEndTest, WaitsForTheConsumersOfOtherRtpus) {
   EXPECT_TRUE(end_of(0).is_over());
 }
 
+// Both the keeper and that rtpu were killed: the keeper page still shows it as living.
+TEST_F(RtpuEndTest, WaitsForNoDeadRtpuThoughNoKeeperShowsItsDeath) {
+  const pid_t child = ::fork();
+  if (child == 0) ::pause();
+  rtpu(1).segment.block.head().pid = child;
+  end_of(0).tell(false);
+  rtpus->change();
+  rtpus->run(milliseconds(5));
+  EXPECT_FALSE(end_of(0).is_over()) << "that process lives";
+  ::kill(child, SIGKILL);
+  ASSERT_TRUE(await_that([child] { return has_process_ended(child); }));
+  rtpus->run(milliseconds(5));
+  EXPECT_TRUE(end_of(0).is_over());
+  ::waitpid(child, nullptr, 0);
+}
+
 TEST_F(RtpuEndTest, EndsWithoutWaitingWhenAJobOfItsOwnHangs) {
-  rtpu(0).edge->hanging().note(TaskWord(kEndedGiver, Method::kCycle), seconds(1));
+  rtpu(0).edge->hanging().note(TaskWord(kEndedGiver, Method::kCycle), seconds(1), {});
   end_of(0).tell(false);
   rtpus->change();
   rtpus->run(milliseconds(5));
@@ -80,6 +108,31 @@ TEST_F(RtpuEndTest, KeepsTheStatesForItsSuccessorWhenItEndsAlone) {
   EXPECT_TRUE(end_of(1).is_over());
   EXPECT_EQ(rtpu(1).state(kEndedTaker), State::kOn) << "as the others are shown";
   EXPECT_EQ(rtpu(1).tasks->tasks()[kEndedTaker.index].state, State::kNotCreated);
+}
+
+// A chain of four tasks alternates between two rtpus, of which one is stopped.
+TEST(RtpuEndChain, WaitsForAStoppedRtpuOnceAndNotForEachOfItsTasks) {
+  testing::TestApplication app;
+  app.rtpus = {{"mine", 0, Policy::kEdf}, {"stopped", 1, Policy::kEdf}};
+  const std::vector<TaskId> chain = {TaskId(0u), TaskId(1u), TaskId(2u), TaskId(3u)};
+  constexpr const char* kNames[] = {"x", "a", "b", "c"};
+  app.add("giver", component<EndedGiver>("giver")).rtpu = RtpuId(0u);
+  for (std::size_t t = 1; t < chain.size(); ++t) {
+    app.add("link", component<EndedLink>("link")).rtpu = RtpuId(t % 2);
+    app.link(t, 0, kNames[t - 1]);
+    app.link(t, 1, kNames[t]);
+  }
+  app.make(chain, false);
+  testing::TestRtpus rtpus(app);
+  rtpus.run(milliseconds(1));
+  rtpus.bring_up(chain);
+  RtpuEnd& end = rtpus.rtpus[0]->edge->rtpu_end();
+  end.tell(false);
+  rtpus.change();
+  rtpus.run(milliseconds(900));
+  EXPECT_FALSE(end.is_over());
+  rtpus.run(milliseconds(200));
+  EXPECT_TRUE(end.is_over()) << "one second, the limit of a method";
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "chimera/rtpu/service_thread.h"
 
 #include "chimera/platform/clock.h"
+#include "chimera/platform/thread.h"
 #include "chimera/runtime/executive/executive.h"
 
 namespace chimera {
@@ -23,6 +24,8 @@ void ServiceThread::ask(TaskId task) noexcept {
 }
 
 void ServiceThread::run(TaskSet& tasks) {
+  number_ = this_thread();
+  use_decimal_point();
   LinuxClock clock;
   ComputingClock job_clock(clock);
   const Doorbell bell(word_);

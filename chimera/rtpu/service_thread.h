@@ -5,6 +5,7 @@
 #include <atomic>
 #include <thread>
 
+#include "chimera/platform/thread.h"
 #include "chimera/platform/wake.h"
 #include "chimera/rtpu/task_queue.h"
 #include "chimera/runtime/life/task_set.h"
@@ -25,6 +26,12 @@ class ServiceThread final : public Service {
   /// Ends the thread after the present method. May block until that method returns.
   void stop();
 
+  /// True if a component ended the thread. The main thread; one system call.
+  bool is_gone() const noexcept {
+    const pid_t number = number_;
+    return number != 0 && used_by(number) == kNever;
+  }
+
   void ask(TaskId task) noexcept override;
   bool take_served(TaskId& task) noexcept override { return served_.pop(task); }
 
@@ -35,6 +42,7 @@ class ServiceThread final : public Service {
   Doorbell cycling_;
   std::atomic<std::uint32_t> word_{0};  // a bell: the ring pairs with Doorbell::read()
   std::atomic<bool> stopping_{false};   // stop() stores it and rings the bell: the thread sees it after the bell
+  std::atomic<pid_t> number_{0};        // of the thread; 0: it has not begun
   std::thread thread_;
 };
 

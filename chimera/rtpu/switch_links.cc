@@ -17,12 +17,14 @@ const SwitchProgress* SwitchLinks::progress(std::uint32_t context) const noexcep
 }
 
 void SwitchLinks::tell_adopted(std::uint16_t number) noexcept {
+  if (others_.keeps_last_words()) return;
   others_.publish(tasks_);
   others_.block().head().switching.adopted.store(number, std::memory_order_release);  // SwitchProgress
   others_.ring_all();
 }
 
 void SwitchLinks::tell_over(const SwitchReceipt& receipt) noexcept {
+  if (others_.keeps_last_words()) return;
   const auto is_mine = [this](TaskId task) { return tasks_.is_mine(task); };
   write_part(receipt, is_mine, others_.block().switch_part());
   others_.publish(tasks_);
@@ -34,6 +36,7 @@ void SwitchLinks::tell_over(const SwitchReceipt& receipt) noexcept {
 
 // Publishes the states first, so that the manager's log and receipts follow the changes that they name.
 void SwitchLinks::tell_takeover(const Takeover& takeover) noexcept {
+  if (others_.keeps_last_words()) return;
   others_.publish(tasks_);
   others_.block().takeovers().put(takeover);
   if (takeover.ended != kNever) others_.ring_all();
@@ -61,6 +64,7 @@ bool SwitchLinks::is_wish_open() const noexcept {
 
 // Publishes a request for a switch, after the states that led to it.
 void SwitchLinks::wish(const SwitchRequest& request, bool changes_nothing, Nanoseconds now) noexcept {
+  if (others_.keeps_last_words()) return;
   BlockHead& head = others_.block().head();
   const OpenWish last = head.wish.read();  // only this thread writes it
   const bool is_open = last.wish.is_there() && !was_dealt_with(head, me_, last.wish.number);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// State of the other rtpus in a switch, and of this one for them: words of the decision page and of the blocks.
-// docs/formats/processes.md.
+// State of the other rtpus in a switch, and of this one for them: words of the decision page and of the blocks. An rtpu
+// that ends alone (PeerLinks::keep_last_words) takes part in no switch: it sees a page without a plan, and its words
+// stay as they are. So the others and the manager find what a SIGKILL would have left. docs/formats/processes.md.
 #pragma once
 
 #include "chimera/rtpu/peer_links.h"
@@ -15,7 +16,7 @@ class SwitchLinks final : public SwitchPeers {
               std::uint32_t me) noexcept
       : tasks_(tasks), others_(others), mapped_(mapped), decision_(decision), me_(me) {}
 
-  SwitchPage& page() noexcept override { return decision_.switching; }
+  SwitchPage& page() noexcept override { return others_.keeps_last_words() ? no_plan_ : decision_.switching; }
   std::uint16_t living() const noexcept override;
   const SwitchProgress* progress(std::uint32_t context) const noexcept override;
   void ring() noexcept override { others_.ring_all(); }
@@ -32,6 +33,7 @@ class SwitchLinks final : public SwitchPeers {
   PeerLinks& others_;
   const MappedPeers& mapped_;
   DecisionPage& decision_;
+  SwitchPage no_plan_;
   std::uint32_t me_;
 };
 

@@ -56,7 +56,8 @@ struct Post {
   State before = State::kNotCreated;
   State after = State::kNotCreated;
   std::uint64_t detail = 0;  ///< report: 1 accepted, 0 not; event: as its EventKind says
-  std::uint64_t reserved[2] = {};
+  std::uint64_t used = 0;  ///< kHang: execution time in ns, if the job used too much
+  std::uint64_t reserved = 0;
 };
 static_assert(sizeof(Post) == 64);
 

@@ -18,14 +18,14 @@ Post numbered(std::uint64_t number) {
   post.task = TaskId{static_cast<std::uint32_t>(number)};
   post.more = number % 2 == 1;
   post.detail = ~number;
-  post.reserved[1] = number * 3;
+  post.reserved = number * 3;
   return post;
 }
 
 bool is_whole(const Post& post) {
   const std::uint64_t n = post.command;
   return post.at.count == static_cast<std::int64_t>(n) && post.task.index == static_cast<std::uint32_t>(n) &&
-         post.more == (n % 2 == 1) && post.detail == ~n && post.reserved[1] == n * 3;
+         post.more == (n % 2 == 1) && post.detail == ~n && post.reserved == n * 3;
 }
 
 struct Outboxes : ::testing::Test {

@@ -31,7 +31,8 @@ class SafeFrame {
     // SYNC: pairs with the acquire in last_words(): the buffer is whole before it is named.
     word_.store(size << 1 | buffer, std::memory_order_release);
   }
-  /// Empty: there is none. Requires: the writer is dead, or is the caller. Context: any; wait-free.
+  /// Empty: there is none. Requires: the writer is dead, or is the caller, or the bytes are not read. Context: any;
+  /// wait-free.
   std::span<const std::byte> last_words() const noexcept {
     const std::uint32_t word = word_.load(std::memory_order_acquire);
     const std::uint32_t size = word >> 1;

@@ -90,7 +90,7 @@ enum {
   CHIMERA_PORT_SAFE_STATE = 1u << 5, /* out-var of bool: true while the device is in the state that the
                                         illegal-configuration flag requests; resource: no part of it ever moves */
   CHIMERA_PORT_SHARED = 1u << 6, /* resource: several tasks may open it together */
-  CHIMERA_PORT_HAS_INITIAL = 1u << 3  /* out-var: value at spawn; in-const: default if no source gives it */
+  CHIMERA_PORT_HAS_INITIAL = 1u << 3  /* out-var: value at spawn; in-const, in-var: default */
 };
 
 #define CHIMERA_MAX_PORTS 64u      /* ports of one component, every instance of a repeated one counted */

@@ -127,9 +127,8 @@ inline constexpr bool kIsInitial<InitialListIs<V>> = true;
 /// Explains in a sentence why an option does not fit a kind of port.
 template <std::uint32_t Kind, class Option>
 constexpr bool check_option() {
-  static_assert(!kIsInitial<Option> || Kind == CHIMERA_OUT_VAR || Kind == CHIMERA_IN_CONST,
-                "initial goes with an out-var (its value at spawn) or an in-const (its default): an in-var gets its "
-                "first value from its producer");
+  static_assert(!kIsInitial<Option> || Kind <= CHIMERA_IN_CONST,
+                "initial goes with an out-var (its value at spawn), or with an in-const or in-var (its default)");
   static_assert(!std::is_same_v<Option, SafetyIs> || Kind == CHIMERA_OUT_VAR,
                 "safety goes with an out-var: it guards what is published");
   static_assert(!std::is_same_v<Option, AtLeastIs> || Kind == CHIMERA_IN_CONST,

@@ -73,9 +73,36 @@ TEST(Quantity, RefusesMalformedText) {
   EXPECT_EQ(refusal(parse_quantity("1.5  kg", our_units())),
             "\"1.5  kg\" is no quantity: unit \" kg\": expected a unit, found \" kg\"");
   EXPECT_EQ(refusal(parse_quantity("1,5 kg", our_units())),
-            "\"1,5 kg\" is no quantity: unit \",5 kg\": expected a unit, found \",5 kg\"");
+            "\"1,5 kg\" is no quantity; write \"1.5 kg\"");
   EXPECT_EQ(refusal(parse_quantity("1e400", our_units())),
             "\"1e400\" is no quantity; expected a number and a unit, as in \"1.5 kg\"");
+}
+
+TEST(Quantity, AcceptsTheSpacesAndSignsOfWordProcessors) {
+  for (const std::string space : {" ", "\xc2\xa0", "\xe2\x80\x89", "\xe2\x80\xaf"}) {
+    EXPECT_EQ(in("1.5" + space + "N.m", "N.m"), 1.5);
+    EXPECT_EQ(in("2 N" + space + "m", "N.m"), 2);
+    EXPECT_EQ(parse_duration("5" + space + "ms").value().count, 5'000'000);
+  }
+  EXPECT_EQ(in("2 N\u22c5m", "N.m"), 2);
+  EXPECT_EQ(in("2 \u2126", "V/A"), 2);
+  EXPECT_EQ(in("2 k\u03a9", "V/A"), 2000);
+  EXPECT_EQ(in("2 s\u207b\u00b9", "1/s"), 2);
+}
+
+TEST(Quantity, SaysHowToWriteANumberOfAnotherSpelling) {
+  constexpr struct { const char *text, *way; } kSpellings[] = {
+      {"1,5 kg", "\"1.5 kg\""},
+      {"1_000 kg", "\"1000 kg\""},
+      {"1 000 kg", "\"1000 kg\""},
+      {"1\u202f000,5 kg", "\"1000.5 kg\""},
+      {"\u22121.5 kg", "\"-1.5 kg\""},
+      {"1,234,567 kg", "\"1234567 kg\""},
+      {"1,500 kg", "\"1.500 kg\" or \"1500 kg\""}};
+  for (const auto& [text, way] : kSpellings)
+    EXPECT_EQ(refusal(parse_quantity(text, our_units())), "\"" + std::string(text) + "\" is no quantity; write " + way);
+  EXPECT_EQ(refusal(parse_duration("1,5 ms")), "\"1,5 ms\" is no duration; write \"1.5 ms\"");
+  EXPECT_EQ(refusal(parse_rate("1_000 Hz")), "\"1_000 Hz\" is no rate; write \"1000 Hz\"");
 }
 
 TEST(Duration, IsExactInDecimal) {

@@ -25,33 +25,33 @@ TEST(UnitExpression, SeparatesVariablesFromTheRest) {
 }
 
 TEST(UnitExpression, SolvesTheOnlyUnknown) {
-  const auto derivative = solve(expression("U/s"), unit("m/s"));
+  const auto derivative = solve(expression("U/s"), expression("m/s"));
   ASSERT_TRUE(derivative);
   EXPECT_EQ(derivative->variable, 'U');
-  EXPECT_TRUE(same(derivative->unit, unit("m")));
-  EXPECT_TRUE(same(solve(expression("N/X"), unit("N/kg"))->unit, unit("kg")));
-  EXPECT_TRUE(same(solve(expression("U2"), unit("m2/s2"))->unit, unit("m/s")));
-  EXPECT_TRUE(same(solve(expression("U-1"), unit("Hz"))->unit, unit("s")));
+  EXPECT_TRUE(same(derivative->unit.rest, unit("m")));
+  EXPECT_TRUE(same(solve(expression("N/X"), expression("N/kg"))->unit.rest, unit("kg")));
+  EXPECT_TRUE(same(solve(expression("U2"), expression("m2/s2"))->unit.rest, unit("m/s")));
+  EXPECT_TRUE(same(solve(expression("U-1"), expression("Hz"))->unit.rest, unit("s")));
 }
 
 TEST(UnitExpression, RefusesToSolveTwoUnknownsOrNoneOrAnOddRoot) {
-  EXPECT_FALSE(solve(expression("U.X"), unit("m")));
-  EXPECT_FALSE(solve(expression("m"), unit("m")));
-  EXPECT_FALSE(solve(expression("U2"), unit("m")));
+  EXPECT_FALSE(solve(expression("U.X"), expression("m")));
+  EXPECT_FALSE(solve(expression("m"), expression("m")));
+  EXPECT_FALSE(solve(expression("U2"), expression("m")));
 }
 
 TEST(UnitExpression, SubstitutesAndComesBack) {
-  const UnitExpression product = substitute(expression("U.X"), 'U', unit("N.m"));
+  const UnitExpression product = substitute(expression("U.X"), 'U', expression("N.m"));
   EXPECT_EQ(product.unknowns(), 1);
-  EXPECT_TRUE(same(substitute(product, 'X', unit("rad/s")).rest, unit("W")));
-  EXPECT_TRUE(same(substitute(expression("U/s"), 'U', unit("deg")).rest, unit("deg/s")));
-  EXPECT_TRUE(same(substitute(expression("m"), 'U', unit("kg")).rest, unit("m")));
+  EXPECT_TRUE(same(substitute(product, 'X', expression("rad/s")).rest, unit("W")));
+  EXPECT_TRUE(same(substitute(expression("U/s"), 'U', expression("deg")).rest, unit("deg/s")));
+  EXPECT_TRUE(same(substitute(expression("m"), 'U', expression("kg")).rest, unit("m")));
 }
 
 TEST(UnitExpression, KeepsTheZeroOfAScaleOnlyWhereTheVariableStandsAlone) {
-  EXPECT_TRUE(same(solve(expression("U"), unit("degC"))->unit, unit("degC")));
-  EXPECT_TRUE(same(substitute(expression("U"), 'U', unit("degC")).rest, unit("degC")));
-  EXPECT_TRUE(same(substitute(expression("U/s"), 'U', unit("degC")).rest, unit("K/s")));
+  EXPECT_TRUE(same(solve(expression("U"), expression("degC"))->unit.rest, unit("degC")));
+  EXPECT_TRUE(same(substitute(expression("U"), 'U', expression("degC")).rest, unit("degC")));
+  EXPECT_TRUE(same(substitute(expression("U/s"), 'U', expression("degC")).rest, unit("K/s")));
 }
 
 TEST(UnitExpression, MultipliesAndDivides) {
@@ -60,6 +60,18 @@ TEST(UnitExpression, MultipliesAndDivides) {
   EXPECT_EQ(text(expression("U") * expression("U.m")), "U2.m");
   EXPECT_EQ(text(expression("U")), "U");
   EXPECT_EQ(text(power(expression("U/s"), 2)), "U2/s2");
+}
+
+TEST(UnitExpression, KeepsTheWordsThatWereWritten) {
+  const auto volt = solve(substitute(expression("X/U"), 'U', expression("A")), expression("V/A"));
+  ASSERT_TRUE(volt);
+  EXPECT_EQ(text(volt->unit), "V");
+  EXPECT_EQ(text(substitute(substitute(expression("X.s/U"), 'X', expression("N.m")), 'U', expression("rad"))),
+            "N.m.s/rad");
+  EXPECT_EQ(text(substitute(substitute(expression("X/U"), 'U', expression("rad/s")), 'X', expression("V"))), "V.s/rad");
+  EXPECT_EQ(text(substitute(expression("U/s"), 'U', expression("mm/s"))), "mm/s2");
+  EXPECT_EQ(text(solve(expression("U2"), expression("mm2/s2"))->unit), "mm/s");
+  EXPECT_EQ(text(solve(expression("U2"), expression("N.kg.m"))->unit), "m.kg/s") << "no word has a root";
 }
 
 }  // namespace

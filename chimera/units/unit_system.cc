@@ -34,7 +34,9 @@ const std::map<std::string, std::string, std::less<>>& slips() {
   static const std::map<std::string, std::string, std::less<>> kSlips{
       {"Nm", "N.m"},     {"sec", "s"},    {"secs", "s"},    {"msec", "ms"},    {"usec", "us"},
       {"kph", "km/h"},   {"kmh", "km/h"}, {"rps", "rev/s"}, {"gravity", "gn"}, {"Nms", "N.m.s"},
-      {"rads", "rad/s"}, {"mps", "m/s"},  {"none", "1"},    {"hr", "h"},       {"turn", "rev"}};
+      {"rads", "rad/s"}, {"mps", "m/s"},  {"none", "1"},    {"hr", "h"},       {"turn", "rev"},
+      {"Vs", "V.s"},     {"As", "A.s"},    {"Ws", "W.s"},     {"kgm", "kg.m"},   {"mNm", "mN.m"},
+      {"kNm", "kN.m"}};
   return kSlips;
 }
 
@@ -199,6 +201,7 @@ Result<UnitExpression> UnitSystem::parse_expression(std::string_view text) const
     const auto unit = content_->meaning(word);
     if (!unit) return std::nullopt;
     expression.rest = *unit;
+    expression.words = {UnitWord{std::string(word)}};
     return expression;
   };
   return read_unit_text(text, meaning, [this](std::string_view word) { return content_->unknown(word); });

@@ -11,13 +11,16 @@ namespace {
 
 bool is_word(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '%'; }
 
-/// Replaces signs that people type by their ASCII spelling: micro, degree and the product dot.
+/// Replaces signs that people type by their ASCII spelling: micro, ohm, degree, product dots, raised digits, spaces.
 std::string plain(std::string_view text) {
   struct Spelling {
     std::string_view sign, ascii;
   };
-  constexpr Spelling kSpellings[] = {{"\xc2\xb5", "u"}, {"\xce\xbc", "u"}, {"\xc2\xb0", "deg"},
-                                     {"\xc2\xb7", "."}, {"\xc2\xb2", "2"}, {"\xc2\xb3", "3"}};
+  constexpr Spelling kSpellings[] = {
+      {"\xc2\xb5", "u"},     {"\xce\xbc", "u"},         {"\xc2\xb0", "deg"},       {"\xc2\xb7", "."},
+      {"\xe2\x8b\x85", "."}, {"\xe2\x84\xa6", "ohm"}, {"\xce\xa9", "ohm"},       {"\xc2\xb9", "1"},
+      {"\xc2\xb2", "2"},     {"\xc2\xb3", "3"},         {"\xe2\x81\xbb", "-"},    {kSpaces[1], " "},
+      {kSpaces[2], " "},       {kSpaces[3], " "}};
   std::string out;
   for (std::size_t i = 0; i < text.size();) {
     std::size_t used = 0;

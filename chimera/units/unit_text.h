@@ -13,6 +13,8 @@
 namespace chimera {
 
 inline constexpr std::size_t kMaxUnitText = 100;  ///< bytes
+/// The space, and the no-break and thin ones that word processors put between a number and its unit.
+inline constexpr std::string_view kSpaces[] = {" ", "\xc2\xa0", "\xe2\x80\x89", "\xe2\x80\xaf"};
 inline constexpr int kMaxUnitExponent = 30;       ///< of a text as a whole, each base unit
 
 /// The meaning of a word such as "kHz" or "U"; nullopt if it has none.

@@ -36,6 +36,15 @@ VariableModel* Model::variable(std::string_view name) {
   return found == variable_index.end() ? nullptr : &variables[found->second];
 }
 
+void Model::unlink(PortRef ref) {
+  VariableModel& of = *variable(port(ref));
+  const auto is_it = [&](const PortRef other) { return other.task == ref.task && other.port == ref.port; };
+  std::erase_if(of.producers, is_it);
+  std::erase_if(of.consumers, is_it);
+  port(ref).variable.clear();
+  has_unmet = true;
+}
+
 bool Model::is_incomplete() const noexcept {
   return draft.is_partial || std::any_of(tasks.begin(), tasks.end(), [](const TaskModel& t) { return t.is_partial(); });
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -30,6 +31,11 @@ struct SolvedExtent {
   std::optional<std::uint32_t> known;
 };
 
+/// True for a port that may be left out: a repeated in-var of at most one instance. `on` alone reads it.
+inline bool may_be_left_out(const PortDescriptor& port) noexcept {
+  return port.kind == CHIMERA_IN_VAR && port.repeated && port.max_instances == 1;
+}
+
 /// The source of the value of an in-const.
 enum class ConstSource : std::uint8_t { kNobody, kOwn, kVariable, kDefault };
 
@@ -49,6 +55,7 @@ struct LinkedPort {
   std::uint32_t element_bytes = 0;
   std::optional<Unit> unit;
   std::string unit_text;
+  std::vector<std::size_t> unit_by;  ///< numbers of the written values that settled the unit (rule_units.cc)
   std::vector<SolvedExtent> extents;
   bool has_extents = false;
   /// Written, default or initial value, elements at their maxima; empty: none, or only init knows it.
@@ -81,18 +88,21 @@ struct TaskModel {
 struct VariableModel {
   std::string name;
   bool is_constant = false;
-  const NamedNode* given = nullptr;  ///< by `operator` or `constants`
+  const NamedNode* given = nullptr;  ///< by `operator` or `constants`, or the default of an input
+  bool is_default = false;           ///< `given` stands for the default of its only reader, an optional input
   std::vector<std::byte> value;      ///< the bytes of `given`, in the form of its first consumer
   std::vector<PortRef> producers, consumers;
   // The agreement of its ports, each with the port that settled it (nullopt: the given value).
   std::optional<std::uint32_t> type;
   std::optional<Unit> unit;
   std::string unit_text;
+  std::vector<std::size_t> unit_by;  ///< as of LinkedPort
   std::optional<PortRef> type_from, unit_from, shape_from;
   std::vector<SolvedExtent> extents;
   bool has_extents = false;
 
   bool is_given() const noexcept { return given != nullptr; }
+  bool is_written() const noexcept { return given != nullptr && !is_default; }
 };
 
 struct SetModel {
@@ -105,6 +115,14 @@ struct SetModel {
   std::optional<std::size_t> safe_variable;  ///< in Model::variables; nothing: no condition
 
   bool has(std::size_t task) const noexcept;
+};
+
+/// An input without a producer in a configuration, as the message names it.
+struct UnmetInput {
+  PortRef port;
+  std::size_t set = 0;       ///< in Model::sets
+  std::size_t variable = 0;  ///< in Model::variables
+  std::string said;
 };
 
 /// A written list that gives the number of elements of a constant extent before `init` does.
@@ -130,7 +148,9 @@ struct Model {
   std::vector<double> utilisation;                       ///< per rtpu, start configuration
   std::map<std::string, WrittenLength> written_lengths;  ///< by constant
   Overload overload = Overload::kRefused;
-  bool has_unmet = false;  ///< an input or a constant without producer was reported
+  std::vector<UnmetInput> unmet;
+  std::deque<NamedNode> defaults;  ///< VariableModel::given of optional inputs; elements never move
+  bool has_unmet = false;  ///< links are missing, or left out because their types clash
 
   LinkedPort& port(PortRef ref) { return tasks[ref.task].ports[ref.port]; }
   const LinkedPort& port(PortRef ref) const { return tasks[ref.task].ports[ref.port]; }
@@ -140,6 +160,8 @@ struct Model {
   VariableModel* variable(std::string_view name);
   /// The variable of the port; nullptr: not linked.
   VariableModel* variable(const LinkedPort& p) { return p.is_linked() ? variable(p.variable) : nullptr; }
+  /// Takes the port out of its variable, so that a wrong link carries no type, unit or shape to other ports.
+  void unlink(PortRef ref);
   /// True if a missing part could explain other missing parts: then report no missing parts.
   bool is_incomplete() const noexcept;
 

@@ -3,12 +3,14 @@
 #include "chimera/verify/setting.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <charconv>
+#include <cmath>
 #include <vector>
 
 #include "chimera/base/hosted/wording.h"
 #include "chimera/catalogue/library.h"
 #include "chimera/description/yaml_reader.h"
+#include "chimera/text/json_text.h"
 #include "chimera/text/nearest.h"
 #include "chimera/units/quantity.h"
 
@@ -55,10 +57,19 @@ class AppliedSettings {
       for (std::size_t k = 0; k < i; ++k)
         if (settings_[k].name == settings_[i].name)
           return refuse(settings_[i], "'" + settings_[i].name + "' is set twice", {});
+      if (settings_[i].name.starts_with("rtpus.")) {
+        if (auto placed = place_rtpu(settings_[i]); !placed) return placed;
+        places_.emplace_back();
+        continue;
+      }
       NamedNode* target = nullptr;
       if (auto found = find(settings_[i], target); !found) return found;
       const Place at = target->value.is_none() ? target->name.at : target->value.at;
-      target->value = node_of(settings_[i]);
+      auto value = node_of(settings_[i]);
+      if (!value)
+        return refuse(settings_[i],
+                      "operator variable '" + settings_[i].name + "': " + value.error().message.c_str(), at);
+      target->value = *std::move(value);
       place(target->value, at);
       places_.push_back(at);
     }
@@ -104,12 +115,12 @@ class AppliedSettings {
   }
 
   /// A text for a port of texts stays unchanged; any other text is parsed like a description.
-  Node node_of(const Setting& setting) const {
+  Result<Node> node_of(const Setting& setting) const {
     const ConfiguredVariable* known = variable(setting.name);
     if (known == nullptr || known->type != "string" || !known->shape.empty()) {
       Node value = written_value(setting.value);
-      return known == nullptr || keeps_units_ == nullptr ? value
-                                                         : in_unit(std::move(value), known->unit, *keeps_units_);
+      if (known == nullptr || keeps_units_ == nullptr) return value;
+      return in_unit(std::move(value), known->unit, *keeps_units_);
     }
     Node node;
     node.kind = Node::Kind::kScalar;
@@ -118,8 +129,24 @@ class AppliedSettings {
     return node;
   }
 
+  /// "rtpus.NAME.cpu".
+  Result<void> place_rtpu(const Setting& setting) {
+    std::string name = setting.name.substr(setting.name.find('.') + 1);
+    if (name.ends_with(".cpu")) name.resize(name.size() - 4);
+    if (draft_.rtpus.empty()) draft_.rtpus.emplace_back().name.text = "main";
+    const auto found = std::ranges::find(draft_.rtpus, name, [](const DraftRtpu& rtpu) { return rtpu.name.text; });
+    const auto names = names_of(draft_.rtpus, [](const DraftRtpu& rtpu) { return rtpu.name.text; });
+    if (found == draft_.rtpus.end()) return refuse(setting, chimera::no_such("rtpu", name, names), {});
+    const std::string& text = setting.value;
+    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), found->cpu.value);
+    if (fault == std::errc() && end == text.data() + text.size() && found->cpu.value <= kLastCpu) return {};
+    return refuse(setting, "expected RTPU=N, N from 0 to " + std::to_string(kLastCpu), {});
+  }
+
   Result<void> find(const Setting& setting, NamedNode*& target) {
     const std::size_t dot = setting.name.find('.');
+    if (const ConfiguredVariable* known = variable(setting.name); dot != std::string::npos && known != nullptr)
+      return refuse(setting, default_of_an_input(setting.name), known->at);
     if (dot != std::string::npos) return find_of_task(setting, dot, target);
     target = named(draft_.operators, setting.name);
     if (target == nullptr) target = named(draft_.constants, setting.name);
@@ -169,6 +196,20 @@ class AppliedSettings {
   Draft draft_;
 };
 
+/// Converts each number of `now` to the unit of the number at its place in `written`.
+Node in_units_of(const Node& written, Node now, const UnitSystem& units) {
+  for (std::size_t i = 0; i < now.items.size(); ++i) {
+    const Node* like = &written;
+    if (now.is_map() && written.is_map()) like = written.find(now.keys[i].text);
+    else if (now.is_list() && written.is_list()) like = &written.items[std::min(i, written.items.size() - 1)];
+    if (like != nullptr) now.items[i] = in_units_of(*like, std::move(now.items[i]), units);
+  }
+  const auto quantity = parse_quantity(written.text, units);
+  if (!now.is_scalar() || !quantity) return now;
+  const auto made = in_unit(now, quantity->unit_text, units);
+  return made ? *made : now;
+}
+
 }  // namespace
 
 Node written_value(const std::string& text) {
@@ -192,22 +233,69 @@ Result<Configuration> with_settings(const Configuration& configuration, const Li
   return *verdict.configuration;
 }
 
+std::string default_of_an_input(const std::string& variable) {
+  const std::string port = variable.substr(variable.find('.') + 1);
+  return "'" + variable + "' is the default of an input: write '" + port + "' under operator: to set it";
+}
+
+std::string about_constant(const Configuration& configuration, const std::string& name) {
+  const Draft& draft = configuration.draft();
+  for (std::size_t t = 0; t < configuration.tasks().size(); ++t)
+    for (const ConfiguredPort& port : configuration.tasks()[t].ports) {
+      const std::string& task = configuration.tasks()[t].name;
+      if (port.kind != CHIMERA_IN_CONST) continue;
+      if (port.name != name && port.variable != name && task + "." + port.name != name) continue;
+      std::string value = "default";
+      for (const ConfiguredVariable& made : configuration.variables())
+        if (made.name == port.variable && !made.producers.empty())
+          value = "made by task '" + configuration.tasks()[made.producers[0].task].name + "'";
+      for (const NamedNode& given : draft.constants)
+        if (given.name.text == port.variable) value = written_text(given.value);
+      for (const NamedNode& own : draft.tasks[t].constants)
+        if (own.name.text == port.name) value = written_text(own.value);
+      return "'" + name + "' is a constant of task '" + task + "' (" + value +
+             "): nothing changes it while tasks run. Change it in the file and start again; an input under operator: "
+             "can be set at any time";
+    }
+  return {};
+}
+
 Result<void> knows(const Configuration& configuration, std::span<const Setting> settings) {
   return AppliedSettings(configuration, settings).put_all();
 }
 
-Node in_unit(Node value, const std::string& unit, const UnitSystem& units) {
+Result<Node> in_unit(Node value, const std::string& unit, const UnitSystem& units) {
   if (value.is_map()) return value;  // each field of a struct has its own unit
-  for (Node& item : value.items) item = in_unit(std::move(item), unit, units);
+  for (Node& item : value.items) {
+    auto made = in_unit(std::move(item), unit, units);
+    if (!made) return made;
+    item = *std::move(made);
+  }
   if (!value.is_scalar() || value.quoted) return value;
   const auto quantity = parse_quantity(value.text, units);
   const auto wanted = units.parse(unit);
   if (!quantity || !wanted || quantity->unit_text == unit) return value;
   const auto number = value_in(*quantity, *wanted, unit);
-  if (!number && number.error().code != ErrorCode::kRefused) return value;
+  if (!number && number.error().code != ErrorCode::kRefused) return number.error();
   // If the value is not finite in this unit, the rules report it.
-  value.text = with_unit(number ? formatted("%.17g", *number) : "inf", unit);
+  char digits[32];
+  char* const end = std::to_chars(digits, digits + sizeof digits, number ? *number : INFINITY).ptr;
+  value.text = with_unit(std::string(digits, end), unit);
   return value;
+}
+
+std::string written_text(const Node& value) {
+  if (value.is_scalar()) return value.quoted ? json_string(value.text) : value.text;
+  const std::string words = join_n(value.items.size(), ", ", [&value](std::size_t i) {
+    return (value.is_map() ? value.keys[i].text + ": " : "") + written_text(value.items[i]);
+  });
+  return value.is_map() ? "{" + words + "}" : "[" + words + "]";
+}
+
+std::string in_words_of(const Node& written, const std::string& now, const UnitSystem& units) {
+  const Node before = written_value(now);
+  const std::string text = written_text(in_units_of(written, before, units));
+  return text == written_text(before) ? now : text;
 }
 
 Result<Configuration> with_new_value(const Configuration& configuration, const Library& library,

@@ -30,12 +30,26 @@ Node written_value(const std::string& text);
 Result<Configuration> with_settings(const Configuration& configuration, const Library& library,
                                     std::span<const Setting> settings, Overload overload = Overload::kRefused);
 
+/// "'axis.kd' is the default of an input: write 'kd' under operator: to set it". Context: setup.
+std::string default_of_an_input(const std::string& variable);
+
+/// "'ki' is a constant of task 'control' (2 V/rad) ...": why that name is no state variable, and what to do; "": it is
+/// no constant. `name`: a constant, or TASK.CONSTANT. Context: setup.
+std::string about_constant(const Configuration& configuration, const std::string& name);
+
 /// Checks that these names can be set, each once; ignores their values. Refuses like with_settings(). Context: setup.
 Result<void> knows(const Configuration& configuration, std::span<const Setting> settings);
 
-/// Converts the numbers of a value to `unit`. Numbers that cannot be converted stay, and the rules refuse them. So a
-/// variable that has its unit from its first value keeps that unit. Context: setup.
-Node in_unit(Node value, const std::string& unit, const UnitSystem& units);
+/// Converts the numbers of a value to `unit`, the one that its variable has had since the start. Refuses a unit of
+/// another dimension; what is no quantity stays, and the rules refuse it. Context: setup.
+Result<Node> in_unit(Node value, const std::string& unit, const UnitSystem& units);
+
+/// A value as a description writes it in one line: "5 m", "[1, 2]", "{x: 1 m}". Context: setup.
+std::string written_text(const Node& value);
+
+/// The value `now`, a text of a description, with each number in the unit of the number at its place in `written`.
+/// Context: setup.
+std::string in_words_of(const Node& written, const std::string& now, const UnitSystem& units);
 
 /// Like with_settings(), for one operator variable whose value changes while tasks run. Its type, unit and shape stay.
 /// Context: setup; takes the time of a verification.

@@ -105,6 +105,39 @@ TEST_F(SettingTest, AWrongNameIsReportedWithTheNearest) {
       << refusal({set("law.cutof", "5 Hz")});
 }
 
+TEST_F(SettingTest, ANumberIsWrittenInTheUnitThatTheFileHas) {
+  const auto written = [](const std::string& before, const std::string& now) {
+    return in_words_of(written_value(before), now, our_units());
+  };
+  EXPECT_EQ(written("1.6 V/A", "1.5 m2.kg.rad/(s3.A2)"), "1.5 V/A");
+  EXPECT_EQ(written("180 deg", "3.141592653589793 rad"), "180 deg");
+  EXPECT_EQ(written("1600 mV/A", "1.5 V/A"), "1500 mV/A");
+  EXPECT_EQ(written("[1 m, 20 cm]", "[3 m, 0.5 m]"), "[3 m, 50 cm]");
+  EXPECT_EQ(written("2 mm", "[0.001 m, 0.5 m]"), "[1 mm, 500 mm]");
+  EXPECT_EQ(written("{x: 1 cm, n: 3}", "{x: 0.25 m, n: 4}"), "{x: 25 cm, n: 4}");
+  for (const char* now : {"5 N", "true", "\"a text\"", "[1, 2]"}) EXPECT_EQ(written(now, now), now);
+}
+
+TEST_F(SettingTest, AnRtpuIsPlacedOnAnotherCpu) {
+  const auto made = with({{"rtpus.main.cpu", "3", "--cpu main=3"}});
+  ASSERT_TRUE(made) << made.error().message.c_str();
+  EXPECT_EQ(made->rtpus()[0].cpu, 3u);
+  EXPECT_EQ(refusal({{"rtpus.man.cpu", "3", "--cpu man=3"}}),
+            "arm.yaml: --cpu man=3: no rtpu 'man'; did you mean 'main'?");
+  EXPECT_EQ(refusal({{"rtpus.main.cpu", "x", "--cpu main=x"}}),
+            "arm.yaml: --cpu main=x: expected RTPU=N, N from 0 to 1023");
+}
+
+TEST_F(SettingTest, AConstantIsExplained) {
+  EXPECT_EQ(about_constant(*verdict_.configuration, "cutoff"),
+            "'cutoff' is a constant of task 'law' (10 Hz): nothing changes it while tasks run. Change it in the file "
+            "and start again; an input under operator: can be set at any time");
+  const auto about = [this](const std::string& name) { return about_constant(*verdict_.configuration, name); };
+  EXPECT_TRUE(about("limit").starts_with("'limit' is a constant of task 'law' (5 N.m)"));
+  EXPECT_TRUE(about("law.cutoff").starts_with("'law.cutoff' is a constant of task"));
+  EXPECT_EQ(about("kp"), "");
+}
+
 TEST_F(SettingTest, RefusesAProducedVariableAndASecondValue) {
   EXPECT_EQ(refusal({set("tau", "5 N.m")}),
             "arm.yaml:4:3: --set tau '5 N.m': 'tau' is produced by task 'law'; operator variables and constants of the "

@@ -329,6 +329,15 @@ std::optional<std::vector<std::byte>> value_bytes(Model& model, const Node& node
   return ValueWriter(model, target).write(node);
 }
 
+std::string value_name(const Model& model, const LinkedPort& port) {
+  const std::string key = port.is(CHIMERA_IN_CONST) ? "constant '" : "initial value '";
+  return key + port.declared->name + "' of task '" + model.tasks[port.task].name() + "'";
+}
+
+std::string value_name(const VariableModel& variable) {
+  return (variable.is_constant ? "constant '" : "operator variable '") + variable.name + "'";
+}
+
 bool is_solved(const LinkedPort& port) {
   return port.type && port.has_extents && (port.unit || *port.type == CHIMERA_STRUCT);
 }

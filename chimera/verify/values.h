@@ -25,6 +25,11 @@ struct ValueTarget {
 /// port are solved. Context: setup.
 std::optional<std::vector<std::byte>> value_bytes(Model& model, const Node& node, const ValueTarget& target);
 
+/// "constant 'scale' of task 'left'": the value that the task writes for the port. Context: setup.
+std::string value_name(const Model& model, const LinkedPort& port);
+/// "operator variable 'kp'": the given value of the variable. Context: setup.
+std::string value_name(const VariableModel& variable);
+
 /// A declared initial value or default, broadcast to the port's solved shape. Context: setup.
 std::vector<std::byte> declared_bytes(const LinkedPort& port);
 

@@ -16,18 +16,20 @@ void link(Model& model) {
   place_tasks(model);
   make_sets(model);
   pair_standbys(model);
+  link_left_out(model);
   collect_variables(model);
 }
 
 void judge_links(Model& model) {
   refuse_two_producers(model);
-  refuse_unmet_inputs(model);
+  find_unmet_inputs(model);
   settle_constants(model);
 }
 
 void judge_values(Model& model) {
   agree_on_types(model);
   agree_on_units(model);
+  refuse_unmet_inputs(model);
   agree_on_shapes(model);
   share_maxima(model);
   limit_table(model);

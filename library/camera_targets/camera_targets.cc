@@ -25,10 +25,11 @@ struct CameraTargets : library::CameraPorts {
   InConst<double> noise{"noise", "1", initial = 0.0, range(0, 20), doc = "Largest error of a number, in pixels."};
   Resource link{"link", safe_state, shared, doc = "udp:ADDRESS:PORT, unix:PATH, here:NAME or file:PATH."};
 
-  void init() {
+  void init(Cycle c) {
     reinit();
     const Result<void> opened = writer_.open(link.c_str());
     if (!opened) throw std::runtime_error(std::string(opened.error().message.view()));
+    if (!writer_.note().empty()) c.note(writer_.note().c_str());
   }
   void reinit() {
     pinhole_ = pinhole();

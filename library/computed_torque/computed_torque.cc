@@ -2,6 +2,7 @@
 // Computed-torque control: compensates the dynamics of the arm, so that each joint follows its reference independently.
 #include "library/kinematics/dh_dynamics.h"
 #include "library/kinematics/dh_ports.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -40,8 +41,9 @@ struct ComputedTorque : library::DhPorts {
   }
   Outcome reinit() { return init(); }
   // The law has no state, so its output does not depend on the previous controller.
-  Outcome on() { return follow(); }
+  Outcome on() { return library::awaited(follow()); }
   Outcome cycle(Cycle c) { return c.illegal() ? ok() : follow(); }
+  bool error() { return true; }
   // There is no off(): the last torque holds, as that of pid_joint.
 
  private:
@@ -66,7 +68,7 @@ struct ComputedTorque : library::DhPorts {
     }
     dynamics_.torque(q.span(), qd.span(), {wanted.data(), tau.size()}, torque);
     for (std::size_t i = 0; i < tau.size(); ++i) {
-      if (std::isnan(torque[i])) return fault("an input is not finite");
+      if (std::isnan(torque[i])) return library::unfit("an input is not finite", q_ref, qd_ref, qdd_ref, q, qd);
     }
     for (std::size_t i = 0; i < tau.size(); ++i) tau[i] = std::clamp(torque[i], -tau_max[i], tau_max[i]);
     return ok();

@@ -4,6 +4,7 @@
 
 #include "chimera/task/component.h"
 #include "library/control/speed_control.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -30,10 +31,11 @@ struct Control {
   }
   Outcome cycle(Cycle c) {
     if (c.illegal()) return ok();  // the car does not follow fd, so the error must not be integrated
-    if (!std::isfinite(*vr) || !std::isfinite(*vz)) return fault("vr or vz is not finite");
+    if (!std::isfinite(*vr) || !std::isfinite(*vz)) return library::unfit("vr or vz is not finite", vr, vz);
     *fd = control_.step(gains(), *vr, *vz, c.dt());
     return ok();
   }
+  bool error() { return true; }
 
  private:
   library::SpeedControl::Gains gains() const { return {*kp, *ki, *drive_max, *brake_max}; }

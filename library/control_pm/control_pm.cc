@@ -5,6 +5,7 @@
 
 #include "chimera/task/component.h"
 #include "library/control/speed_control.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -36,12 +37,13 @@ struct ControlPm {
   }
   Outcome cycle(Cycle c) {
     if (c.illegal()) return ok();  // the car does not follow the force, so the error must not be integrated
-    if (!std::isfinite(*vr) || !std::isfinite(*vz)) return fault("vr or vz is not finite");
+    if (!std::isfinite(*vr) || !std::isfinite(*vz)) return library::unfit("vr or vz is not finite", vr, vz);
     *fd = control_.step(gains(), *vr, *vz, c.dt());
     *fde = std::max(0.0, *fd);
     *fdw = std::max(0.0, -*fd);
     return ok();
   }
+  bool error() { return true; }
 
  private:
   library::SpeedControl::Gains gains() const { return {*kp, *ki, *drive_max, *brake_max}; }

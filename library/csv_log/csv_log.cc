@@ -5,11 +5,11 @@
 //   ring[put mod capacity] = row               put (acquire) | text of the row | taken = taken + 1 (release)
 //   put = put + 1 (release)                    write; text_ keeps the bytes that the disk refuses, for the next try
 // A row is lost only if cycle finds capacity rows between taken and put.
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -20,8 +20,11 @@
 
 #include "chimera/task/component.h"
 #include "chimera/task/number_at.h"
+#include "library/device/recording_file.h"
+#include "library/signals/recording_column.h"
 
 using namespace chimera;
+using library::column_index, library::column_text;
 
 namespace {
 
@@ -36,12 +39,10 @@ struct CsvLog {
   Out<std::int64_t>     lost{"lost", "1", initial = 0, doc = "Rows dropped."};
   Out<std::int32_t>     disk_error{"disk_error", "1", initial = 0,
                                    doc = "Error number while the disk refuses data; 0: none."};
-  Resource              file{"file", safe_state, doc = "File to write; old content is lost."};
+  Resource              file{"file", safe_state, doc = "File to write; if it has data, NAME.2.csv."};
 
   void init(Cycle c) {
     check_inputs();
-    file_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-    if (file_ < 0) throw std::runtime_error(file.c_str() + std::string(": ") + std::strerror(errno));
     columns_ = 1;
     for (const auto& port : in) columns_ += port.size();
     capacity_ = static_cast<std::uint64_t>(*capacity);
@@ -50,6 +51,10 @@ struct CsvLog {
     ring_.assign(columns_ * capacity_, 0.0);
     text_.reserve(2 * kTextBytes);
     text_ = header(c);
+    const library::RecordingFile opened = library::open_recording(file.c_str());
+    file_ = opened.file;
+    const std::string note = library::other_path_note(file.c_str(), opened.path);
+    if (!note.empty()) c.note(note.c_str());
   }
   void on(Cycle c) {
     if (put_.load(std::memory_order_relaxed) == 0) origin_ = c.now();
@@ -142,24 +147,14 @@ struct CsvLog {
     const char* text = ::strerrordesc_np(error);
     return text != nullptr ? text : "it refuses";
   }
-  // Column names have no blank, "q[0](rad)", so that a reader that guesses the separator finds the comma.
-  static std::string column(std::string_view variable, const std::string& element, std::string_view unit) {
-    std::string name = std::string(variable) + element;
-    if (!unit.empty() && unit != "1") name += "(" + std::string(unit) + ")";
-    for (char& c : name)
-      if (c == ' ' || c == ',') c = '.';
-    return name;
-  }
-  static std::string element(const chimera_port& port, std::size_t i) {
-    if (port.count == 1) return "";
-    if (port.extent[1] == 1) return "[" + std::to_string(i) + "]";
-    return "[" + std::to_string(i / port.extent[1]) + "][" + std::to_string(i % port.extent[1]) + "]";
+  static std::string unit(std::string_view text) {
+    return text.empty() || text == "1" ? "" : "(" + column_text(text) + ")";
   }
   std::string header(Cycle c) const {
     std::string line = "t(s)";
     for (const auto& port : in)
       for (std::size_t i = 0; i < port.size(); ++i)
-        line += "," + column(c.variable(port), element(*port.live(), i), c.unit(port));
+        line += "," + column_text(c.variable(port)) + column_index(*port.live(), i) + unit(c.unit(port));
     return line + "\n";
   }
   void add_text(const double* row) {
@@ -167,12 +162,12 @@ struct CsvLog {
     for (std::size_t i = 0; i < columns_; ++i) {
       if (i > 0) text_ += ',';
       if (std::isnan(row[i])) continue;
-      std::snprintf(number, sizeof number, "%.15g", row[i]);
-      text_ += number;
+      // Has a decimal point whatever the locale of the process.
+      text_.append(number, std::to_chars(number, number + sizeof number, row[i], std::chars_format::general, 15).ptr);
     }
     text_ += '\n';
   }
-  // Returns false if the disk did not accept all bytes. The next call writes the rest.
+  // Returns false if the disk did not accept all bytes. The next call writes the rest, with the row that the disk cut.
   bool write_text() {
     std::size_t done = 0;
     while (done < text_.size()) {
@@ -182,8 +177,14 @@ struct CsvLog {
     }
     const bool is_whole = done == text_.size();
     error_.store(is_whole ? 0 : errno, std::memory_order_relaxed);
-    text_.erase(0, done);
+    text_.erase(0, is_whole ? done : whole_rows(done));
     return is_whole;
+  }
+  // Removes the cut row behind `done` written bytes from the file. Returns the bytes of text_ that are in the file.
+  std::size_t whole_rows(std::size_t done) const {
+    const std::size_t end = done == 0 ? 0 : text_.rfind('\n', done - 1) + 1;  // 0 without a whole row
+    const off_t at = ::lseek(file_, 0, SEEK_CUR) - static_cast<off_t>(done - end);  // below 0 for a pipe
+    return at >= 0 && ::ftruncate(file_, at) == 0 && ::lseek(file_, at, SEEK_SET) == at ? end : done;
   }
   // Rows not yet written, with a partly written one, without the header line.
   std::uint64_t rows_left() const {

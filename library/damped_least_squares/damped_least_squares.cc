@@ -37,7 +37,7 @@ struct DampedLeastSquares {
     stop();
     if (c.illegal()) return ok();
     if (!library::DhPorts::is_pose(*xd) || !library::DhPorts::is_pose(*xm)) {
-      return fault("a pose is not finite, or has no orientation");
+      return library::unfit("a pose is not finite, or has no orientation", xd, xm);
     }
     library::Vec6 e = library::motion_between(library::frame_of(*xm), library::frame_of(*xd));
     for (double& part : e) part *= *gain;
@@ -50,7 +50,7 @@ struct DampedLeastSquares {
         sum += jv(r, i) * jv(r, i) + jw(r, i) * jw(r, i);
       }
     }
-    if (!(sum < kMost)) return fault("the Jacobian is not finite, or too large");
+    if (!(sum < kMost)) return library::unfit("the Jacobian is not finite, or too large", jv, jw);
     move(jacobian, e);
     return ok();
   }

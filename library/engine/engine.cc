@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "chimera/task/component.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -20,7 +21,7 @@ struct Engine {
     if (gas.is_outdated()) *gas = 0;
   }
   Outcome cycle(Cycle c) {
-    if (!c.illegal() && !std::isfinite(*fde)) return fault("fde is not finite");
+    if (!c.illegal() && !std::isfinite(*fde)) return library::unfit("fde is not finite", fde);
     *gas = c.illegal() ? 0 : std::clamp(*fde / *full_gas, 0.0, 1.0);
     return ok();
   }

@@ -9,6 +9,7 @@
 
 #include "chimera/base/math.h"
 #include "chimera/task/component.h"
+#include "library/device/answers.h"
 #include "library/device/sentence.h"
 #include "library/frame/frame.h"
 #include "library/frame/values.h"
@@ -30,7 +31,8 @@ struct FrameDevice {
   InConst<double> state_resolution{"state_resolution", "X", initial = 1.0, doc = "State for a 1 in the frame."};
   InConst<double> limit{"limit", "U", initial = 1e6, range(0, 1e9), at_least = "idle",
                         doc = "Commands are cut at +- limit."};
-  InConst<double> idle{"idle", "U", initial = 0.0, doc = "Command at off, after the timeout and while the flag is up."};
+  InConst<double> idle{"idle", "U", initial = 0.0,
+                       doc = "Command until the first good frame, after the last one, at off, while the flag is up."};
   InConst<double> timeout{"timeout", "s", initial = 0.1, range(0.001, 3600),
                           doc = "Silence after which the device counts as lost."};
 
@@ -52,7 +54,7 @@ struct FrameDevice {
   std::size_t payload() const { return number_bytes_ + state.size() * width(form_); }
 
   void begin(Cycle c) {
-    heard_ = c.now();
+    answers_.begin(c.now());
     lost_ = nullptr;
     *connected = *idled = false;
     *age = 0;
@@ -71,27 +73,29 @@ struct FrameDevice {
     }
     return static_cast<std::size_t>(at - to) - 2;
   }
-  /// The device exists: its silence begins now.
-  void hears(Nanoseconds now) { heard_ = now; }
+  /// The device could not be heard so far: its silence begins now.
+  void wait(Nanoseconds now) { answers_.wait(now); }
   /// For cycle, after sending. `is_idle_out`: a complete frame with the idle command went out in this cycle.
   void tell_idled(Cycle c, bool is_idle_out) { *idled = c.illegal() && (*idled || is_idle_out); }
-  /// Reads the values of a good frame.
-  void take_state(std::span<const std::uint8_t> frame, Nanoseconds now) {
+  /// Reads the values of a frame. Returns false, and changes nothing but `wrong`, if one is not finite.
+  bool take_state(std::span<const std::uint8_t> frame, Nanoseconds now) {
     std::array<double, 16> values{};
     for (std::size_t i = 0; i < state.size(); ++i) {
       values[i] = get_value(frame.data() + number_bytes_ + i * width(form_), form_, *state_resolution);
       if (math::is_finite(values[i])) continue;
       *wrong += 1;
-      return;
+      return false;
     }
     for (std::size_t i = 0; i < state.size(); ++i) state[i] = values[i];
     *received += 1;
     *connected = true;
-    heard_ = now;
+    answers_.take(now);
+    return true;
   }
-  /// Decides whether the device is lost. The present cycle still publishes, the next one is the fault.
+  /// True if this cycle sends the idle command. A lost device is a fault of the next cycle: this one still publishes.
+  bool must_idle(Cycle c, bool is_open) { return is_lost(c, is_open) || answers_.must_idle(c); }
   bool is_lost(Cycle c, bool is_open) {
-    *age = to_seconds(c.now() - heard_);
+    *age = answers_.age(c.now());
     if (!is_open) lost_ = &gone_;
     else if (*age > *timeout) lost_ = &silent_;
     if (lost_ != nullptr) *connected = false;
@@ -103,7 +107,7 @@ struct FrameDevice {
  private:
   Form form_ = Form::kFloat32;
   std::size_t number_bytes_ = 0;
-  Nanoseconds heard_;
+  Answers answers_;
   LostSentence gone_, silent_;
   const LostSentence* lost_ = nullptr;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tool pose and Jacobian of any serial arm (1994 paper, figures 8 and 9).
 #include "library/kinematics/dh_ports.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -14,11 +15,12 @@ struct FwdkinJacobian : library::DhPorts {
 
   void init() { read_chain(); }
   void reinit() { read_chain(); }
-  Outcome on() { return cycle(); }
+  Outcome on() { return library::required(cycle(), "q is not finite"); }
   Outcome cycle() {
     library::Jacobian jacobian;
     const library::Frame found = arm_.tool_frame(q.span(), jacobian);
-    if (!std::isfinite(library::length(found.origin) + library::length(found.x))) return fault("q is not finite");
+    if (!std::isfinite(library::length(found.origin) + library::length(found.x)))
+      return library::unfit("q is not finite", q);
     *xm = library::pose_of(found);
     for (std::size_t i = 0; i < arm_.joints(); ++i) {
       for (std::size_t r = 0; r < 3; ++r) {
@@ -28,6 +30,7 @@ struct FwdkinJacobian : library::DhPorts {
     }
     return ok();
   }
+  bool error() { return true; }
 };
 
 CHIMERA_COMPONENT(FwdkinJacobian, "fwdkin_jacobian", "Forward kinematics and Jacobian.", rate = 1000.0,

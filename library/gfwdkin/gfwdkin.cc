@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Generalized forward kinematics: tool pose of any serial arm.
 #include "library/kinematics/dh_ports.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -12,13 +13,15 @@ struct Gfwdkin : library::DhPorts {
 
   void init() { read_chain(); }
   void reinit() { read_chain(); }
-  Outcome on() { return cycle(); }
+  Outcome on() { return library::required(cycle(), "q is not finite"); }
   Outcome cycle() {
     const library::Frame found = arm_.tool_frame(q.span());
-    if (!std::isfinite(library::length(found.origin) + library::length(found.x))) return fault("q is not finite");
+    if (!std::isfinite(library::length(found.origin) + library::length(found.x)))
+      return library::unfit("q is not finite", q);
     *xm = library::pose_of(found);
     return ok();
   }
+  bool error() { return true; }
 };
 
 CHIMERA_COMPONENT(Gfwdkin, "gfwdkin", "Generalized forward kinematics.", rate = 1000.0,

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Generalized inverse kinematics: joint positions for a tool pose of any serial arm.
+#include <cstdio>
+
 #include "library/kinematics/dh_ports.h"
 #include "library/signals/input.h"
 
@@ -40,27 +42,47 @@ struct Ginvkin : library::DhPorts {
   }
   // Bumpless: continues from a command that is handed over, because the drives lag behind it; else starts at the
   // measured positions. From beyond a joint limit the command comes back within the speed limit.
-  Outcome on() {
-    if (q_ref.is_handed_over() && library::all_finite(q_ref)) return ok();
-    for (std::size_t i = 0; i < q.size(); ++i) {
-      if (!std::isfinite(q[i])) return fault("q is not finite: the search cannot begin there");
-      q_ref[i] = q[i];
-    }
-    cut();
-    return ok();
+  Outcome on(Cycle c) {
+    stood_ = false;
+    return start(c, q_ref.is_handed_over());
   }
+  // While the configuration is illegal, the arm holds itself, so q_ref waits; then it starts where the arm is.
   Outcome cycle(Cycle c) {
-    if (c.illegal()) return ok();
-    if (!is_pose(*xr)) return fault("xr is not finite or no orientation");
+    if (c.illegal()) {
+      stood_ = true;
+      return ok();
+    }
+    if (stood_) {
+      const Outcome started = start(c, false);
+      stood_ = !library::is_ok(started);
+      return started;
+    }
+    if (!is_pose(*xr)) return library::unfit("xr is not finite or no orientation", xr);
     std::array<double, library::kMostJoints> q_found{};
-    std::copy_n(q_ref.begin(), q_ref.size(), q_found.begin());
+    for (std::size_t i = 0; i < q_ref.size(); ++i) q_found[i] = search_.limits.cut(i, q_ref[i]);
     *is_reachable = search_.solve(arm_, library::frame_of(*xr), {q_found.data(), q_ref.size()}, *tolerance);
     *residual = search_.residual();
     move_to(q_found, *speed_limit * c.dt());
     return ok();
   }
+  bool error() { return true; }
 
  private:
+  Outcome start(Cycle c, bool goes_on) {
+    if (!goes_on || !library::all_finite(q_ref)) {
+      for (std::size_t i = 0; i < q.size(); ++i)
+        if (!std::isfinite(q[i])) return fault("q is not finite: the search cannot begin there");
+      std::ranges::copy(q, q_ref.begin());
+    }
+    for (std::size_t i = 0; i < q_ref.size(); ++i) {
+      if (search_.limits.cut(i, q_ref[i]) == q_ref[i]) continue;
+      char text[120];
+      std::snprintf(text, sizeof text, "q_ref[%zu] starts at %.4g rad, outside %.4g to %.4g rad", i, q_ref[i], q_min[i],
+                    q_max[i]);
+      c.note(text);
+    }
+    return ok();
+  }
   /// Moves to `goal`, or towards it until the fastest joint has moved by `farthest`.
   void move_to(const std::array<double, library::kMostJoints>& goal, double farthest) {
     double way = 0;
@@ -74,6 +96,7 @@ struct Ginvkin : library::DhPorts {
   }
 
   library::PoseSearch search_;
+  bool stood_ = false;  // the flag was up in the last cycle
 };
 
 CHIMERA_COMPONENT(Ginvkin, "ginvkin", "Generalized inverse kinematics.", rate = 1000.0,

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The joint trajectory generator of figure 4 (1994 paper): from rest, or from the motion of a predecessor, to rest;
-// then it holds. README.md is the data sheet.
+// The joint trajectory generator of figure 4 (1994 paper): from the measured motion, or from that of a predecessor, to
+// rest; then it holds. README.md is the data sheet.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <numbers>
+#include <utility>
 
 #include "chimera/task/component.h"
 #include "library/joint_trajectory/braking.h"
@@ -17,12 +20,16 @@ namespace {
 constexpr std::size_t kMostJoints = 10;
 
 struct JointTrajectory {
+  Many<In<double[]>, 1> q{"q*", "rad", "[ndof<=10]", frame = "joint",
+                          doc = "Measured positions, for on; may be left out."};
+  Many<In<double[]>, 1> qd{"qd*", "rad/s", "[ndof<=10]", frame = "joint",
+                           doc = "Measured velocities, for on; may be left out."};
   Out<double[]> q_ref{"q_ref", "rad", "[ndof<=10]", frame = "joint", doc = "Reference positions."};
   Out<double[]> qd_ref{"qd_ref", "rad/s", "[ndof<=10]", frame = "joint", doc = "Reference velocities."};
   Out<double[]> qdd_ref{"qdd_ref", "rad/s2", "[ndof<=10]", frame = "joint", doc = "Reference accelerations."};
   InConst<std::int32_t> ndof{"ndof", "1", range(1, 10), doc = "Joints."};
   InConst<double[]> start_pose{"start_pose", "rad", "[ndof<=10]", frame = "joint",
-                               doc = "Where the first motion starts."};
+                               doc = "Where the first motion starts if q is left out."};
   InConst<double[]> goal{"goal", "rad", "[ndof<=10]", frame = "joint", doc = "Where each motion ends."};
   InConst<double> duration{"duration", "s", initial = 0.0, range(0, 3600),
                            doc = "Time from rest to rest; with limits the least time."};
@@ -34,6 +41,8 @@ struct JointTrajectory {
                                      initial = 2.0, doc = "Limit for trapezoid and jerk."};
   InConst<double[]> jerk_max{"jerk_max", "rad/s3", "[ndof<=10]", range(0, 1e9), frame = "joint", initial = 20.0,
                              doc = "Limit for jerk."};
+  InConst<bool[]> is_continuous{"is_continuous", "1", "[ndof<=10]", initial = false,
+                                doc = "The joint turns without end: the goal is reached the short way."};
   InConst<bool> is_synchronised{"is_synchronised", "1", initial = true,
                                 doc = "With limits all joints arrive with the slowest."};
 
@@ -56,25 +65,18 @@ struct JointTrajectory {
   }
   Outcome reinit() { return init(); }
 
-  // Starts at the last reference, if there is one, so that the reference does not jump. It starts at rest unless a
-  // predecessor hands over a motion.
-  void on() {
-    elapsed_ = 0;
-    for (std::size_t i = 0; i < q_ref.size(); ++i) {
-      const Motion from = beginning(i);
-      if (is_quintic_) {
-        path_[i] = {from.position, goal[i], *duration, from.velocity, from.acceleration};
-        continue;
-      }
-      const double jerk = has_jerk_ ? jerk_max[i] : std::numeric_limits<double>::infinity();
-      const library::MotionLimits limits{velocity_max[i], acceleration_max[i], jerk};
-      braking_[i] = library::Braking(from, limits);
-      limited_[i] = library::SevenSegments(braking_[i].rest(), goal[i], limits);
-    }
-    if (!is_quintic_) stretch();
-    publish();
+  void on(Cycle c) {
+    stood_ = false;
+    start(c, q_ref.is_handed_over());
   }
+  // While the configuration is illegal, the arm holds itself, so the reference waits; then it starts where the arm is.
   void cycle(Cycle c) {
+    if (c.illegal()) {
+      if (!stood_) off();
+      stood_ = true;
+      return;
+    }
+    if (std::exchange(stood_, false)) return start(c, false);
     elapsed_ += c.dt();
     publish();
   }
@@ -86,14 +88,48 @@ struct JointTrajectory {
  private:
   using Motion = library::Motion;
 
-  Motion beginning(std::size_t i) const {
-    if (std::isnan(q_ref[i])) return {start_pose[i], 0, 0};
+  /// From the reference that is handed over, else from the measured motion, else from the last reference at rest.
+  void start(Cycle c, bool goes_on) {
+    elapsed_ = 0;
+    for (std::size_t i = 0; i < q_ref.size(); ++i) {
+      const Motion from = beginning(i, goes_on);
+      const double to = end(i, from.position);
+      if (is_quintic_) {
+        path_[i] = {from.position, to, *duration, from.velocity, from.acceleration};
+        continue;
+      }
+      const double jerk = has_jerk_ ? jerk_max[i] : std::numeric_limits<double>::infinity();
+      const library::MotionLimits limits{velocity_max[i], acceleration_max[i], jerk};
+      tell_if_beyond(c, i, from, limits);
+      braking_[i] = library::Braking(from, limits);
+      limited_[i] = library::SevenSegments(braking_[i].rest(), to, limits);
+    }
+    if (!is_quintic_) stretch();
+    publish();
+  }
+  Motion beginning(std::size_t i, bool goes_on) const {
+    const bool is_measured = q.size() > 0 && std::isfinite(q[0][i]);
+    if (is_measured && !(goes_on && std::isfinite(q_ref[i])))
+      return {q[0][i], qd.size() > 0 && std::isfinite(qd[0][i]) ? qd[0][i] : 0, 0};
+    if (!std::isfinite(q_ref[i])) return {start_pose[i], 0, 0};
     Motion from{q_ref[i], 0, 0};
-    if (qd_ref.is_handed_over() && std::isfinite(qd_ref[i])) {
+    if (qd_ref.is_handed_over() && goes_on && std::isfinite(qd_ref[i])) {
       from.velocity = qd_ref[i];
       if (qdd_ref.is_handed_over() && std::isfinite(qdd_ref[i])) from.acceleration = qdd_ref[i];
     }
     return from;
+  }
+  double end(std::size_t i, double from) const {
+    return is_continuous[i] ? from + std::remainder(goal[i] - from, 2 * std::numbers::pi) : goal[i];
+  }
+  static void tell_if_beyond(Cycle c, std::size_t i, const Motion& from, const library::MotionLimits& limits) {
+    const double speed = std::abs(from.velocity), acceleration = std::abs(from.acceleration);
+    if (speed <= limits.velocity && acceleration <= limits.acceleration) return;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "joint %zu starts at %.3g rad/s, %.3g rad/s2, beyond its limits %.3g and %.3g: brakes first, may "
+                  "pass the goal", i + 1, speed, acceleration, limits.velocity, limits.acceleration);
+    c.note(text);
   }
   void stretch() {
     double longest = *duration, last_stop = 0;
@@ -123,6 +159,7 @@ struct JointTrajectory {
   library::SevenSegments limited_[kMostJoints];
   double starts_at_[kMostJoints] = {};  // s, start of that motion
   bool is_quintic_ = true, has_jerk_ = false;
+  bool stood_ = false;  // the flag was up in the last cycle
   double elapsed_ = 0;
 };
 

@@ -102,6 +102,53 @@ TEST_F(JointTrajectoryTest, AVelocityThatIsOutdatedIsNotFollowed) {
   EXPECT_EQ(rig.get<double>("qd_ref", 0), 0);
 }
 
+TEST_F(JointTrajectoryTest, StartsInTheMeasuredMotionAndKeepsItsLimits) {
+  give(0);
+  rig.set("profile", Text<16>("jerk"));
+  rig.set("q", -0.4, 0), rig.set("q", 0.2, 1), rig.set("qd", 0.6, 0), rig.set("qd", 0.0, 1);
+  ASSERT_TRUE(rig.init());
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<double>("q_ref", 0), -0.4);
+  EXPECT_EQ(rig.get<double>("q_ref", 1), 0.2);
+  double before = 0.6;
+  for (int k = 0; k < 8000; ++k) {
+    ASSERT_TRUE(rig.cycle());
+    const double qd = rig.get<double>("qd_ref", 0);
+    ASSERT_LE(std::abs(qd), 1 + 1e-9);
+    ASSERT_LE(std::abs(qd - before), 2e-3 * (1 + 1e-9));
+    before = qd;
+  }
+  EXPECT_EQ(rig.get<double>("q_ref", 0), 1.5);
+  EXPECT_TRUE(rig.notes().empty());
+}
+
+TEST_F(JointTrajectoryTest, NamesAStartBeyondItsLimits) {
+  give(0);
+  rig.set("profile", Text<16>("jerk"));
+  ASSERT_TRUE(rig.init());
+  rig.set("q_ref", 0.6, 0), rig.set("qd_ref", 0.4, 0), rig.set("qdd_ref", 5.1, 0);
+  rig.set("q_ref", 0.0, 1), rig.set("qd_ref", 0.0, 1), rig.set("qdd_ref", 0.0, 1);
+  for (const char* port : {"q_ref", "qd_ref", "qdd_ref"}) rig.inherit(port, milliseconds(2));
+  ASSERT_TRUE(rig.on());
+  ASSERT_EQ(rig.notes().size(), 1u);
+  EXPECT_EQ(rig.notes()[0], "joint 1 starts at 0.4 rad/s, 5.1 rad/s2, beyond its limits 1 and 2: brakes first, may "
+                            "pass the goal");
+}
+
+TEST_F(JointTrajectoryTest, AContinuousJointTakesTheShortWay) {
+  give(2.0);
+  rig.set("is_continuous", true, 0);
+  rig.set("start_pose", 3.1, 0);
+  rig.set("goal", -3.1, 0);
+  ASSERT_TRUE(rig.init());
+  ASSERT_TRUE(rig.on());
+  for (int i = 0; i < 2001; ++i) {
+    ASSERT_TRUE(rig.cycle());
+    ASSERT_GE(rig.get<double>("q_ref", 0), 3.1);
+  }
+  EXPECT_NEAR(rig.get<double>("q_ref", 0), 2 * M_PI - 3.1, 1e-12);
+}
+
 TEST_F(JointTrajectoryTest, RefusesADurationOfNothingAndAGoalThatIsNotFinite) {
   give(0);
   EXPECT_EQ(rig.init().text, "duration must be above 0 s");

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "chimera/task/component.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -21,7 +22,7 @@ struct Motor {
     if (fm.is_outdated()) *fm = 0;
   }
   Outcome cycle(Cycle c) {
-    if (!c.illegal() && !std::isfinite(*fd)) return fault("fd is not finite");
+    if (!c.illegal() && !std::isfinite(*fd)) return library::unfit("fd is not finite", fd);
     *fm = c.illegal() ? 0 : std::clamp(*fd, -*force_max, *force_max);
     return ok();
   }

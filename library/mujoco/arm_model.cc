@@ -72,7 +72,7 @@ double torque_limit(const mjModel* m, int joint) {
   for (int i = 0; i < m->nu; ++i) {
     if (m->actuator_trntype[i] != mjTRN_JOINT || m->actuator_trnid[2 * i] != joint) continue;
     const double gear = std::abs(m->actuator_gear[6 * i]);
-    double most = kNoTorqueLimit;
+    double most = kNoModelLimit;
     if (m->actuator_forcelimited[i]) most = gear * m->actuator_forcerange[2 * i + 1];
     const bool is_motor = m->actuator_gaintype[i] == mjGAIN_FIXED && m->actuator_biastype[i] == mjBIAS_NONE;
     if (is_motor && m->actuator_ctrllimited[i]) {
@@ -81,16 +81,30 @@ double torque_limit(const mjModel* m, int joint) {
     }
     sum += most;
   }
-  return sum > 0 ? std::min(sum, kNoTorqueLimit) : kNoTorqueLimit;
+  return sum > 0 ? std::min(sum, kNoModelLimit) : kNoModelLimit;
+}
+
+void place_joint(const mjModel* m, int joint, std::size_t i, ArmModel& arm) {
+  arm.dof[i] = m->jnt_dofadr[joint];
+  arm.position[i] = m->jnt_qposadr[joint];
 }
 
 void describe_joint(const mjModel* m, int joint, std::size_t i, ArmModel& arm) {
-  arm.dof[i] = m->jnt_dofadr[joint];
-  arm.position[i] = m->jnt_qposadr[joint];
+  place_joint(m, joint, i, arm);
   const bool limited = m->jnt_limited[joint] != 0;
-  arm.low[i] = limited ? m->jnt_range[2 * joint] : -kNoJointLimit;
-  arm.high[i] = limited ? m->jnt_range[2 * joint + 1] : kNoJointLimit;
+  arm.low[i] = limited ? m->jnt_range[2 * joint] : -kNoModelLimit;
+  arm.high[i] = limited ? m->jnt_range[2 * joint + 1] : kNoModelLimit;
+  arm.is_continuous[i] = !limited;
+  arm.speed_limit[i] = kNoModelLimit;
   arm.torque_limit[i] = torque_limit(m, joint);
+}
+
+/// True if the joint lies where the file says, to the accuracy of a file with six digits.
+bool is_in_place(const mjData* d, int joint, const JointAxis& axis) {
+  const double *at = d->xanchor + 3 * joint, *along = d->xaxis + 3 * joint;
+  const Vec3 off = Vec3{at[0], at[1], at[2]} - axis.point;
+  const Vec3 turned = Vec3{along[0], along[1], along[2]} - (1 / length(axis.direction)) * axis.direction;
+  return length(off) < 1e-6 * (1 + length(axis.point)) && length(turned) < 1e-6;
 }
 
 }  // namespace
@@ -127,6 +141,28 @@ Result<ArmModel> find_arm(const mjModel_* m, mjData_* d, const char* tip_name) {
     std::copy_n(d->xaxis + 3 * j, 3, axes[i].direction.at);
   }
   arm.chain = dh_of_axes(std::span(axes.data(), arm.ndof), tip->frame);
+  return arm;
+}
+
+Result<ArmModel> find_arm(mjModel_* m, mjData_* d, const UrdfChain& chain) {
+  stand_at_zero(m, d);
+  ArmModel arm;
+  arm.ndof = chain.chain.ndof;
+  for (std::size_t i = 0; i < arm.ndof; ++i) {
+    const int j = mj_name2id(m, mjOBJ_JOINT, chain.joints[i].c_str());
+    if (j < 0 || m->jnt_type[j] != mjJNT_HINGE || !is_in_place(d, j, chain.axes[i]))
+      return refusal("joint '%s' lies elsewhere in MuJoCo: take <compiler> out of the file", chain.joints[i].c_str());
+    place_joint(m, j, i, arm);
+    m->jnt_limited[j] = chain.is_continuous[i] ? 0 : 1;
+    m->jnt_range[2 * j] = chain.low[i];
+    m->jnt_range[2 * j + 1] = chain.high[i];
+  }
+  arm.low = chain.low;
+  arm.high = chain.high;
+  arm.speed_limit = chain.speed;
+  arm.torque_limit = chain.effort;
+  arm.is_continuous = chain.is_continuous;
+  arm.chain = chain.chain;
   return arm;
 }
 

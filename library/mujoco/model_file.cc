@@ -9,6 +9,8 @@
 #include <iterator>
 #include <memory>
 
+#include "chimera/base/hosted/classic_locale.h"
+#include "library/mujoco/mujoco_guard.h"
 #include "library/mujoco/urdf_meshes.h"
 
 namespace chimera::library {
@@ -45,10 +47,21 @@ std::string one_line(const char* text) {
 }
 
 mjModel* load(const char* path, const mjVFS* files, std::string& why) {
-  char said[1000] = "";
-  mjModel* model = mj_loadXML(path, files, said, sizeof said);
-  why = one_line(said);
-  return model;
+  const ClassicLocale decimal_point;
+  struct Call {
+    const char* path;
+    const mjVFS* files;
+    mjModel* model;
+    char said[1000];
+  } call{path, files, nullptr, ""};
+  const bool has_returned = guarded_setup(
+      [](void* with) {
+        Call& c = *static_cast<Call*>(with);
+        c.model = mj_loadXML(c.path, c.files, c.said, sizeof c.said);
+      },
+      &call);
+  why = one_line(has_returned ? call.said : mujoco_error());
+  return has_returned ? call.model : nullptr;
 }
 
 mjModel* load_with(const UrdfMeshes& urdf, std::string& why) {

@@ -35,14 +35,15 @@ int bad_numbers(const mjData* state) noexcept {
          state->warning[mjWARN_BADQACC].number + state->warning[mjWARN_BADCTRL].number;
 }
 
-bool returns(void (*part)(const mjModel*, mjData*), const mjModel* model, mjData* state) noexcept {
+template <class Part>
+bool returns(Part part) noexcept {
   std::jmp_buf here;
   landing.place = &here;
   if (setjmp(here) != 0) {
     landing.place = nullptr;
     return false;
   }
-  part(model, state);
+  part();
   landing.place = nullptr;
   return true;
 }
@@ -58,7 +59,12 @@ bool guarded(void (*part)(const mjModel*, mjData*), const mjModel* model, mjData
   landing.text[0] = '\0';
   // A reset clears the counts and then adds its own, so each warning shows if the counts start at 0.
   for (int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC, mjWARN_BADCTRL}) state->warning[kind].number = 0;
-  return returns(part, model, state) && bad_numbers(state) == 0;
+  return returns([=] { part(model, state); }) && bad_numbers(state) == 0;
+}
+
+bool guarded_setup(void (*part)(void*), void* with) noexcept {
+  landing.text[0] = '\0';
+  return returns([=] { part(with); });
 }
 
 const char* mujoco_error() noexcept { return landing.text; }

@@ -14,7 +14,10 @@ void install_mujoco_handlers() noexcept;
 /// the state that is NaN or too large; it has then reset the state. Context: cycle; wait-free.
 bool guarded(void (*part)(const mjModel*, mjData*), const mjModel* model, mjData* state) noexcept;
 
-/// Text of the last error of guarded() in this thread; empty without one.
+/// Calls `part(with)`. Returns false if MuJoCo raised an error; what `part` had allocated is then lost. Context: setup.
+bool guarded_setup(void (*part)(void*), void* with) noexcept;
+
+/// Text of the last error of guarded() and guarded_setup() in this thread; empty without one.
 const char* mujoco_error() noexcept;
 
 }  // namespace chimera::library

@@ -24,6 +24,7 @@ struct RobotBody : ArmBody<SimulatedArm> {
   OutConst<double[]> q_max{"q_max", "rad", "[ndof<=10]", frame = "joint", doc = "Upper joint limits; 1e6 for none."};
   OutConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", frame = "joint",
                              doc = "Largest torque of the drives; 1e6 without a limit."};
+  OutConst<bool[]> is_continuous{"is_continuous", "1", "[ndof<=10]", doc = "The joint turns without end."};
 
  protected:
   /// For init: `load` reads the arm and returns a Result<void>. Throws its error, or that of place().
@@ -64,13 +65,14 @@ struct RobotBody : ArmBody<SimulatedArm> {
     std::copy_n(arm.low.begin(), arm.ndof, q_min.begin());
     std::copy_n(arm.high.begin(), arm.ndof, q_max.begin());
     std::copy_n(arm.torque_limit.begin(), arm.ndof, tau_max.begin());
+    std::copy_n(arm.is_continuous.begin(), arm.ndof, is_continuous.begin());
   }
 };
 
 /// An arm from a file of the user.
 struct RobotFace : RobotBody {
   InConst<Text<64>> tip{"tip", "1", initial = "",
-                        doc = "Body or site that is the tool; empty: the link behind the most joints."};
+                        doc = "Link, body or site that is the tool; empty: behind the most joints."};
   Resource model{"model", shared, doc = "MJCF or URDF file."};
 
   void init(Cycle c) {

@@ -8,10 +8,12 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <numbers>
+#include <optional>
 
 #include "chimera/base/hosted/ordinary_file.h"
 #include "library/mujoco/model_file.h"
-#include "library/mujoco/model_numbers.h"
+#include "library/model_text/model_numbers.h"
 #include "library/mujoco/mujoco_guard.h"
 #include "library/mujoco/refusal.h"
 
@@ -25,6 +27,21 @@ constexpr double kHoldRate = 20;  // 1/s, damping of the motion while the config
 
 bool within(double value, double low, double high) { return value >= low && value <= high; }
 
+const char* has_blown_up() {
+  return mujoco_error()[0] != '\0' ? mujoco_error() : "the simulated arm blew up: its state is not a number";
+}
+
+/// Judges the text of the file, and reads the arm if it is a URDF file: some texts would end the process in MuJoCo.
+Result<void> read_before_mujoco(const char* path, const char* tip, std::optional<UrdfChain>& urdf) {
+  constexpr std::size_t kHead = std::size_t{16} << 20;  // as check_model_numbers()
+  const Result<std::string> head = read_ordinary(path, kHead);
+  if (!head || !is_urdf(*head)) return check_model_numbers(path);
+  Result<UrdfChain> chain = read_urdf(path, tip);
+  if (!chain) return chain.error();
+  urdf = *chain;
+  return {};
+}
+
 }  // namespace
 
 void SimulatedArm::ModelRelease::operator()(mjModel_* model) const { mj_deleteModel(model); }
@@ -37,8 +54,9 @@ Result<void> SimulatedArm::load(const char* path, const char* tip, const mjVFS_*
   if (files == nullptr && std::ifstream(path).peek() == std::ifstream::traits_type::eof()) {
     return refusal("%s: cannot be read, or there is nothing in it", path);
   }
+  std::optional<UrdfChain> urdf;
   if (files == nullptr) {
-    if (Result<void> sound = check_model_numbers(path); !sound) return sound;
+    if (Result<void> read = read_before_mujoco(path, tip, urdf); !read) return read;
   }
   std::string why;
   state_.reset();
@@ -48,20 +66,29 @@ Result<void> SimulatedArm::load(const char* path, const char* tip, const mjVFS_*
   mjModel* m = model_.get();
   m->opt.disableflags |= mjDSBL_ACTUATION;
   longest_sub_step_ = m->opt.timestep > 0 ? std::min(m->opt.timestep, kLongestSubStep) : kLongestSubStep;
-  state_.reset(mj_makeData(m));
-  const Result<ArmModel> arm = find_arm(m, state_.get(), tip);
+  if (!make_state()) return refusal("%s: %.300s", path, mujoco_error());
+  const Result<ArmModel> arm = urdf ? find_arm(m, state_.get(), *urdf) : find_arm(m, state_.get(), tip);
   if (!arm) return refusal("%s: %s", path, arm.error().message.c_str());
+  if (urdf && !urdf->note.empty()) note_ = urdf->note + (note_.empty() ? "" : "; ") + note_;
   arm_ = *arm;
   const auto numbers = static_cast<std::size_t>(m->nv);
   wanted_ = std::make_unique<double[]>(numbers);
   inertial_ = std::make_unique<double[]>(numbers);
   saved_ = std::make_unique<double[]>(numbers + static_cast<std::size_t>(m->nq));
-  mj_forward(m, state_.get());
+  if (!guarded(mj_forward, m, state_.get())) return refusal("%s: %s", path, has_blown_up());
   for (std::size_t i = 0; i < arm_.ndof; ++i) {
     hold_damping_[i] = kHoldRate * state_->qM[m->dof_Madr[arm_.dof[i]]];
   }
   look();
   return {};
+}
+
+bool SimulatedArm::make_state() {
+  const auto make = [](void* with) {
+    SimulatedArm& arm = *static_cast<SimulatedArm*>(with);
+    arm.state_.reset(mj_makeData(arm.model_.get()));
+  };
+  return guarded_setup(make, this) && state_ != nullptr;
 }
 
 void SimulatedArm::limit_torque(std::span<const double> limit) noexcept {
@@ -84,7 +111,7 @@ Result<void> SimulatedArm::place(std::span<const double> q) {
   }
   mj_resetData(model_.get(), state_.get());
   for (std::size_t i = 0; i < arm_.ndof; ++i) state_->qpos[arm_.position[i]] = q[i];
-  mj_forward(model_.get(), state_.get());
+  if (!guarded(mj_forward, model_.get(), state_.get())) return refusal("at start_pose: %s", has_blown_up());
   look();
   return {};
 }
@@ -140,13 +167,16 @@ double SimulatedArm::acceleration(const Command& command, std::size_t i) const {
   const double w = drives_.bandwidth, most = drives_.acceleration_limit;
   double v = command.values[i];
   if (command.interface == ArmInterface::kPosition) {
-    const double error = std::clamp(v, arm_.low[i], arm_.high[i]) - q_[i];
-    const double fastest = std::min(drives_.speed_limit, std::sqrt(most * std::abs(error)));
+    double error = std::clamp(v, arm_.low[i], arm_.high[i]) - q_[i];
+    if (arm_.is_continuous[i]) error = std::remainder(error, 2 * std::numbers::pi);
+    const double top = std::min(drives_.speed_limit, arm_.speed_limit[i]);
+    const double fastest = std::min(top, std::sqrt(most * std::abs(error)));
     v = std::clamp(0.5 * w * error, -fastest, fastest);
   } else {
     const auto fastest = [&](double way) { return std::min(0.25 * w * way, std::sqrt(most * way)); };
     const double down = std::max(q_[i] - arm_.low[i], 0.0), up = std::max(arm_.high[i] - q_[i], 0.0);
-    v = std::clamp(v, -fastest(down), fastest(up));
+    const double top = arm_.speed_limit[i];
+    v = std::clamp(v, -std::min(fastest(down), top), std::min(fastest(up), top));
   }
   return std::clamp(2 * w * (v - qd_[i]), -most, most);
 }
@@ -187,8 +217,7 @@ bool SimulatedArm::advance(double dt, const Command& command) {
     if (sub_step(command)) continue;
     restore();
     look();
-    return refuse(mujoco_error()[0] != '\0' ? mujoco_error()
-                                            : "the simulated arm blew up: its state is not a number");
+    return refuse(has_blown_up());
   }
   look();
   return true;

@@ -23,7 +23,8 @@ enum class ArmInterface { kPosition, kVelocity, kTorque };
 /// The drives behind the position and velocity interfaces. They use the dynamics of the arm: torque = M(q) a + c(q, qd)
 /// + g(q) with a = 2 w (v - qd) within the acceleration limit. v is the velocity command, or w/2 (q_r - q) within the
 /// speed limit and within the speed that can be braked on the way. A small joint error decays as in a critically damped
-/// spring of angular frequency w, and a large one without overshoot if the torque suffices.
+/// spring of angular frequency w, and a large one without overshoot if the torque suffices. The error of a continuous
+/// joint is the short way. The speed limits of the model count, too.
 struct ArmDrives {
   double bandwidth = 100;  ///< w, rad/s, 1 to 200
   double speed_limit = 3;  ///< rad/s, of the position interface
@@ -95,6 +96,7 @@ class SimulatedArm {
     const double* values;
   };
 
+  bool make_state();
   bool advance(double dt, const Command& command);
   bool sub_step(const Command& command);
   void drive(const Command& command);

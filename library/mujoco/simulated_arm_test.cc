@@ -54,7 +54,7 @@ TEST_F(SimulatedArmTest, TheArmIsTheHingesToTheTip) {
   EXPECT_EQ(arm.joints(), 2u);
   EXPECT_EQ(arm.arm().low[0], -2);
   EXPECT_EQ(arm.arm().high[0], 2);
-  EXPECT_EQ(arm.arm().high[1], kNoJointLimit);
+  EXPECT_EQ(arm.arm().high[1], kNoModelLimit);
   EXPECT_EQ(arm.arm().torque_limit[0], 100);
   EXPECT_EQ(arm.arm().torque_limit[1], 40);
   const Numbers q{0.3, -0.8};

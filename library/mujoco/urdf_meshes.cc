@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "library/mujoco/mesh_file.h"
 #include "library/mujoco/mesh_folders.h"
@@ -18,26 +17,6 @@ constexpr std::size_t kMostMeshes = 500;
 constexpr std::size_t kShownName = 32;
 constexpr std::string_view kWeightless =
     R"(<inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>)";
-
-std::string_view value_of(const XmlTag& tag, std::string_view attribute) {
-  for (const auto& [name, value] : tag.attributes)
-    if (name == attribute) return value;
-  return {};
-}
-
-/// Replaces the five predefined XML entities.
-std::string plain(std::string_view value) {
-  constexpr std::pair<std::string_view, char> kEntities[] = {
-      {"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}};
-  std::string text;
-  while (!value.empty()) {
-    const auto* entity = std::ranges::find_if(kEntities, [&](const auto& e) { return value.starts_with(e.first); });
-    const bool is_entity = entity != std::end(kEntities);
-    text += is_entity ? entity->second : value.front();
-    value.remove_prefix(is_entity ? entity->first.size() : 1);
-  }
-  return text;
-}
 
 std::string short_name(const std::string& called) {
   const std::string bare = std::filesystem::path(called).filename().string();

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "library/mujoco/xml_tags.h"
+#include "library/model_text/xml_tags.h"
 
 namespace chimera::library {
 

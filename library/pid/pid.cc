@@ -14,8 +14,8 @@ struct Pid {
   In<double[]> reference{"reference", "U", "[n...<=64]", doc = "Wanted value."};
   In<double[]> measured{"measured", "U", "[n...<=64]", doc = "Measured value."};
   In<double[]> kp{"kp", "X/U", "[n...<=64]", doc = "Gain of the error."};
-  In<double[]> ki{"ki", "X/(U.s)", "[n...<=64]", doc = "Gain of its integral."};
-  In<double[]> kd{"kd", "X.s/U", "[n...<=64]", doc = "Gain of its rate of change."};
+  In<double[]> ki{"ki", "X/(U.s)", "[n...<=64]", initial = 0.0, doc = "Gain of its integral."};
+  In<double[]> kd{"kd", "X.s/U", "[n...<=64]", initial = 0.0, doc = "Gain of its rate of change."};
   InConst<double[]> low{"low", "X", "[n...<=64]", doc = "Least output."};
   InConst<double[]> high{"high", "X", "[n...<=64]", at_least = "low", doc = "Greatest output."};
   InConst<double> filter_time{"filter_time", "s", initial = 0.0, range(0, 86400),

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The PID joint position controller of figure 4 (1994 paper): one independent axis for each joint.
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "chimera/task/component.h"
 #include "library/pid/pid_axis.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -24,6 +27,8 @@ struct PidJoint {
   InConst<std::int32_t> ndof{"ndof", "1", range(1, 10), doc = "Joints."};
   InConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", range(0, 200), frame = "joint",
                             doc = "Largest torque of the drives."};
+  InConst<bool[]> is_continuous{"is_continuous", "1", "[ndof<=10]", initial = false,
+                                doc = "The joint turns without end: the error is the short way."};
   InConst<double> filter_time{"filter_time", "s", initial = 2e-3, range(0, 1),
                               doc = "Time constant of the velocity filter; 0 for none."};
 
@@ -38,13 +43,8 @@ struct PidJoint {
   // Bumpless: continues from the torque that is handed over. An outdated torque belongs to another state of the arm.
   void on() {
     for (double& torque : tau)
-      if (tau.is_outdated()) torque = 0;
+      if (tau.is_outdated() || std::isnan(torque)) torque = 0;
     begin();
-  }
-  // Continues from the last torque.
-  void begin() {
-    for (std::size_t i = 0; i < tau.size(); ++i)
-      axis_[i].start(gains(i), q_ref[i] - q[i], qd_ref[i] - qd[i], std::isnan(tau[i]) ? 0 : tau[i]);
   }
   Outcome cycle(Cycle c) {
     // While the configuration is illegal, the robot holds itself, so the errors must not be integrated.
@@ -52,21 +52,48 @@ struct PidJoint {
       begin();
       return ok();
     }
+    const Outcome inputs = judge_all();
+    if (!library::is_ok(inputs)) return inputs;
+    if (!is_started_) begin();
+    double torque[kMostJoints];
     for (std::size_t i = 0; i < tau.size(); ++i) {
-      const double torque =
-          axis_[i].step(gains(i), q_ref[i] - q[i], qd_ref[i] - qd[i], c.dt(), *filter_time, -tau_max[i], tau_max[i]);
-      if (std::isnan(torque)) return fault("an input is not a number");
-      tau[i] = torque;
+      torque[i] = axis_[i].step(gains(i), error_of(i), qd_ref[i] - qd[i], c.dt(), *filter_time, -tau_max[i],
+                                tau_max[i]);
     }
+    is_started_ = library::all_finite(std::span(torque, tau.size()));
+    if (!is_started_) return fault("the torque is not finite: the gains or the inputs are too large");
+    std::copy_n(torque, tau.size(), tau.begin());
     return ok();
   }
+  bool error() { return true; }
   // There is no off(): the last torque holds for a successor. A robot without a controller is an illegal configuration,
   // in which the robot holds itself, so stopping needs no zero here.
 
  private:
+  // Continues from the last torque. Waits for an input that was never written or is not finite.
+  void begin() {
+    is_started_ = library::is_ok(judge_all());
+    for (std::size_t i = 0; is_started_ && i < tau.size(); ++i)
+      axis_[i].start(gains(i), error_of(i), qd_ref[i] - qd[i], tau[i]);
+  }
+  Outcome judge_all() const {
+    Outcome found = library::judge(q, "q");
+    if (library::is_ok(found)) found = library::judge(qd, "qd");
+    if (library::is_ok(found)) found = library::judge(q_ref, "q_ref");
+    if (library::is_ok(found)) found = library::judge(qd_ref, "qd_ref");
+    if (library::is_ok(found)) found = library::judge(kp, "kp");
+    if (library::is_ok(found)) found = library::judge(ki, "ki");
+    if (library::is_ok(found)) found = library::judge(kd, "kd");
+    return found;
+  }
+  double error_of(std::size_t i) const {
+    const double e = q_ref[i] - q[i];
+    return is_continuous[i] ? e - 2 * math::kPi * math::floor(e / (2 * math::kPi) + 0.5) : e;
+  }
   library::PidGains gains(std::size_t i) const { return {kp[i], ki[i], kd[i]}; }
 
   library::PidAxis axis_[kMostJoints];
+  bool is_started_ = false;
 };
 
 CHIMERA_COMPONENT(PidJoint, "pid_joint", "Independent joint PID with anti-windup and filtered derivative.",

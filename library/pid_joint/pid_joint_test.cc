@@ -92,7 +92,35 @@ TEST_F(PidJointTest, DoesNotIntegrateWhileTheConfigurationIsIllegal) {
 TEST_F(PidJointTest, InputThatIsNotANumberIsAFault) {
   start();
   rig.set("q", std::nan(""), 1);
-  EXPECT_EQ(rig.cycle().text, "an input is not a number");
+  EXPECT_EQ(rig.cycle().text, "q[1] is not a finite number");
+  EXPECT_TRUE(rig.error());
+  rig.set("q", 0.1, 1);
+  ASSERT_TRUE(rig.cycle()) << "the next good input continues";
+  EXPECT_LT(rig.get<double>("tau", 1), 0);
+}
+
+TEST_F(PidJointTest, AwaitsAnInputThatWasNeverWritten) {
+  Rig fresh("pid_joint");
+  fresh.set("ndof", std::int32_t{1});
+  fresh.set("tau_max", 50.0);
+  for (const char* port : {"q_ref", "qd_ref", "q", "kp", "ki", "kd"}) fresh.set(port, 1.0);
+  ASSERT_TRUE(fresh.init());
+  ASSERT_TRUE(fresh.on());
+  EXPECT_EQ(fresh.cycle().status, CHIMERA_ABORTED);
+  fresh.set("qd", 1.0);
+  ASSERT_TRUE(fresh.cycle());
+  EXPECT_NEAR(fresh.get<double>("tau"), 0, 1e-2);
+}
+
+TEST_F(PidJointTest, AContinuousJointTurnsTheShortWay) {
+  give();
+  rig.set("is_continuous", true, 0);
+  ASSERT_TRUE(rig.init());
+  ASSERT_TRUE(rig.on());
+  rig.set("q", 3.1, 0);
+  rig.set("q_ref", -3.1, 0);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_NEAR(rig.get<double>("tau", 0), 100 * (2 * M_PI - 6.2), 1e-2);
 }
 
 TEST_F(PidJointTest, RefusesLimitsBeyondTheRangeOfTau) {

@@ -17,21 +17,38 @@ struct Pinvkin {
   // Bumpless: continues from a command that is handed over, because the drives lag behind it; else starts at the
   // measured positions.
   Outcome on() {
-    const bool goes_on = q_ref.is_handed_over() && library::all_finite(q_ref);
-    for (std::size_t i = 0; !goes_on && i < 6; ++i) {
-      if (!std::isfinite(q[i])) return fault("q is not finite: no solution is near");
-      q_ref[i] = q[i];
-    }
-    return ok();
+    stood_ = false;
+    return start(q_ref.is_handed_over());
   }
+  // While the configuration is illegal, the arm holds itself, so q_ref waits; then it starts where the arm is.
   Outcome cycle(Cycle c) {
-    if (c.illegal()) return ok();
-    if (!library::DhPorts::is_pose(*xr)) return fault("xr is not finite or no orientation");
+    if (c.illegal()) {
+      stood_ = true;
+      return ok();
+    }
+    if (stood_) {
+      const Outcome started = start(false);
+      stood_ = !library::is_ok(started);
+      return started;
+    }
+    if (!library::DhPorts::is_pose(*xr)) return library::unfit("xr is not finite or no orientation", xr);
     library::Puma560::Vector near;
     std::copy_n(q_ref.begin(), 6, near.begin());
     *is_reachable = library::Puma560::nearest(library::frame_of(*xr), near, std::span<double, 6>(q_ref.begin(), 6));
     return ok();
   }
+  bool error() { return true; }
+
+ private:
+  Outcome start(bool goes_on) {
+    if (goes_on && library::all_finite(q_ref)) return ok();
+    for (std::size_t i = 0; i < 6; ++i)
+      if (!std::isfinite(q[i])) return fault("q is not finite: no solution is near");
+    std::ranges::copy(q, q_ref.begin());
+    return ok();
+  }
+
+  bool stood_ = false;  // the flag was up in the last cycle
 };
 
 CHIMERA_COMPONENT(Pinvkin, "pinvkin", "Puma inverse kinematics.", rate = 1000.0,

@@ -28,7 +28,7 @@ struct PoseMonitor {
     has_before_ = false;
   }
   Outcome cycle(Cycle c) {
-    if (!target.valid() || !xm.valid()) return fault("target or xm was never written");
+    if (!target.valid() || !xm.valid()) return aborted();
     elapsed_ += c.dt();
     const Vec3 goal = place(*target), tool = place(*xm);
     *distance = library::length(goal - tool);
@@ -48,6 +48,7 @@ struct PoseMonitor {
     has_before_ = true;
     return ok();
   }
+  bool error() { return true; }
 
  private:
   using Vec3 = library::Vec3;

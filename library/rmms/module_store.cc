@@ -3,9 +3,10 @@
 #include "chimera/base/hosted/ordinary_file.h"
 #include "library/rmms/module_store.h"
 
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
+#include <locale>
 #include <numbers>
 #include <sstream>
 
@@ -38,6 +39,7 @@ const char* judge(const RmmsModule& m) {
 /// Returns nullptr, or the error of the line.
 const char* read_module(const std::string& line, RmmsModule& m) {
   std::istringstream words(line);
+  words.imbue(std::locale::classic());
   double alpha = 0, theta = 0, low = 0, high = 0;
   std::string more;
   if (!(words >> m.name >> m.link.a >> alpha >> m.link.d >> theta >> m.mass >> low >> high >> m.torque) ||
@@ -54,8 +56,7 @@ const char* read_module(const std::string& line, RmmsModule& m) {
 /// Writes all digits of a double.
 std::string digits(double x) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.17g", x);
-  return text;
+  return {text, std::to_chars(text, text + sizeof text, x, std::chars_format::general, 17).ptr};
 }
 
 std::string three(double x, double y, double z) { return digits(x) + ' ' + digits(y) + ' ' + digits(z); }

@@ -28,7 +28,7 @@ struct SerialFrame : FrameDevice {
   Outcome cycle(Cycle c) {
     if (lost() != nullptr) return fault(lost(), port_.error());
     const bool is_open = receive(c.now());
-    const bool is_idle = is_lost(c, is_open) || c.illegal();
+    const bool is_idle = must_idle(c, is_open);
     if (is_open && !send(is_idle)) is_lost(c, false);
     tell_idled(c, is_open && is_idle_frame_ && sent_ == filled_);
     return ok();
@@ -68,7 +68,7 @@ struct SerialFrame : FrameDevice {
     if (got < 0) return false;
     reader_.taken(static_cast<std::size_t>(got));
     const std::int64_t wrong_before = reader_.wrong();
-    reader_.frames([this, now](std::span<const std::uint8_t> frame) { take_state(frame, now); });
+    reader_.frames([this, now](std::span<const std::uint8_t> frame) { (void)take_state(frame, now); });
     *wrong += reader_.wrong() - wrong_before;
     *noise = reader_.noise();
     return true;

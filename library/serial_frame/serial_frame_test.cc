@@ -125,6 +125,7 @@ TEST_F(SerialFrameTest, NoiseCutFramesAndWrongChecksumsAreCountedAndPassedOver) 
 TEST_F(SerialFrameTest, NeverSendsANonFiniteNumberAndClampsToTheLimit) {
   rig.set("limit", 10.0);
   start(1, 1);
+  say(frame({0}));
   rig.set("command", std::nan(""));
   ASSERT_TRUE(rig.cycle());
   rig.set("command", std::numeric_limits<double>::infinity());
@@ -156,6 +157,7 @@ TEST_F(SerialFrameTest, WholeNumbersOfAResolution) {
 TEST_F(SerialFrameTest, IdleIsSentAtOffAndWhileTheFlagIsUp) {
   rig.set("idle", 0.25);
   start(1, 1);
+  say(frame({1}));
   rig.set("command", 5.0);
   EXPECT_FALSE(rig.get<bool>("idled"));
   rig.illegal(true);
@@ -239,6 +241,27 @@ TEST_F(SerialFrameTest, ASilentDeviceGetsTheIdleCommandThenIsAFaultAndComesBack)
   ASSERT_TRUE(rig.cycle());
   EXPECT_TRUE(connected());
   EXPECT_EQ(state(0), 2.0);
+}
+
+TEST_F(SerialFrameTest, AMuteDeviceGetsNothingButIdleHoweverOftenItsTaskIsRestarted) {
+  rig.set("idle", 0.25);
+  start(1, 1);
+  rig.set("command", 5.0);
+  for (int restart = 0; restart < 5; ++restart) {
+    say({1, 2, 3});  // noise is no answer
+    for (int i = 0; i < 11; ++i) ASSERT_TRUE(rig.cycle(milliseconds(10)));
+    EXPECT_EQ(heard(11 * 8).size(), 88u);
+    const Bytes all = heard();
+    for (std::size_t at = 0; at < all.size(); at += 8)
+      EXPECT_EQ(Bytes(all.begin() + static_cast<std::ptrdiff_t>(at), all.begin() + static_cast<std::ptrdiff_t>(at + 8)),
+                frame({0.25}));
+    EXPECT_FALSE(rig.cycle());
+    ASSERT_TRUE(rig.clear());
+    ASSERT_TRUE(rig.on());
+  }
+  say(frame({1}));
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_EQ(heard(8), frame({5}));
 }
 
 TEST_F(SerialFrameTest, ADeviceThatIsUnpluggedIsAFaultAndComesBackByClear) {

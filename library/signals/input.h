@@ -41,6 +41,23 @@ Outcome judge(const P& port, const char* name) noexcept {
   return ok();
 }
 
+/// The outcome of a cycle with an input that it cannot use: aborted() if one of `ports` was never written, otherwise a
+/// fault. Unless ok() is returned, nothing is published. Context: cycle; wait-free.
+template <class... P>
+Outcome unfit(const char* text, const P&... ports) noexcept {
+  return (ports.valid() && ...) ? fault(text) : aborted();
+}
+
+/// The outcome of `on` from that of a first cycle. awaited(): an input that was never written may come later.
+/// required(): that is a fault with `text`, because the outputs have no initial value. Context: cycle boundary;
+/// wait-free.
+inline Outcome awaited(const Outcome& first) noexcept {
+  return first.status() == CHIMERA_ABORTED ? ok() : first;
+}
+inline Outcome required(const Outcome& first, const char* text) noexcept {
+  return first.status() == CHIMERA_ABORTED ? fault(text) : first;
+}
+
 inline bool is_ok(const Outcome& outcome) noexcept { return outcome.status() == CHIMERA_OK; }
 
 }  // namespace chimera::library

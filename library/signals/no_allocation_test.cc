@@ -72,7 +72,8 @@ const Given kComponents[] = {
      }},
     {"csv_player",
      [](Rig& rig) {
-       rig.instances("out", 1), rig.resource("file", "csv_player/csv_player_example.csv");
+       rig.instances("out", 1), rig.joined("out", "signal", "1", 0);
+       rig.resource("file", "csv_player/csv_player_example.csv");
        rig.set("is_repeated", true), rig.set("is_interpolated", true);
      }},
     {"watchdog",

@@ -2,6 +2,7 @@
 // Detects when the arm comes near a singular pose: the time to change from figure 8 of the 1994 paper to figure 9.
 #include "chimera/task/component.h"
 #include "library/kinematics/singular_values.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -32,7 +33,7 @@ struct SingularityMonitor {
   Outcome on(Cycle c) {
     *is_near = true;
     has_asked_ = false;
-    return cycle(c);
+    return library::awaited(cycle(c));
   }
   Outcome cycle(Cycle c) {
     library::Jacobian jacobian;
@@ -43,13 +44,14 @@ struct SingularityMonitor {
       }
     }
     const library::SingularValues values(jacobian, jv.columns(), *length);
-    if (!values.are_finite()) return fault("the Jacobian is not finite, or too large");
+    if (!values.are_finite()) return library::unfit("the Jacobian is not finite, or too large", jv, jw);
     *singular_value = values.least();
     *isotropy = values.greatest() > 0 ? values.least() / values.greatest() : 0;
     *is_near = values.least() < (*is_near ? *clear_of : *near);
     ask(c);
     return ok();
   }
+  bool error() { return true; }
 
  private:
   // Requests once for each approach, and once after dwell without is_near. Two requests are at least dwell apart.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "chimera/task/component.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -14,13 +15,14 @@ struct SplitPm {
   Out<double> fde{"fde", "N", doc = "Wanted engine force."};
   Out<double> fdw{"fdw", "N", doc = "Wanted brake force."};
 
-  Outcome on() { return cycle(); }
+  Outcome on() { return library::required(cycle(), "fd is not finite"); }
   Outcome cycle() {
-    if (!std::isfinite(*fd)) return fault("fd is not finite");
+    if (!std::isfinite(*fd)) return library::unfit("fd is not finite", fd);
     *fde = std::max(0.0, *fd);
     *fdw = std::max(0.0, -*fd);
     return ok();
   }
+  bool error() { return true; }
 };
 
 CHIMERA_COMPONENT(SplitPm, "split_pm", "Splits a force into engine and brake force.", rate = 50.0,

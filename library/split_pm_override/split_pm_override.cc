@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "chimera/task/component.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -16,10 +17,10 @@ struct SplitPmOverride {
   Out<double> fde{"fde", "N", doc = "Wanted engine force."};
   Out<double> fdw{"fdw", "N", doc = "Wanted brake force."};
 
-  Outcome on() { return cycle(); }
+  Outcome on() { return library::required(cycle(), "fd, fra or frb is not finite"); }
   Outcome cycle() {
     if (!std::isfinite(*fd) || !std::isfinite(*fra) || !std::isfinite(*frb))
-      return fault("fd, fra or frb is not finite");
+      return library::unfit("fd, fra or frb is not finite", fd, fra, frb);
     if (*fra != 0 || *frb != 0) {
       *fde = *fra;
       *fdw = *frb;
@@ -29,6 +30,7 @@ struct SplitPmOverride {
     *fdw = std::max(0.0, -*fd);
     return ok();
   }
+  bool error() { return true; }
 };
 
 CHIMERA_COMPONENT(SplitPmOverride, "split_pm_override",

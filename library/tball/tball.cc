@@ -16,7 +16,7 @@ namespace {
 constexpr double kLongestStep = 0.1;  // s; a longer step moves the reference only by this time
 
 struct TrackBall {
-  Many<In<Pose>, 1> xm{"xm*", "1", frame = "base", doc = "Measured tool pose; may be left out."};
+  Many<In<Pose>, 1> xm{"xm*", "1", frame = "base", doc = "Measured tool pose, for on; may be left out."};
   Out<Pose> xd{"xd", frame = "base", initial = Pose{{0, 0, 0}, {1, 0, 0, 0}}, doc = "Cartesian reference."};
   Out<double[6]> motion{"motion", "U", initial = 0.0,
                         doc = "Deflection times scale: along and about x y z, or of six joints."};
@@ -45,10 +45,11 @@ struct TrackBall {
     reinit();
     source_.start(c.now());
     rest();
+    stood_ = false;
     if (xd.is_handed_over() && is_sound(*xd)) return ok();  // bumpless: the reference continues
-    if (xm.size() == 0 || !xm[0].valid()) return ok();
-    if (!is_sound(*xm[0])) return fault("xm is not finite or no orientation: xd cannot start there");
-    *xd = *xm[0];
+    if (xm.size() > 0 && xm[0].valid() && !is_sound(*xm[0]))
+      return fault("xm is not finite or no orientation: xd cannot start there");
+    begin();
     return ok();
   }
   Outcome cycle(Cycle c) {
@@ -62,6 +63,8 @@ struct TrackBall {
       motion[i] = scale[i] * deflection[i];
     }
     *buttons = is_gone_ ? 0 : ball_.buttons();
+    if (!c.illegal() && stood_) begin();  // the arm held itself while the flag was up
+    stood_ = c.illegal();
     move(deflection, c.dt() < kLongestStep ? c.dt() : kLongestStep);
     return ok();
   }
@@ -76,6 +79,10 @@ struct TrackBall {
   void kill() { source_.close(); }
 
  private:
+  /// At the tool, if it is measured.
+  void begin() {
+    if (xm.size() > 0 && xm[0].valid() && is_sound(*xm[0])) *xd = *xm[0];
+  }
   void rest() {
     for (double& m : motion) m = 0;
     *buttons = 0;
@@ -117,6 +124,7 @@ struct TrackBall {
   Ball ball_;
   LostSentence lost_;
   bool is_gone_ = false;
+  bool stood_ = false;  // the flag was up in the last cycle
 };
 
 CHIMERA_COMPONENT(TrackBall, "tball", "A ball with six degrees of freedom moves a reference.", rate = 100.0,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Integrates each element of a signal over time (1994 paper, figure 9: joint speeds to joint positions).
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include "chimera/task/component.h"
 #include "library/signals/input.h"
@@ -17,21 +17,27 @@ struct TimeIntegrator {
 
   // Bumpless: continues from an integral that is handed over.
   Outcome on() {
+    stood_ = false;
     if (integral.is_handed_over() && library::all_finite(integral)) return ok();
-    for (std::size_t i = 0; i < integral.size(); ++i) {
-      if (!std::isfinite(start[i])) return fault("start is not finite");
-    }
+    if (!library::all_finite(start)) return fault("start is not finite");
     std::ranges::copy(start, integral.begin());
     return ok();
   }
+  // While the configuration is illegal, the machine holds itself, so the integral waits; then it begins at `start`.
   Outcome cycle(Cycle c) {
+    stood_ = stood_ || c.illegal();
     if (c.illegal()) return ok();
-    for (std::size_t i = 0; i < integral.size(); ++i) {
-      if (!std::isfinite(rate_of_change[i])) return fault("what is integrated is not finite");
-    }
+    Outcome inputs = library::judge(rate_of_change, "rate_of_change");
+    if (library::is_ok(inputs) && stood_) inputs = library::judge(start, "start");
+    if (!library::is_ok(inputs)) return inputs;
+    if (std::exchange(stood_, false)) std::ranges::copy(start, integral.begin());
     for (std::size_t i = 0; i < integral.size(); ++i) integral[i] += rate_of_change[i] * c.dt();
     return ok();
   }
+  bool error() { return true; }
+
+ private:
+  bool stood_ = false;  // the flag was up in the last cycle
 };
 
 CHIMERA_COMPONENT(TimeIntegrator, "time_integrator", "The integral of a signal over time, each element by itself.",

@@ -72,13 +72,21 @@ TEST_F(TimeIntegratorTest, StandsWhileTheConfigurationIsIllegal) {
   rig.illegal(true);
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(rig.get<double>("integral", 0), 1);
+  rig.illegal(false);
+  rig.set("start", 3.0, 0);
+  ASSERT_TRUE(rig.cycle(milliseconds(10)));
+  EXPECT_EQ(rig.get<double>("integral", 0), 3.02) << "begins where the machine stands";
 }
 
 TEST_F(TimeIntegratorTest, AddsNothingThatIsNotFinite) {
   start();
   rig.set("rate_of_change", std::nan(""), 1);
-  EXPECT_EQ(rig.cycle().text, "what is integrated is not finite");
+  EXPECT_EQ(rig.cycle().text, "rate_of_change[1] is not a finite number");
   EXPECT_EQ(rig.get<double>("integral", 0), 1);
+  EXPECT_TRUE(rig.error());
+  rig.set("rate_of_change", 0.0, 1);
+  ASSERT_TRUE(rig.cycle(milliseconds(10)));
+  EXPECT_EQ(rig.get<double>("integral", 0), 1.02);
   rig.set("start", std::nan(""), 0);
   EXPECT_EQ(rig.on().text, "start is not finite");
 }

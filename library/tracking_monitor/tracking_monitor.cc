@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "chimera/task/component.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -33,7 +34,7 @@ struct TrackingMonitor {
     elapsed_ += c.dt();
     double error = 0;
     for (std::size_t i = 0; i < q.size(); ++i) {
-      if (!std::isfinite(q[i]) || !std::isfinite(q_ref[i])) return fault("a position is not finite");
+      if (!std::isfinite(q[i]) || !std::isfinite(q_ref[i])) return library::unfit("a position is not finite", q, q_ref);
       error = std::max(error, std::abs(q_ref[i] - q[i]));
       if (elapsed_ <= *window + 1e-9) farthest_[i] = std::max(farthest_[i], std::abs(q[i] - from_[i]));
     }
@@ -42,6 +43,7 @@ struct TrackingMonitor {
     *moved = *std::min_element(farthest_, farthest_ + q.size());
     return ok();
   }
+  bool error() { return true; }
 
  private:
   double from_[kMostJoints] = {};

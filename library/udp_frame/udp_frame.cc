@@ -37,15 +37,14 @@ struct UdpFrame : FrameDevice {
     std::uint8_t bytes[kLongestFrame];
     if (old_ > 0) {
       forget(kMostForgotten);
-      hears(c.now());
+      wait(c.now());
     }
     for (int i = 0; old_ == 0 && i < kMostDatagrams; ++i) {
       const std::size_t size = socket_.receive(bytes);
       if (size == 0) break;
       take(bytes, size, c.now());
     }
-    const bool has_sent = send(is_lost(c, true) || c.illegal());
-    tell_idled(c, has_sent);
+    tell_idled(c, send(must_idle(c, true)));
     if (sent_ % kAnewAfter == 0) put_safe_frame(c);
     return ok();
   }
@@ -92,10 +91,10 @@ struct UdpFrame : FrameDevice {
       *old += 1;
       return;
     }
+    if (!take_state({bytes + 2, payload()}, now)) return;
     if (has_number_) *missing += step - 1;
     has_number_ = true;
     number_ = number;
-    take_state({bytes + 2, payload()}, now);
   }
   bool send(bool is_idle) {
     std::uint8_t bytes[kLongestFrame];

@@ -181,6 +181,7 @@ TEST_F(UdpFrameTest, StrangersAreNotHeard) {
 
 TEST_F(UdpFrameTest, NeverSendsANonFiniteNumber) {
   start();
+  say(datagram(1, 0));
   rig.set("command", std::nan(""));
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(heard(), Bytes());
@@ -206,10 +207,55 @@ TEST_F(UdpFrameTest, ADeviceThatGoesIsAFaultAndComesBackByClear) {
   ASSERT_TRUE(rig.clear());
   ASSERT_TRUE(rig.on());
   ASSERT_TRUE(rig.cycle());
-  EXPECT_EQ(get_value(heard().data() + 6, Form::kFloat32, 1), 5.0);
+  EXPECT_EQ(get_value(heard().data() + 6, Form::kFloat32, 1), 0.0) << "no answer yet";
   say(datagram(1, 2));  // the device has restarted its numbers
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(state(), 2);
+  EXPECT_EQ(get_value(heard().data() + 6, Form::kFloat32, 1), 5.0);
+}
+
+TEST_F(UdpFrameTest, AMuteDeviceGetsNothingButIdleHoweverOftenItsTaskIsRestarted) {
+  rig.set("idle", 0.25);
+  rig.extent("m", 1);
+  rig.set("command", 5.0);
+  rig.resource("device", address.c_str());
+  ASSERT_TRUE(rig.init());
+  std::uint32_t number = 0;
+  for (int restart = 0; restart < 5; ++restart) {
+    ASSERT_TRUE(rig.on());
+    for (int i = 0; i < 11; ++i) {
+      ASSERT_TRUE(rig.cycle(milliseconds(10)));
+      EXPECT_EQ(heard(), datagram(++number, 0.25));
+      say({1, 2, 3});  // a refused datagram is no answer
+    }
+    EXPECT_FALSE(rig.cycle());
+    ASSERT_TRUE(rig.clear());
+  }
+}
+
+TEST_F(UdpFrameTest, ARefusedDatagramChangesNothing) {
+  start();
+  say(datagram(5, 1));
+  ASSERT_TRUE(rig.cycle());
+  Bytes flipped = datagram(9, 99), cut = datagram(9, 99), longer = datagram(9, 99);
+  flipped[8] ^= 1, cut.pop_back(), longer.push_back(0);
+  const std::vector<Bytes> refused = {flipped, cut, longer, {}, {0xA5}, datagram(6, std::nan("")),
+                                      datagram(1u << 20, HUGE_VAL), datagram(5, 99), datagram(4, 99),
+                                      datagram(0xFFFFFFFF, std::nan(""))};
+  std::uint32_t number = 5;
+  double last = 1;
+  for (const Bytes& bytes : refused) {
+    say(bytes);
+    ASSERT_TRUE(rig.cycle());
+    EXPECT_EQ(state(), last);
+    EXPECT_DOUBLE_EQ(rig.get<double>("age"), 1e-3);
+    EXPECT_EQ(count("missing"), 0);
+    say(datagram(++number, last += 1));
+    ASSERT_TRUE(rig.cycle());
+    EXPECT_EQ(state(), last) << number;
+    EXPECT_EQ(count("received"), number - 4);
+  }
+  EXPECT_EQ(count("missing"), 0);
 }
 
 TEST_F(UdpFrameTest, ItsPortIsNotLostToTheCopyThatTheGuardHas) {

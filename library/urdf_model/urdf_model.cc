@@ -5,7 +5,7 @@
 #include <string>
 
 #include "chimera/task/component.h"
-#include "library/urdf_model/urdf_chain.h"
+#include "library/model_text/urdf_chain.h"
 
 using namespace chimera;
 
@@ -21,15 +21,16 @@ struct UrdfModel {
   OutConst<double[]> qd_max{"qd_max", "rad/s", "[ndof<=10]", frame = "joint", doc = "Joint speeds; 1e6 for no limit."};
   OutConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", frame = "joint",
                              doc = "Torques (the file's effort); 1e6 for no limit."};
+  OutConst<bool[]> is_continuous{"is_continuous", "1", "[ndof<=10]", doc = "The joint turns without end."};
   InConst<Text<64>> tip{"tip", "1", initial = "", doc = "Link that is the tool; empty: behind the most joints."};
   Resource model{"model", safe_state, shared, doc = "URDF file."};
 
-  void init() { read(); }
-  void reinit() { read(); }
+  void init(Cycle c) { read(c); }
+  void reinit(Cycle c) { read(c); }
   void cycle() {}  // init has written all outputs
 
  private:
-  void read() {
+  void read(Cycle c) {
     const Result<library::UrdfChain> found = library::read_urdf(model.c_str(), tip->c_str());
     if (!found) throw std::runtime_error(std::string(found.error().message.view()));
     const std::size_t n = found->chain.ndof;
@@ -41,6 +42,8 @@ struct UrdfModel {
     std::copy_n(found->high.begin(), n, q_max.begin());
     std::copy_n(found->speed.begin(), n, qd_max.begin());
     std::copy_n(found->effort.begin(), n, tau_max.begin());
+    std::copy_n(found->is_continuous.begin(), n, is_continuous.begin());
+    if (!found->note.empty()) c.note(found->note.c_str());
   }
 };
 

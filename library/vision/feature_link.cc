@@ -3,7 +3,6 @@
 #include "library/vision/feature_link.h"
 
 #include <arpa/inet.h>
-#include <fcntl.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -13,10 +12,12 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <stdexcept>
 #include <utility>
+
+#include "library/device/recording_file.h"
 
 namespace chimera::library {
 namespace {
@@ -90,8 +91,16 @@ int datagram_socket(const Address& address) {
 }  // namespace
 
 std::size_t feature_text(const Feature& f, char (&text)[96]) {
-  const int n = std::snprintf(text, sizeof text, "%.6f,%.4f,%.4f,%.5f", f.time, f.u, f.v, f.size);
-  return n > 0 && n + 1 < static_cast<int>(sizeof text) ? static_cast<std::size_t>(n) : 0;
+  const std::pair<double, int> numbers[] = {{f.time, 6}, {f.u, 4}, {f.v, 4}, {f.size, 5}};
+  char* at = text;
+  for (const auto& [number, digits] : numbers) {
+    if (at != text) *at++ = ',';
+    const auto [end, error] = std::to_chars(at, text + sizeof text - 2, number, std::chars_format::fixed, digits);
+    if (error != std::errc()) return 0;
+    at = end;
+  }
+  *at = '\0';
+  return static_cast<std::size_t>(at - text);
 }
 
 bool read_feature(const char* text, Feature& feature) {
@@ -113,9 +122,14 @@ Result<void> FeatureWriter::open(const std::string& link) {
   close();
   records_ = link.starts_with("file:");
   if (records_) {
-    file_ = ::open(link.c_str() + 5, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    try {
+      RecordingFile opened = open_recording(link.substr(5));
+      file_ = opened.file, note_ = other_path_note(link.substr(5), opened.path);
+    } catch (const std::runtime_error& error) {
+      return bad(error.what());
+    }
     const std::string head = std::string(kHeader) + "\n";
-    if (file_ < 0 || ::write(file_, head.data(), head.size()) < 0) return refused_by_system(link);
+    if (::write(file_, head.data(), head.size()) < 0) return refused_by_system(link);
     return {};
   }
   const Result<Address> to = address_of(link);
@@ -153,7 +167,9 @@ Result<void> FeatureReader::play(const std::string& path) {
   if (!file) return bad(path + ": cannot be read");
   recording_.clear();
   for (std::size_t number = 1; std::getline(file, line); ++number) {
-    if (line.empty() || line[0] == '#' || line == kHeader) continue;
+    if (number == 1 && line != kHeader)
+      return bad(path + ":1: expected the head " + std::string(kHeader) + ", found '" + line + "'");
+    if (number == 1 || line.empty() || line[0] == '#') continue;
     Feature feature;
     const double before = recording_.empty() ? 0 : recording_.back().time;
     if (!read_feature(line.c_str(), feature) || feature.time < before) {

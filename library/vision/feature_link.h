@@ -73,10 +73,13 @@ class FeatureWriter {
   /// Writes all waiting features. A datagram without a receiver is lost. Context: background; may block.
   void flush();
   void close();
+  /// Names the file if a recording goes to another one than the link names; else empty. Context: setup.
+  const std::string& note() const noexcept { return note_; }
 
  private:
   int file_ = -1;
   bool records_ = false;
+  std::string note_;
   std::vector<std::byte> to_;  // address of the reader
   FeatureRing ring_;
 };

@@ -127,7 +127,11 @@ TEST(FeatureLink, PlaysItsOwnRecording) {
     EXPECT_EQ(feature.size, 6);
     EXPECT_FALSE(reader.take(9, feature));
   }
-  ::unlink(path.c_str());
+  EXPECT_EQ(writer.note(), "");
+  ASSERT_TRUE(writer.open("file:" + path));
+  EXPECT_NE(writer.note().find(".2: an earlier recording has the name"), std::string::npos);
+  EXPECT_TRUE(reader.open("file:" + path)) << "unchanged";
+  ::unlink(path.c_str()), ::unlink((path + ".2").c_str());
 }
 
 TEST(FeatureLink, RefusesABadLinkAndNamesTheBadLine) {
@@ -142,6 +146,8 @@ TEST(FeatureLink, RefusesABadLinkAndNamesTheBadLine) {
   const std::string path = testing::TempDir() + name_of("bad");
   std::ofstream(path) << "t,u,v,size\n0,1,2,3\n-1,1,2,3\n";
   EXPECT_EQ(refusal("file:" + path), path + ":3: expected t,u,v,size with rising t, found '-1,1,2,3'");
+  std::ofstream(path) << "0,1,2,3\n";
+  EXPECT_EQ(refusal("file:" + path), path + ":1: expected the head t,u,v,size, found '0,1,2,3'");
   std::ofstream(path) << "t,u,v,size\n";
   EXPECT_EQ(refusal("file:" + path), path + ": there is nothing in this recording");
   ::unlink(path.c_str());

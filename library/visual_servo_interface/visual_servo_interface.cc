@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "library/kinematics/dh.h"
 #include "library/vision/camera_ports.h"
@@ -41,6 +42,7 @@ struct VisualServoInterface : library::CameraPorts {
     if (!xd.is_handed_over() || !is_finite(*xd)) *xd = *xm;  // otherwise bumpless: xd continues
     reader_.rewind();
     begin_ = c.now();
+    stood_ = false;
     was_seen_ = *in_sight = false;
     velocity_ = {};
     return ok();
@@ -50,6 +52,8 @@ struct VisualServoInterface : library::CameraPorts {
     library::Feature feature;
     while (reader_.take(now, feature)) look(feature, now);
     *in_sight = was_seen_ && now - seen_at_ < *timeout;
+    if (!c.illegal() && std::exchange(stood_, false) && is_finite(*xm)) *xd = *xm;  // the arm held itself
+    stood_ = stood_ || c.illegal();
     if (!*in_sight || c.illegal()) return;
     aim(now - seen_at_);
     approach(c.dt());
@@ -101,6 +105,7 @@ struct VisualServoInterface : library::CameraPorts {
   Nanoseconds begin_{};
   double seen_at_ = 0;
   bool was_seen_ = false;
+  bool stood_ = false;  // the flag was up in the last cycle
 };
 
 CHIMERA_COMPONENT(VisualServoInterface, "visual_servo_interface", "Desired tool pose from a visual servoing subsystem.",

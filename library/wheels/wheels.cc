@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "chimera/task/component.h"
+#include "library/signals/input.h"
 
 using namespace chimera;
 
@@ -22,7 +23,7 @@ struct Wheels {
     if (fb.is_outdated()) *fb = 0;
   }
   Outcome cycle(Cycle c) {
-    if (!c.illegal() && !std::isfinite(*fdw)) return fault("fdw is not finite");
+    if (!c.illegal() && !std::isfinite(*fdw)) return library::unfit("fdw is not finite", fdw);
     *fb = c.illegal() ? 0 : std::clamp(*fdw, 0.0, *brake_limit);
     return ok();
   }

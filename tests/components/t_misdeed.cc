@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Does to its process what no component should, in its cycles, while a file exists.
 #include <fcntl.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/ptrace.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -18,7 +22,8 @@ struct Misdeed {
   InConst<Text<16>> how{"how", initial = "nothing",
                         doc =
                             "child daemon chain exec stays: a child that outlives the cycle; leak; ordinary top strays "
-                            "unlocked: the rights of its thread; close; timer: closes those in init; spin"};
+                            "unlocked traced: the rights of its thread; close; timer: closes those in init; spin; "
+                            "strict: the next system call of the thread ends the thread"};
   InConst<std::int64_t> number{"number", "1", initial = -1, doc = "the one descriptor to close; -1: all above 2"};
   InConst<std::int64_t> for_ns{"for_ns", "ns", initial = 20'000'000, doc = "how long each spin takes"};
   Resource armed{"armed", shared, doc = "the file whose existence lets it happen"};
@@ -55,6 +60,8 @@ struct Misdeed {
     if (is("top")) set_policy(SCHED_FIFO, 99);
     if (is("strays")) stray();
     if (is("unlocked")) ::munlockall();
+    if (is("strict")) end_thread_at_next_call();
+    if (is("traced")) ::ptrace(PTRACE_TRACEME, 0, nullptr, nullptr);
     if (is("close") && *number < 0) ::close_range(3, ~0u, 0);
     if (is("close") && *number >= 0) ::close(static_cast<int>(*number));
   }
@@ -65,6 +72,12 @@ struct Misdeed {
       std::snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
       if (::readlink(link, what, sizeof what - 1) > 0 && std::strstr(what, "timerfd") != nullptr) ::close(fd);
     }
+  }
+  static void end_thread_at_next_call() {
+    sock_filter kill{BPF_RET | BPF_K, 0, 0, SECCOMP_RET_KILL_THREAD};
+    const sock_fprog program{1, &kill};
+    ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+    ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program);
   }
   // In a process whose parent has ended, in a session of its own.
   static bool detached() {

@@ -38,7 +38,7 @@ class Listener final : public BoundaryListener {
     misses.push_back({task, verdict.culprit, verdict.is_blocked, now});
     if (on_miss) on_miss(task, verdict);
   }
-  void hangs(TaskWord, Nanoseconds, Nanoseconds) noexcept override {}
+  void hangs(TaskWord, Nanoseconds, Nanoseconds, Nanoseconds) noexcept override {}
   void gave_way(TaskId task, Nanoseconds, Nanoseconds) noexcept override {
     if (on_gave_way) on_gave_way(task);
   }

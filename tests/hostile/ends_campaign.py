@@ -105,7 +105,7 @@ class Ends:
                 pass
         text = system.await_event(since, "fault" if self.how in ("throw", "fault") else "rtpu-ended")["text"]
         if self.how in ENDLESS:
-            assert "did not return within" in text and f"t0.{self.where}" in text, text
+            assert f"t0.{self.where} did not return within" in text or f"t0.{self.where} used" in text, text
         system.disarm()
         self.system.await_that(lambda: (u := system.rtpu("u0"))["phase"] == "serving" or u["given_up"], "recovery")
 

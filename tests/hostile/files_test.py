@@ -68,6 +68,33 @@ class Files(unittest.TestCase):
             found = found if "doc" in found else next(c for c in found["components"] if c["name"] == "stranger")
             self.assertEqual(found["doc"], ESCAPES, "JSON keeps what was said")
 
+    def test_a_path_that_cannot_be_looked_at_is_refused_by_name(self):
+        loop, closed, file = self.folder / "loop", self.folder / "closed", self.folder / "file"
+        loop.symlink_to(loop)
+        file.write_text("")
+        (closed / "inside").mkdir(parents=True)
+        closed.chmod(0)
+        self.addCleanup(closed.chmod, 0o700)
+        good = "subsystem: subject\ntasks:\n  a: {component: t_source, rate: 100 Hz}\n"
+        for bad in (loop, loop / "x", file / "x", self.folder / ("n" * 256), closed / "inside" / "x"):
+            reads = [("check", bad), ("run", bad, "--virtual", "--for", "1 s"), ("test", bad), ("test", f"{bad}/x.so"),
+                     ("test", f"{bad}.cases.yaml"), ("schedule", bad), ("new", "app", bad),
+                     ("sweep", bad, "--over", "k = [1]", "--for", "10 ms", "--measure", "max v")]
+            writes = [("run", "FILE", "--virtual", "--for", "10 ms", "--trace", bad)]
+            for words in reads + (writes if os.geteuid() != 0 or closed not in bad.parents else []):
+                with self.subTest(bad=str(bad)[-20:], words=words):
+                    code, _, err = self.chimera(*words, text=good)
+                    self.assertEqual(code, 1, err)
+                    self.assertIn(str(bad)[:60], err)
+            with self.subTest(CHIMERA_PATH=str(bad)[-20:]):
+                code, _, err = self.chimera("check", "FILE", text=good.replace("t_source", "nothing"),
+                                            CHIMERA_PATH=str(bad))
+                self.assertEqual(code, 1, err)
+                self.assertIn(f"CHIMERA_PATH names {bad}, which ", err)
+                self.assertEqual(self.chimera("list", CHIMERA_PATH=str(bad))[0], 0)
+        code, _, err = self.chimera("test", self.folder)  # passes over the loop and the closed folder
+        self.assertEqual((code, "there are no tests" in err), (1, True), err)
+
     def test_only_ordinary_files_are_read(self):
         (self.path / "real").mkdir()
         listening = socket.socket(socket.AF_UNIX)

@@ -2,6 +2,7 @@
 """Processes that components start end with their rtpu, at the latest with the subsystem, and are never real time; what
 memory an rtpu takes and which rights it gives up is reported."""
 import contextlib
+import ctypes
 import os
 import pathlib
 import signal
@@ -67,6 +68,12 @@ def parent_of(pid):
     return int(pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[1])
 
 
+def traced_thread(pid):
+    """The number of a thread of the process that has a tracer; None if there is none."""
+    return next((int(status.parent.name) for status in pathlib.Path(f"/proc/{pid}/task").glob("*/status")
+                 if "TracerPid:\t0\n" not in status.read_text()), None)
+
+
 def gone(pids, marker):
     return not set(pids) & set(processes_of(marker))
 
@@ -110,6 +117,23 @@ class Orphans(unittest.TestCase):
             system.disconnect()
             system.process.send_signal(signal.SIGTERM)
             self.assertEqual(system.wait(), 0, system.said())
+            self.assertEqual(system.left_over(), [])
+
+    def test_a_component_that_has_itself_traced_does_not_outlive_its_end(self):
+        with Rig(tasks("traced"), 0) as system:
+            system.arm()
+            for how in (signal.SIGSEGV, signal.SIGKILL):
+                before = system.rtpu("second")
+                thread = await_that(lambda: traced_thread(before["pid"]), "a traced thread")
+                ctypes.CDLL(None).tgkill(before["pid"], thread, how)
+                after = system.await_restart("second", before)
+                self.assertIn(how.name, after["last_end"])
+                system.await_state("traced", "ON")
+            await_that(lambda: traced_thread(after["pid"]), "a traced thread")
+            system.disconnect()
+            system.process.send_signal(signal.SIGTERM)
+            self.assertEqual(system.wait(), 0, system.said())
+            self.assertIn("not clean: 2 restarts of second", system.said())
             self.assertEqual(system.left_over(), [])
 
     def test_children_end_also_when_the_keeper_was_killed(self):

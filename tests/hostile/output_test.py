@@ -222,6 +222,27 @@ class Limits(unittest.TestCase):
                 self.assertEqual(code, 1, said)
                 self.assertIn(f"is limited to {most >> 10} KiB, expected at least 4096 KiB: ulimit -f", said)
 
+    def test_a_run_with_few_open_files_is_refused_or_can_restart_every_process(self):
+        for most in range(32, 100):
+            limit = {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))}
+            with System(TWO_RTPUS, wait=False, popen=limit) as system:
+                try:
+                    system.await_started()
+                except AssertionError:  # it has ended
+                    self.assertEqual(system.wait(), 1, system.said())
+                    self.assertRegex(system.said(), f"open files are limited to {most}, expected at least [0-9]+, or "
+                                                    "no process could be restarted: ulimit -n|Too many open files")
+                    continue
+                before, manager = system.rtpu("second"), system.pids()["manager"]
+                system.kill(before["pid"])
+                system.await_restart("second", before)
+                system.kill(manager)
+                system.disconnect()
+                await_that(lambda: system.pids()["manager"] != manager, "another manager")
+                system.await_state("beside", "ON")
+                return
+        self.fail("no limit was enough")
+
     def test_a_low_stack_is_reported(self):
         for most in (64 << 10, 128 << 10) if is_sanitized() else (16 << 10, 32 << 10, 64 << 10):
             with self.subTest(most):

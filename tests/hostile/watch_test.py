@@ -25,6 +25,9 @@ rtpus:
   loop: {cpu: 1, policy: edf}
   threads: {cpu: 1, policy: edf, executor: preemptive}
   timed: {cpu: 1, policy: edf, executor: preemptive}
+  between: {cpu: 1, policy: edf}
+  inside: {cpu: 1, policy: edf}
+  serving: {cpu: 1, policy: edf}
 tasks:
   steady: {component: t_counter, rtpu: first, rate: 200 Hz}
   blind: {component: t_misdeed, rtpu: timed, rate: 100 Hz, alias: {y: y5}, constants: {how: timer},
@@ -36,7 +39,13 @@ tasks:
   naked:
     {component: t_crash, rtpu: threads, rate: 100 Hz, alias: {y: y4}, constants: {how: unplug},
      resources: {armed: ARMED}}
-configurations: {all: [steady, blind, beside, held, bare, naked]}
+  strict: {component: t_misdeed, rtpu: between, rate: 100 Hz, alias: {y: y6}, constants: {how: strict},
+           resources: {armed: ARMED-threads}}
+  leaver: {component: t_crash, rtpu: inside, rate: 100 Hz, alias: {y: y7}, constants: {how: vanish},
+           resources: {armed: ARMED-threads}}
+  killer: {component: t_crash, rtpu: serving, rate: 100 Hz, alias: {y: y8}, constants: {where: kill, how: vanish},
+           resources: {armed: ARMED-threads}}
+configurations: {all: [steady, blind, beside, held, bare, naked, strict, leaver, killer]}
 start: all
 """
 
@@ -224,6 +233,19 @@ class Watch(unittest.TestCase):
         with contextlib.suppress(Refused):  # the same
             self.system.signal("on", "blind")
         self.ended(self.system, "timed", self.since, "ended with status 4 (its descriptors were closed)")
+
+    def test_a_thread_that_a_component_ended_ends_the_rtpu(self):
+        armed = pathlib.Path(f"{self.system.armed}-threads")
+        self.system.signal("off", "killer")
+        armed.write_text("")
+        with contextlib.suppress(Refused):  # its rtpu ends before it answers
+            self.system.signal("kill", "killer")
+        self.ended(self.system, "between", self.since, "ended with status 6 (a component ended one of its threads)")
+        self.ended(self.system, "inside", self.since, "was ended: leaver.cycle ended its thread")
+        self.ended(self.system, "serving", self.since, "was ended: killer.kill ended its thread")
+        armed.unlink()
+        self.system.await_state("strict", "ON")
+        self.system.await_state("leaver", "ON")
 
     def test_2_a_stopped_rtpu_is_reported(self):
         event = self.system.await_event(self.since, "hang", rtpu="stopped")

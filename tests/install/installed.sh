@@ -54,13 +54,30 @@ for example in "$place"/prefix/share/chimera/examples/01_*/*.yaml; do
   case $example in *.cases.yaml) continue;; esac
   "$chimera" check "$example" > out 2>&1 || { cat out; fail "check $example"; }
 done
+# Every lesson finds its files where it is installed, and in the copy that examples/README.md advises.
+cp -r "$place"/prefix/share/chimera/{examples,library} .
+for folder in "$place/prefix/share/chimera/examples" "$PWD/examples"; do
+  for example in "$folder"/*/*.yaml; do
+    cd "$(dirname "$example")"
+    for named in $(grep -o '\.\./\.\./library/[^ }]*' "$example" || true); do
+      [ -s "$named" ] || fail "$example names $named, which is not installed"
+    done
+    case $example in
+      */1[012]_*) "$chimera" run "$(basename "$example")" --virtual --for '20 ms' > "$place/out" 2>&1 ||
+        { cat "$place/out"; fail "run $example"; };;
+    esac
+  done
+done
+cd "$place/elsewhere"
 example=$place/prefix/share/chimera/examples/01_puma_pid/puma_pid.yaml
 "$chimera" run "$example" --virtual --for '50 ms' > out 2>&1 || { cat out; fail "run $example"; }
 grep -q '^ran 0.050 s' out || { cat out; fail "run $example did not come to its end"; }
 "$chimera" run "$example" --virtual --for '50 ms' --json > out || fail "run --json"
 mkdir -m 700 "$place/runtime"
-XDG_RUNTIME_DIR=$place/runtime "$chimera" run "$example" --priority 0 --for '50 ms' > out 2>&1 ||
-  { cat out; fail "run $example by processes"; }
+XDG_RUNTIME_DIR=$place/runtime "$chimera" run "$example" --priority 0 --for '50 ms' --operate-group "$(id -gn)" \
+  > out 2>&1 || { cat out; fail "run $example by processes"; }
+grep -q "^members of $(id -gn) may operate: chimera status --subsystem $place/runtime/.*/puma_pid.sock$" out ||
+  { cat out; fail "run does not say what members of a group type"; }
 grep -q '^ran 0.050 s' out || { cat out; fail "run $example by processes did not come to its end"; }
 "$chimera" --help | grep -q "examples: $place/prefix/share/chimera$" || fail "--help does not name the documents"
 mkdir "$place/tree"

@@ -59,8 +59,8 @@ for name in os.listdir("/dev/shm"):
         attempt("shared memory", lambda: open("/dev/shm/" + name))
 for line in open("/proc/net/unix").read().splitlines()[1:]:
     name = line.split()[-1]
-    # The claim of a CPU answers no request: a connection shows which process holds it.
-    if name.startswith("@") and "chimera" in name and "chimera-cpu-" not in name:
+    # The claim of a CPU or of a subsystem's name answers no request: a connection shows which process holds it.
+    if name.startswith("@") and "chimera" in name and "chimera-cpu-" not in name and path not in name:
         attempt("abstract socket", lambda: socket.socket(socket.AF_UNIX).connect("\0" + name[1:]))
 for pid in pids:
     attempt("memory", lambda: open(f"/proc/{pid}/mem", "r+b"))

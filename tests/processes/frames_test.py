@@ -36,7 +36,8 @@ def crc16(data):
 
 
 class Drive:
-    """Turns by the torque of the last good frame. `torques`: those of all good frames, in order."""
+    """Turns by the torque of the last good frame, and answers each. `torques`: those of all good frames from the first
+    that is not idle on, in order."""
 
     def __init__(self, axes):
         self.payload = 4 * axes
@@ -76,8 +77,18 @@ class Drive:
             elif crc16(self.held[1:end - 2]) != int.from_bytes(self.held[end - 2:end], "little"):
                 self.held = self.held[1:]
             else:
-                self.torques.append(struct.unpack("<f", self.held[2:6])[0])
+                torque = struct.unpack("<f", self.held[2:6])[0]
+                if torque != 0 or self.torques:
+                    self.torques.append(torque)
                 self.held = self.held[end:]
+                self.answer()
+
+    def answer(self):
+        body = struct.pack("<Bf", 4, 0)
+        try:
+            os.write(self.master, bytes([START]) + body + struct.pack("<H", crc16(body)))
+        except (BlockingIOError, OSError):
+            pass
 
     def turns(self):
         return self.torques[-1:] == [3.0]
@@ -87,8 +98,8 @@ class Drive:
 
 
 class ModbusDevice:
-    """Holding registers behind TCP, for any number of connections. `writes`: (the connection, the first register), in
-    order."""
+    """Holding registers behind TCP, for any number of connections. `writes`: (the connection, the first register), from
+    the first value that is not idle on, in order."""
 
     def __init__(self):
         self.listening = socket.create_server(("127.0.0.1", 0))
@@ -108,8 +119,9 @@ class ModbusDevice:
         with client, client.makefile("rb") as stream:
             while len(head := stream.read(7)) == 7:
                 request = stream.read(struct.unpack(">HHHB", head)[2] - 1)
-                if request[0] == 16:
-                    self.writes.append((connection, struct.unpack(">H", request[6:8])[0]))
+                value = struct.unpack(">H", request[6:8])[0] if request[0] == 16 else 0
+                if request[0] == 16 and (value != 0 or self.writes):
+                    self.writes.append((connection, value))
                 said = request[:5] if request[0] == 16 else bytes((request[0], 2, 0, 0))
                 try:
                     client.sendall(head[:4] + struct.pack(">HB", len(said) + 1, head[6]) + said)
@@ -164,6 +176,26 @@ class Frames(unittest.TestCase):
             self.kill_with_its_keeper(system)
             system.await_nothing_left()
             self.assertEqual(set(self.drive.torques), {3.0})
+
+    def test_a_stopped_guard_is_reported_and_writes_no_late_frame(self):
+        with self.start() as system:
+            guard, = system.named("chimera-guard")
+            self.assertEqual(system.call("status")["guard"]["pid"], guard)
+            self.assertTrue(system.kill(guard, signal.SIGSTOP))
+            system.await_event(0, "hang", "guard does not run: stopped by a signal (state T)")
+            self.assertIn("guard: HANGS: does not run: stopped by", system.chimera("status", code=None).stdout)
+            refused = system.chimera("drill", "--yes", "--kill", "second", code=1).stderr
+            self.assertIn(f"`kill -CONT {guard}` continues a stopped one", refused)
+            before = system.rtpu("second")
+            system.kill(before["pid"])
+            system.await_restart("second", before)
+            self.await_turning_again(system)
+            self.assertTrue(system.kill(guard, signal.SIGCONT))
+            system.await_event(0, "hang", "guard runs again after")
+            self.assertIn("0 safe frames written; 1 left out: the guard was late",
+                          system.await_event(0, "safe", "left out")["text"])
+            system.await_cycles("drive")
+            self.assertEqual((self.drive.fills, self.drive.torques[-1]), (0, 3.0))
 
     def test_a_frame_that_was_cut_by_the_death_hides_nothing(self):
         with self.start(16, "1 kHz") as system:

@@ -58,6 +58,20 @@ class Switch(unittest.TestCase):
             self.assertEqual(first.answered["end"], "aborted")
             await_that(lambda: system.on() == SETS["gentle"], system.told)
 
+    def test_receipts_that_cannot_be_filed_fail_the_run(self):
+        with System(SWITCH) as system:
+            for target in ("quick", "gentle"):
+                self.assertEqual(system.call("switch", configuration=target)["end"], "done")
+            await_that(lambda: len(system.filed()) == 2, "the file")
+            system.receipt_file.unlink()
+            system.receipt_file.mkdir()
+            for target in ("quick", "gentle"):
+                self.assertEqual(system.call("switch", configuration=target)["end"], "done")
+            system.call("end")
+            system.disconnect()
+            self.assertEqual(system.wait(), 1)
+            self.assertIn(f"FAILED: 2 receipts were not filed: {system.receipt_file}: ", system.said())
+
     def test_receipts_are_read_when_nothing_runs_and_numbers_begin_anew_in_each_run(self):
         with System(SWITCH) as system:
             system.call("switch", configuration="quick")

@@ -70,7 +70,8 @@ class Chaos {
   void act() {
     const std::string& rtpu = kRtpus[chance_.below(3)];
     const std::size_t kind = chance_.below(40);
-    if (kind == 0 && is_alive(rtpu)) system_.die(rtpu, chance_.percent(50) ? SIGSEGV : SIGKILL);
+    if (kind == 0 && is_alive(rtpu) && chance_.percent(33)) system_.terminate(rtpu);
+    else if (kind == 0 && is_alive(rtpu)) system_.die(rtpu, chance_.percent(50) ? SIGSEGV : SIGKILL);
     else if (kind == 1) stop(rtpu, chance_.percent(20) ? milliseconds(2500) : milliseconds(20));
     else if (kind == 2 && system_.has_manager()) die_manager();
     else if (kind == 3 && system_.has_manager()) system_.stop_keeper(keeper_is_stopped_ = !keeper_is_stopped_);
@@ -125,7 +126,9 @@ class Chaos {
   }
   const std::string& rtpu_of(std::size_t task) const { return kRtpus[system_.spec().tasks[task].rtpu.index]; }
   bool is_on(std::size_t t) {
-    return is_alive(rtpu_of(t)) && system_.rtpu(rtpu_of(t)).state(TaskId(t)) == State::kOn;
+    if (!is_alive(rtpu_of(t))) return false;
+    testing::TestRtpu& rtpu = system_.rtpu(rtpu_of(t));  // one that ends shows the states of before
+    return (rtpu.edge->rtpu_end().is_told() ? rtpu.tasks->tasks()[t].state : rtpu.state(TaskId(t))) == State::kOn;
   }
   void pass(Nanoseconds time) {
     for (const Nanoseconds end = now() + time; now() < end && !::testing::Test::HasFailure();) {

@@ -2,6 +2,10 @@
 // The death of an rtpu or of the manager, and a method that fails, have only their declared effects on the tasks.
 #include <gtest/gtest.h>
 
+#include <csignal>
+
+#include "chimera/base/testing/await.h"
+#include "chimera/platform/process.h"
 #include "tests/stepped/stepped_subsystem.h"
 
 namespace chimera::manager::deaths_test {
@@ -40,6 +44,56 @@ TEST_F(Deaths, ADeadRtpuIsNamedWithItsCauseAndComesBackWithItsTasks) {
     system.die("second", signal);
     ASSERT_TRUE(system.until([&] { return !system.events("rtpu-restarted").empty() && system.on() == kAllOn; }));
     EXPECT_EQ(system.events("rtpu-ended"), std::string("second ended by ") + words + " in victim.cycle\n");
+    expect_steady(system);
+  }
+}
+
+// `reader` reads what `source` writes in the rtpu whose memory is overwritten.
+const std::string kReader = R"(subsystem: subject
+rtpus: {first: {cpu: 0, policy: edf}, second: {cpu: 1, policy: edf}}
+tasks:
+  steady: {component: t_counter, rtpu: first, rate: 200 Hz}
+  reader: {component: t_ages, rtpu: first, rate: 200 Hz}
+  source: {component: t_source, rtpu: second, rate: 100 Hz}
+configurations: {all: [steady, reader, source]}
+start: all
+)";
+
+TEST_F(Deaths, AnRtpuThatOverwroteAnyPartOfItsMemoryIsNamedNotBelievedAndEnded) {
+  const auto fill = [](testing::TestRtpu& rtpu, int byte) {
+    const std::span<std::byte> all = rtpu.segment.region.writable();
+    std::memset(all.data(), byte, all.size());
+  };
+  const TaskId source(2u);
+  const std::function<void(testing::TestRtpu&)> ways[] = {
+      [&](auto& rtpu) { fill(rtpu, 0); },
+      [&](auto& rtpu) { fill(rtpu, 255); },
+      [](auto& rtpu) { rtpu.segment.block.head().magic ^= 1; },
+      [](auto& rtpu) { ++rtpu.segment.block.head().incarnation; },
+      [](auto& rtpu) { rtpu.segment.block.head().phase = static_cast<PeerPhase>(77); },
+      [](auto& rtpu) { rtpu.segment.block.head().lost_posts = UINT64_MAX; },
+      [&](auto& rtpu) { rtpu.segment.block.set_status(source, {static_cast<State>(200), false, 1}); },
+      [&](auto& rtpu) { rtpu.segment.block.profile(source).missed = UINT64_MAX; },
+      [&](auto& rtpu) { rtpu.segment.block.profile(source).on_since = Nanoseconds{-5}; }};
+  for (const auto& way : ways) {
+    SCOPED_TRACE(&way - ways);
+    SteppedSubsystem system(kReader);
+    ASSERT_TRUE(system.until_started());
+    system.stop("second", true);  // it repairs no word
+    way(system.rtpu("second"));
+    ASSERT_TRUE(system.until([&] { return !system.events("fault").empty(); }, milliseconds(200)));
+    EXPECT_NE(system.events("fault").find("something in it has overwritten its memory ("), std::string::npos);
+    EXPECT_EQ(system.state("source"), State::kError);
+    const Json status = system.status();
+    EXPECT_FALSE(status["rtpus"][1]["alive"].as_bool());
+    EXPECT_EQ(status["rtpus"][1]["lost_events"].as_int64(), 0);
+    EXPECT_EQ(status["tasks"][2]["missed"].as_int64(), 0);
+    EXPECT_EQ(status["tasks"][2]["faults"].as_int64(), 0);
+    ASSERT_TRUE(system.until(
+        [&] { return !system.events("rtpu-restarted").empty() && system.on() == "steady reader source "; }));
+    EXPECT_NE(system.events("flag").find("x"), std::string::npos) << "raised by the rtpu of the reader";
+    EXPECT_EQ(system.events("rtpu-ended"), "second ended by signal 9 (SIGKILL) with its memory overwritten\n");
+    EXPECT_EQ(system.events("lost") + system.events("miss") + system.events("rights"), "");
     expect_steady(system);
   }
 }
@@ -106,6 +160,30 @@ TEST_F(Deaths, TheManagerMayDieAtAnyStepOfACommand) {
     expect_steady(system);
     EXPECT_EQ(system.profile("beside").dropped, 0u) << steps;
   }
+}
+
+TEST_F(Deaths, AStoppedGuardIsReportedWithinTwoSecondsAndAgainWhenItRuns) {
+  SteppedSubsystem system(kTwoRtpus);
+  ASSERT_TRUE(system.until_started());
+  const char* const words[] = {"sleep", "60"};
+  Process guard = *Process::start("/bin/sleep", words, {});
+  guard.signal(SIGSTOP);
+  ASSERT_TRUE(await_that([&] { return process_state(guard.pid()).letter == 'T'; }));
+  system.decision_page().guard_beats = 7;
+  system.page().guard_pid = guard.pid();
+  system.run(seconds(2));
+  EXPECT_NE(system.events("hang").find("guard does not run: stopped by a signal (state T), for 1.5 s\n"),
+            std::string::npos)
+      << system.events("hang");
+  EXPECT_TRUE(system.status()["guard"]["hang"].as_string().starts_with("does not run: stopped by a signal"));
+  EXPECT_NE(system.refusal("drill", {{"kill", "second"}}).find("the guard does not run: stopped"), std::string::npos);
+  system.decision_page().guard_beats = 8;
+  system.run(milliseconds(300));
+  EXPECT_NE(system.events("hang").find("guard runs again after 2."), std::string::npos) << system.events("hang");
+  EXPECT_TRUE(system.status()["guard"]["hang"].is_null());
+  ProcessEnd how;
+  guard.signal(SIGKILL);
+  EXPECT_TRUE(guard.wait(how, kHangLimit.count));
 }
 
 TEST_F(Deaths, AnErrorInAnyMethodStaysWithItsTask) {

@@ -91,6 +91,35 @@ TEST(SteppedSameDevice, AStandbyOpensItWhenThePrimaryIsInErrorAndKilled) {
   EXPECT_TRUE(had_one_user(system)) << system.events("fault");
 }
 
+/// `init` of the arriving task does not return. The rtpu is ended, and all refusals until then say what helps at once.
+TEST(SteppedSameDevice, ASwitchWhoseInitHangsEndsWithTheSetBefore) {
+  SteppedSubsystem system(with_device(kDevice + kSwitch));
+  ASSERT_TRUE(system.until_started());
+  system.hang_service("second");
+  const PendingAnswer answer = system.ask("switch", {{"configuration", "with_drill"}, {"wait_ms", 1000}});
+  system.run(seconds(4));
+  const std::pair<const char*, Json> refused[] = {
+      {"signal", {{"signal", "on"}, {"tasks", Json::array({"hand"})}}},
+      {"switch", {{"configuration", "with_hand"}}},
+      {"cancel", Json::object()},
+      {"drill", Json::object()}};
+  const std::string kill =
+      "`kill -KILL " + std::to_string(::getpid()) + "` restarts rtpu second, which hangs: drill.init";
+  for (const auto& [method, parameters] : refused) {
+    const std::string remedy = system.call(method, parameters).detail("remedy");
+    EXPECT_EQ(remedy.find(kill), 0u) << method << ": " << remedy;
+  }
+  EXPECT_FALSE(answer->has_value());
+  ASSERT_TRUE(system.until([&] { return answer->has_value(); }, seconds(10)));
+  const Json receipt = SteppedSubsystem::result_of(**answer);
+  EXPECT_EQ(receipt["end"], "aborted");
+  EXPECT_EQ(receipt["reason"], "no-answer");
+  EXPECT_TRUE(system.until([&] { return system.on() == kWithHand && !system.flag(); })) << system.on();
+  EXPECT_NE(system.events("rtpu-ended").find("it held up switch 1: drill.init"), std::string::npos)
+      << system.events("rtpu-ended");
+  EXPECT_EQ(system.switch_to("with_drill")["end"], "done");
+}
+
 class SteppedSameDeviceKills : public ::testing::TestWithParam<std::vector<std::string>> {};
 
 TEST_P(SteppedSameDeviceKills, AtEveryStepOfASwitchLeaveItWithOneUser) {
@@ -99,9 +128,10 @@ TEST_P(SteppedSameDeviceKills, AtEveryStepOfASwitchLeaveItWithOneUser) {
       .at_every_step(GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, SteppedSameDeviceKills,
-                         ::testing::Values(std::vector<std::string>{"first"}, std::vector<std::string>{"second"},
-                                           std::vector<std::string>{"manager"}));
+INSTANTIATE_TEST_SUITE_P(Of, SteppedSameDeviceKills, ::testing::ValuesIn(kMishaps));
+INSTANTIATE_TEST_SUITE_P(Services, SteppedSameDeviceKills,
+                         ::testing::Values(std::vector<std::string>{"service first"},
+                                           std::vector<std::string>{"service second"}));
 
 }  // namespace
 }  // namespace chimera::manager::same_device_test

@@ -58,9 +58,7 @@ TEST_P(SteppedSlowSwitchKills, AtEveryStepLeaveOneSideInForceAndOneReceipt) {
       GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, SteppedSlowSwitchKills,
-                         ::testing::Values(std::vector<std::string>{"first"}, std::vector<std::string>{"second"},
-                                           std::vector<std::string>{"manager"}));
+INSTANTIATE_TEST_SUITE_P(Of, SteppedSlowSwitchKills, ::testing::ValuesIn(kMishaps));
 
 }  // namespace
 }  // namespace chimera::manager::slow_switch_test

@@ -31,6 +31,7 @@ class SteppedStandby : public ::testing::Test {
   }
   static void end(SteppedSubsystem& system, const std::string& name) {
     if (name == "manager") system.kill_manager();
+    else if (name.starts_with("SIGTERM ")) system.terminate(name.substr(8));
     else system.die(name);
   }
   static Json takeovers(SteppedSubsystem& system) {
@@ -194,10 +195,10 @@ TEST_F(SteppedStandby, AnInputThatIsTooOldIsNotValidUntilItsProducerGoesOnOrCome
 
 /// One or two of rtpus and manager die, the second one at each step of the takeover from the first.
 TEST_F(SteppedStandby, ExactlyOneTaskIsOnAfterAnyTwoDeaths) {
-  const std::string names[] = {"first", "second", "manager"};
+  const std::string names[] = {"first", "second", "manager", "SIGTERM first", "SIGTERM second"};
   for (const std::string& one : names) {
     for (const std::string& other : names) {
-      if (one == other) continue;
+      if (one.ends_with(other) || other.ends_with(one)) continue;
       for (int steps = 0; steps < 12; ++steps) {
         SteppedSubsystem system(kStandby);
         ASSERT_TRUE(system.until_started());

@@ -132,8 +132,19 @@ class SteppedSubsystem {
 
   /// The process of the rtpu dies by that signal. The manager has it started again.
   void die(std::string_view rtpu, int signal = SIGKILL) { die(index(rtpu), signal); }
-  /// Ends the process of the rtpu alone, as SIGTERM does: it turns its tasks OFF and dies.
-  void terminate(std::string_view rtpu) { rtpus_[index(rtpu)]->edge->rtpu_end().tell(true); }
+  /// Ends the process of the rtpu alone, as a plain SIGTERM does (Rtpu::end): it turns its tasks OFF, and 1 ms later it
+  /// is dead.
+  void terminate(std::string_view rtpu) {
+    rtpus_[index(rtpu)]->edge->rtpu_end().tell(true);
+    Doorbell(decision_page().bells[index(rtpu)].word).ring();
+  }
+  /// While it hangs, no `init` or `kill` of the rtpu returns; not beyond a restart.
+  void hang_service(std::string_view rtpu, bool hangs = true) {
+    if (hangs) hung_.insert(index(rtpu));
+    else hung_.erase(index(rtpu));
+  }
+  /// From here on the cycling thread of the rtpu does nothing; its main thread goes on, until it is restarted.
+  void end_loop(std::string_view rtpu) { without_loop_.insert(index(rtpu)); }
   /// While it is stopped, as by SIGSTOP, the rtpu does nothing.
   void stop(std::string_view rtpu, bool is_stopped) {
     if (is_stopped) stopped_.insert(index(rtpu));
@@ -274,20 +285,24 @@ class SteppedSubsystem {
   void step(std::uint32_t r) {
     testing::TestRtpu& rtpu = *rtpus_[r];
     rtpu.segment.block.head().attended.fetch_add(1);
-    rtpu.serve();
+    if (without_loop_.contains(r)) return;
+    if (!hung_.contains(r)) rtpu.serve();
+    else if (!rtpu.service.asked.empty())
+      rtpu.segment.block.head().serving = TaskWord(rtpu.service.asked[0], Method::kInit).word();
     while (rtpu.executive->run(now() - page().origin) == RunEnd::kTaskStopped) {
       Releases& releases = rtpu.executive->releases();
       rtpu.edge->stop_all(releases.signals(), releases.settlement().stopped_by(), now());
       releases.settlement().forget_stop();
     }
-    if (rtpu.edge->rtpu_end().is_over()) die(r, SIGTERM);
+    if (rtpu.edge->rtpu_end().is_over() && ++steps_of_end_[r] >= 10) die(r, SIGTERM);
   }
 
   void start_rtpu(std::uint32_t r) {
-    const std::uint32_t incarnation = rtpus_[r] == nullptr ? 1 : rtpus_[r]->segment.block.head().incarnation + 1;
+    const std::uint32_t incarnation = ++incarnations_[r];
     testing::TestRtpu::decision_now = now();
     ended_.erase(r);
-    stopped_.erase(r);
+    steps_of_end_.erase(r);
+    for (std::set<std::uint32_t>* one : {&stopped_, &hung_, &without_loop_}) one->erase(r);
     rtpus_[r] = std::make_unique<testing::TestRtpu>(spec(), components_, r, incarnation, decision_page(), page());
     BlockHead& head = rtpus_[r]->segment.block.head();
     std::strcpy(head.grant, "as an ordinary process");
@@ -301,7 +316,7 @@ class SteppedSubsystem {
   }
   void show(std::uint32_t to, std::uint32_t of) {
     const testing::OwnSegment& segment = rtpus_[of]->segment;
-    EXPECT_TRUE(rtpus_[to]->peers->offer(of, segment.block.head().incarnation, segment.region.descriptor()));
+    EXPECT_TRUE(rtpus_[to]->peers->offer(of, incarnations_[of], segment.region.descriptor()));
     Doorbell(decision_page().bells[to].word).ring();
   }
   void show_manager(std::uint32_t to) {
@@ -309,12 +324,13 @@ class SteppedSubsystem {
     Doorbell(decision_page().bells[to].word).ring();
   }
   void die(std::uint32_t r, int signal) {
+    rtpus_[r]->end_process();
     page().alive[r] = 0;
     decision_page().changes.fetch_add(1);
     for (std::uint32_t other = 0; other < n_rtpus(); ++other) Doorbell(decision_page().bells[other].word).ring();
     ended_[r] = KeeperMessage{.kind = KeeperMessage::Kind::kEnded,
                               .index = r,
-                              .incarnation = rtpus_[r]->segment.block.head().incarnation,
+                              .incarnation = incarnations_[r],
                               .code = signal,
                               .by_signal = 1,
                               .at = now()};
@@ -327,7 +343,7 @@ class SteppedSubsystem {
   }
   void introduce(std::uint32_t r) {
     const testing::OwnSegment& segment = rtpus_[r]->segment;
-    const std::uint32_t incarnation = segment.block.head().incarnation;
+    const std::uint32_t incarnation = incarnations_[r];
     if (!ended_.contains(r)) tell(KeeperMessage::Kind::kStarted, r, incarnation);
     tell(KeeperMessage::Kind::kPeer, r, incarnation, segment.region.descriptor());
     EXPECT_TRUE(!ended_.contains(r) || channel_.send(bytes_of(ended_[r])));
@@ -362,8 +378,10 @@ class SteppedSubsystem {
   SharedPages decision_;
   MemoryRegion keeper_;
   std::vector<std::unique_ptr<testing::TestRtpu>> rtpus_;
+  std::map<std::uint32_t, std::uint32_t> incarnations_;  // by rtpu; its own memory may be overwritten
   std::map<std::uint32_t, KeeperMessage> ended_;  // by rtpu: the message about its death, until it is started again
-  std::set<std::uint32_t> stopped_;
+  std::map<std::uint32_t, int> steps_of_end_;     // by rtpu: since it has ended its tasks
+  std::set<std::uint32_t> stopped_, hung_, without_loop_;
   Channel channel_;
   OwnedDescriptor manager_segment_{-1};
   std::uint32_t manager_incarnation_ = 0;

@@ -161,12 +161,7 @@ TEST_P(SteppedSwitchKills, AtEveryStepLeaveOneConfigurationInForceAndOneReceipt)
       .at_every_step(GetParam());
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, SteppedSwitchKills,
-                         ::testing::Values(std::vector<std::string>{"first"}, std::vector<std::string>{"second"},
-                                           std::vector<std::string>{"manager"},
-                                           std::vector<std::string>{"first", "second"},
-                                           std::vector<std::string>{"first", "manager"},
-                                           std::vector<std::string>{"second", "manager"}));
+INSTANTIATE_TEST_SUITE_P(Of, SteppedSwitchKills, ::testing::ValuesIn(kMishaps));
 
 }  // namespace
 }  // namespace chimera::manager::switch_test

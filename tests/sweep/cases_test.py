@@ -8,18 +8,18 @@ from place import Place
 
 GOOD = """description: small.yaml
 cases:
-  doubles: {for: 50 ms, expect: [y >= 2 m2.kg/s2, 'max |y| <= 2 m2.kg/s2'], strict: true}
+  doubles: {for: 50 ms, expect: [y >= 2 N.m, 'max |y| <= 2 N.m'], strict: true}
   follows:
     for: 50 ms
     set: {k: 3 N.m/rad}
     at: ['25 ms: set x 2 rad']
-    expect: ['settling y >= 6 m2.kg/s2 within 40 ms', 'min y >= 3 m2.kg/s2']
+    expect: ['settling y >= 6 N.m within 40 ms', 'min y >= 3 N.m']
     seed: 7
     preemptive: true
 """
 
 BAD = """cases:
-  too_much: {for: 50 ms, expect: ['y <= 1 m2.kg/s2', 'y <= 3 m2.kg/s2']}
+  too_much: {for: 50 ms, expect: ['y <= 1 N.m', 'y <= 3 N.m']}
   dies: {for: 50 ms, set: {crash.how: kill}, strict: true}
   flagged: {for: 50 ms, at: ['20 ms: flag up'], strict: true}
   misspelt: {for: 50 ms, expect: [yy <= 3]}
@@ -44,7 +44,7 @@ class Cases(Place):
         code, out, err = self.chimera("test", ".", "--junit", "report.xml")
         self.assertEqual((code, err), (1, ""))
         self.assertEqual(out, "./small.cases.yaml\n"
-                              "  FAILS  too_much\n           y <= 1 m2.kg/s2 (y is 2 m2.kg/s2)\n"
+                              "  FAILS  too_much\n           y <= 1 N.m (y is 2 N.m)\n"
                               "  FAILS  dies\n           ended by signal 9 (SIGKILL) in crash.cycle\n"
                               "  FAILS  flagged\n           strict: the illegal-configuration flag is up\n"
                               "  FAILS  misspelt\n           'yy <= 3': no state variable 'yy'; did you mean 'y'?\n"
@@ -67,10 +67,10 @@ class Cases(Place):
             self.assertEqual((case.get("classname"), case.get("file")), ("small", "./small.cases.yaml"))
             self.assertGreaterEqual(float(case.get("time")), 0)
         failure, error = cases[0].find("failure"), cases[1].find("error")
-        self.assertEqual(failure.get("message"), "y <= 1 m2.kg/s2 (y is 2 m2.kg/s2)")
-        self.assertEqual(failure.text, "y <= 1 m2.kg/s2 (y is 2 m2.kg/s2)\n")
+        self.assertEqual(failure.get("message"), "y <= 1 N.m (y is 2 N.m)")
+        self.assertEqual(failure.text, "y <= 1 N.m (y is 2 N.m)\n")
         self.assertEqual(error.get("message"), "ended by signal 9 (SIGKILL) in crash.cycle")
-        self.assertIn("holds: y <= 3 m2.kg/s2 (y is 2 m2.kg/s2)\n", cases[0].find("system-out").text)
+        self.assertIn("holds: y <= 3 N.m (y is 2 N.m)\n", cases[0].find("system-out").text)
 
     def test_a_case_runs_in_the_folder_of_its_description(self):
         self.write("a/small.yaml", (self.path / "small.yaml").read_text().replace("armed: /", "armed: here"))

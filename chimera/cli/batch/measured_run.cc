@@ -18,8 +18,6 @@
 namespace chimera::cli {
 namespace {
 
-constexpr std::int64_t kMostSamples = 1'000'000;
-
 /// A FILE in memory, whose content is a text.
 class TextFile {
  public:
@@ -77,18 +75,6 @@ std::optional<RunPlan> plan(const MeasuredRequest& request, const Library& libra
   return made;
 }
 
-Nanoseconds shortest_period(const ApplicationSpec& spec) {
-  Nanoseconds shortest = kNever;
-  for (const TaskId task : spec.start)
-    if (!spec.tasks[task.index].aperiodic) shortest = std::min(shortest, spec.tasks[task.index].period);
-  return shortest == kNever ? milliseconds(1) : shortest;
-}
-
-Nanoseconds sample_distance(const MeasuredRequest& request, const ApplicationSpec& spec) {
-  const Nanoseconds wanted = request.every > Nanoseconds{} ? request.every : shortest_period(spec);
-  return std::max(wanted, Nanoseconds{request.run.duration.count / kMostSamples + 1});
-}
-
 void add_remarks(std::span<const Task* const> tasks, bool is_flag_up, std::vector<std::string>& remarks) {
   const auto add = [&remarks](const Task& task, std::uint64_t count, const char* what) {
     if (count > 0) remarks.push_back(std::string(task.spec->name) + ": " + std::to_string(count) + " " + what);
@@ -136,7 +122,7 @@ class Measuring {
   }
 
   RunEnd go(Nanoseconds& ran) {
-    const Nanoseconds every = sample_distance(request_, plan_.configuration.spec());
+    const Nanoseconds every = sample_distance(request_.every, request_.run.duration, plan_.configuration.spec());
     for (Nanoseconds at;;) {
       at = std::min(at + every, request_.run.duration);
       const auto end = loop_->advance(at);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "chimera/catalogue/library.h"
-#include "chimera/cli/batch/measure.h"
+#include "chimera/cli/run/measure.h"
 #include "chimera/cli/run/run.h"
 #include "chimera/cli/run/run_report.h"
 

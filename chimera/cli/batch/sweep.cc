@@ -18,11 +18,21 @@
 namespace chimera::cli {
 namespace {
 
-Result<std::vector<ValueList>> lists_of(const SweepRequest& request) {
+/// True if the operator variable or constant has one element: a list then has several values for it.
+bool is_single(const std::string& name, const Configuration& configuration) {
+  for (const ConfiguredVariable& variable : configuration.variables())
+    if (variable.name == name) return variable.shape.empty();
+  for (const ConfiguredTask& task : configuration.tasks())
+    for (const ConfiguredPort& port : task.ports)
+      if (task.name + "." + port.name == name) return port.shape.empty();
+  return false;
+}
+
+Result<std::vector<ValueList>> lists_of(const SweepRequest& request, const Configuration& configuration) {
   std::vector<ValueList> lists;
   double runs = 1;
   for (const std::string& text : request.over) {
-    auto list = parse_value_list(text);
+    auto list = parse_value_list(text, [&](const std::string& name) { return is_single(name, configuration); });
     if (!list) return list.error();
     runs *= static_cast<double>(list->values.size());
     lists.push_back(*std::move(list));
@@ -74,7 +84,7 @@ void run_all(const SweepRequest& request, SweepTable& table, const Library& libr
 }
 
 Result<SweepTable> prepare(const SweepRequest& request, const Configuration& configuration, const Library& library) {
-  auto lists = lists_of(request);
+  auto lists = lists_of(request, configuration);
   if (!lists) return lists.error();
   SweepTable table{configuration.subsystem(), *std::move(lists), request.each.expect, {}};
   if (auto judged = judge(request, table, configuration, library); !judged) return judged.error();
@@ -89,7 +99,7 @@ Result<SweepTable> prepare(const SweepRequest& request, const Configuration& con
 }  // namespace
 
 int sweep(const SweepRequest& request, const Workplace& workplace, std::FILE* out, std::FILE* err) {
-  const auto library = workplace.library();
+  const auto library = workplace.library(request.each.run.file);
   RunRequest words;
   words.json = request.json;
   if (!library) return refuse_run(words, library.error(), out, err);

@@ -162,6 +162,7 @@ draw::Plot plot(const SweepTable& table) {
     for (std::size_t c = 0; c < combinations; ++c, ++wanted) {
       if (made.curves.size() >= kMostCurves) continue;
       draw::Curve curve{column.name + others(table, c), column.unit, {}};
+      curve.has_marks = true;
       for (std::size_t v = 0; v < first.values.size(); ++v) {
         const MeasuredRun& run = table.runs[v * combinations + c];
         const Measure::Number* number = run.failure.empty() ? number_of(run, column.name) : nullptr;

@@ -29,7 +29,8 @@ bool is_case_file(const fs::path& path) {
 
 /// Not looked into: what is hidden, and what a build made.
 bool is_passed_over(const fs::path& folder) {
-  return folder.filename().string().starts_with('.') || fs::exists(folder / "CMakeCache.txt");
+  std::error_code unknown;
+  return folder.filename().string().starts_with('.') || fs::exists(folder / "CMakeCache.txt", unknown);
 }
 
 Result<std::vector<std::string>> files_in(const std::string& place) {
@@ -38,9 +39,10 @@ Result<std::vector<std::string>> files_in(const std::string& place) {
   std::error_code failed;
   fs::recursive_directory_iterator at(place, fs::directory_options::skip_permission_denied, failed), end;
   for (; !failed && at != end; at.increment(failed)) {
-    if (at->is_directory(failed) && is_passed_over(at->path()))
+    std::error_code unknown;  // of a link that leads to itself
+    if (at->is_directory(unknown) && is_passed_over(at->path()))
       at.disable_recursion_pending();
-    else if (at->is_regular_file(failed) && is_case_file(at->path()))
+    else if (at->is_regular_file(unknown) && is_case_file(at->path()))
       files.push_back(at->path().string());
   }
   if (failed) return refusal(failed.message(), place);
@@ -90,7 +92,7 @@ CaseReport run_all(const CasesRequest& request, std::vector<CaseFile>& files, co
   std::vector<std::pair<CaseFile*, Case*>> cases;
   for (CaseFile& file : files)
     for (Case& one : file.cases) {
-      one.request.folder = fs::absolute(file.description).parent_path().string();
+      one.request.folder = fs::path(absolute_path(file.description)).parent_path().string();
       cases.emplace_back(&file, &one);
     }
   PieceProgress progress(cases.size(), "cases", err);
@@ -119,7 +121,7 @@ CaseReport run_all(const CasesRequest& request, std::vector<CaseFile>& files, co
 /// Cases run in folders of their own.
 Workplace anywhere(Workplace workplace) {
   for (auto* list : {&workplace.component_folders, &workplace.unit_files})
-    for (std::string& path : *list) path = fs::absolute(path).string();
+    for (std::string& path : *list) path = absolute_path(path);
   return workplace;
 }
 
@@ -135,11 +137,11 @@ bool is_place_of_cases(const std::string& word, const Library& library) {
 int test_application(const CasesRequest& request, const Workplace& workplace, std::FILE* out, std::FILE* err) {
   RunRequest words;
   words.json = request.json;
-  const auto library = anywhere(workplace).library();
-  if (!library) return refuse_run(words, library.error(), out, err);
   std::string faults;
   auto files = read_all(request, faults);
   if (!files) return refuse_run(words, files.error(), out, err);
+  const auto library = anywhere(workplace).library(files->empty() ? "" : files->front().description);
+  if (!library) return refuse_run(words, library.error(), out, err);
   if (!faults.empty() && request.json) return refuse_run(words, refusal(faults.substr(0, faults.find('\n'))), out, err);
   if (!faults.empty()) {
     std::fputs(for_terminal(faults).c_str(), err);

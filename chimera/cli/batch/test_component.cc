@@ -30,18 +30,21 @@ constexpr std::size_t kFewest = 20;                     // cycles of a short rec
 std::string beside(const LibraryEntry& entry, const char* ending) {
   const fs::path folder = fs::path(entry.object_file).parent_path();
   const fs::path file = folder / (entry.descriptor.name + ending);
-  return fs::exists(file) ? fs::absolute(file).string() : "";
+  std::error_code unknown;
+  return fs::exists(file, unknown) ? absolute_path(file.string()) : "";
 }
 
 bool is_path(const std::string& word) { return word.find('/') != std::string::npos || word.ends_with(".so"); }
 
 // Reads a shared object that is not installed: from the descriptor beside it, else from the object itself.
 Result<LibraryEntry> entry_of_object(const std::string& path, Nanoseconds patience) {
-  if (!fs::exists(path)) return (Message() << "no such file").error(ErrorCode::kNotFound, path);
+  std::error_code failed;
+  if (!fs::exists(path, failed))
+    return (Message() << (failed ? failed.message() : "no such file")).error(ErrorCode::kNotFound, path);
   LibraryEntry entry;
-  entry.object_file = fs::absolute(path).string();
+  entry.object_file = absolute_path(path);
   entry.descriptor_file = fs::path(entry.object_file).replace_extension(".component.json").string();
-  if (fs::exists(entry.descriptor_file)) {
+  if (fs::exists(entry.descriptor_file, failed)) {
     auto descriptor = read_descriptor_file(entry.descriptor_file);
     if (!descriptor) return descriptor.error();
     entry.descriptor = *std::move(descriptor);
@@ -63,13 +66,13 @@ class OneTest {
  public:
   OneTest(const TestOptions& options, const LibraryEntry& entry, const UnitSystem& units)
       : options_(options), entry_(entry), units_(units) {
-    entry_.object_file = fs::absolute(entry.object_file).string();  // the child lives in another folder
+    entry_.object_file = absolute_path(entry.object_file);  // the child lives in another folder
   }
 
   Result<component_test::TrialReport> run() {
     component_test::Setup setup;
     setup.file = options_.setup.empty() ? beside(entry_, ".test.yaml") : options_.setup;
-    setup.folder = fs::absolute(setup.file.empty() ? entry_.object_file : setup.file).parent_path().string();
+    setup.folder = fs::path(absolute_path(setup.file.empty() ? entry_.object_file : setup.file)).parent_path().string();
     if (auto partner = start_partner(setup); !partner) return partner.error();
     const Verdict verdict = component_test::arrange(setup, entry_, units_);
     if (!verdict.configuration) return refuse(verdict.report);

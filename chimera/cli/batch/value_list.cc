@@ -2,6 +2,7 @@
 // Parses lists and ranges of values with their unit.
 #include "chimera/cli/batch/value_list.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -82,6 +83,14 @@ Result<void> spread(const std::string& text, const Item& item, std::vector<Item>
   return {};
 }
 
+/// The elements of "[1 2]" or "[1, 2]", each with the unit behind the list.
+void add_elements(const Item& list, std::vector<Item>& to) {
+  for (std::size_t at = 1, next = 0; at < list.value.size() - 1; at = next + 1) {
+    next = std::min(list.value.find_first_of(" ,", at), list.value.size() - 1);
+    if (next > at) to.push_back({list.value.substr(at, next - at), list.unit, false});
+  }
+}
+
 ValueList listed(const std::string& name, std::vector<Item> items) {
   ValueList list{name, items.back().unit, {}, {}, {}};
   bool is_common = true;
@@ -102,7 +111,8 @@ ValueList listed(const std::string& name, std::vector<Item> items) {
 
 }  // namespace
 
-Result<ValueList> parse_value_list(const std::string& text) {
+Result<ValueList> parse_value_list(const std::string& text,
+                                   const std::function<bool(const std::string& name)>& is_single) {
   const std::size_t equals = text.find('=');
   const std::string name = trimmed(text.substr(0, equals));
   if (equals == std::string::npos || name.empty() || name.find(' ') != std::string::npos)
@@ -111,11 +121,16 @@ Result<ValueList> parse_value_list(const std::string& text) {
   for (const std::string& word : items_of(text.substr(equals + 1))) {
     if (word.empty()) return wrong_list(text, "a value is missing");
     const Item item = cut(word);
-    if (!is_range(item))
+    if (!is_range(item) && word.find(':') != std::string::npos && is_digit(word[0]))
+      return wrong_list(text, "write a range as '[FIRST:STEP:LAST] UNIT', such as '[0.1:0.1:1] V'");
+    if (!is_range(item) && item.value[0] == '[' && is_single && is_single(name))
+      add_elements(item, items);
+    else if (!is_range(item))
       items.push_back(item);
     else if (auto done = spread(text, item, items); !done)
       return done.error();
   }
+  if (items.empty()) return wrong_list(text, "a value is missing");
   if (items.size() > kMostRuns) return wrong_list(text, "more than " + std::to_string(kMostRuns) + " values");
   return listed(name, std::move(items));
 }

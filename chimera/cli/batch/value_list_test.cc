@@ -44,6 +44,14 @@ TEST(ValueList, ListsTextsAndUnitsOfTheirOwnStayWhole) {
   EXPECT_TRUE(mixed->numbers.empty()) << "the values have different units";
 }
 
+TEST(ValueList, AListForANameOfOneElementListsItsValues) {
+  const auto single = [](const std::string& name) { return name == "kp"; };
+  EXPECT_EQ(parse_value_list("kp = [15 25] 1/s", single)->values, (Texts{"15 1/s", "25 1/s"}));
+  EXPECT_EQ(parse_value_list("kp = [15, 25], 30 1/s", single)->values, (Texts{"15 1/s", "25 1/s", "30 1/s"}));
+  EXPECT_EQ(parse_value_list("q = [15 25] rad", single)->values, Texts{"[15 25] rad"});
+  EXPECT_FALSE(parse_value_list("kp = []", single));
+}
+
 TEST(ValueList, RefusesAMalformedList) {
   const std::string form = "write 'NAME = VALUE, VALUE UNIT' or 'NAME = [FIRST:STEP:LAST] UNIT'";
   EXPECT_EQ(values("kp"), Texts{"--over 'kp': " + form});
@@ -52,6 +60,8 @@ TEST(ValueList, RefusesAMalformedList) {
   EXPECT_EQ(values("kp = 1,,2"), Texts{"--over 'kp = 1,,2': a value is missing"});
   EXPECT_EQ(values("kp = [1:2]"),
             Texts{"--over 'kp = [1:2]': write a range as '[FIRST:STEP:LAST] UNIT', such as '[0.1:0.1:1] V'"});
+  EXPECT_EQ(values("kp = 1:1:3 V"),
+            Texts{"--over 'kp = 1:1:3 V': write a range as '[FIRST:STEP:LAST] UNIT', such as '[0.1:0.1:1] V'"});
   EXPECT_EQ(values("kp = [1:0:2]"),
             Texts{"--over 'kp = [1:0:2]': the range [1:0:2] does not come from its first to its last value"});
   EXPECT_EQ(values("kp = [2:1:1]"),

@@ -17,6 +17,14 @@ namespace {
 
 using Words = std::span<const std::string>;
 
+/// Words of other programs for a command.
+struct OtherWord {
+  std::string_view word, meant;
+};
+constexpr OtherWord kOtherWords[] = {{"stop", "end"},   {"halt", "end"},   {"shutdown", "end"}, {"start", "run"},
+                                     {"ls", "list"},    {"ps", "status"},  {"log", "events"},   {"logs", "events"},
+                                     {"plot", "scope"}, {"info", "describe"}};
+
 constexpr Option kHelpOption{
     .name = "--help", .help = "Print this help and exit", .manual = "The usage of this command.", .letter = "-h"};
 
@@ -125,7 +133,10 @@ Words Reader::find_command(Words words) {
     command = command_named(table_, name);
     if (command != nullptr) continue;
     const auto names = chimera::names_of(table_, [](const Command* row) { return row->name; });
-    wrong(no_such("command", name, names) + list_of(above));
+    const auto other = std::ranges::find(kOtherWords, std::string_view(name), &OtherWord::word);
+    const bool is_meant = other != std::end(kOtherWords) && command_named(table_, other->meant) != nullptr;
+    wrong((is_meant ? "no command " + in_quotes(name) + did_you_mean(other->meant) : no_such("command", name, names)) +
+          list_of(above));
     return words;
   }
   if (command == nullptr) wrong("no command is given" + list_of(""));
@@ -242,12 +253,12 @@ std::string help_line(const Option& option) {
   return help_line(left, option.help);
 }
 
-/// A line for each command of `above`; "": of the program.
+/// A line for each command of `above`; "": of the program. Rare ones have a heading of their own.
 std::string help_lines(Table table, std::string_view above) {
-  std::string text;
+  std::string text, rare;
   for (const Command* row : commands_of(table, above))
-    text += help_line(std::string(last_word(row->name)) + " " + row->operands, row->help);
-  return text;
+    (row->is_rare ? rare : text) += help_line(std::string(last_word(row->name)) + " " + row->operands, row->help);
+  return text + (rare.empty() ? "" : "\nSeldom needed:\n" + rare);
 }
 
 std::string examples(std::string text) {

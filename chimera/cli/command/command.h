@@ -70,6 +70,7 @@ struct Command {
   bool is_act = false;        ///< changes a running subsystem, or names a process of it, which the user then signals
   bool is_shells = false;     ///< understood inside `chimera shell` only
   bool has_commands = false;  ///< is nothing without one of its own commands, such as `new`
+  bool is_rare = false;       ///< not of the first month: the help of the program has it at its end
   bool is_hidden = false;     ///< not for people: in no help, manual or completion
   bool outlives_reader = false;  ///< goes on when its output has no reader; the others end by SIGPIPE, as `cat` does
 };

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace chimera::cli::command_test {
 namespace {
 
@@ -92,6 +94,10 @@ TEST(ReadCall, OptionsBeforeTheCommandBelongToIt) {
 TEST(ReadCall, RefusesWithPlaceAndRemedy) {
   EXPECT_EQ(fault({}), "no command is given; `chimera --help` lists them");
   EXPECT_EQ(fault({"drew"}), "no command 'drew'; did you mean 'draw'?; `chimera --help` lists them");
+  static const Command kEnd{.name = "end", .help = "End it"};
+  EXPECT_EQ(read_call(std::array{&kDraw, &kEnd}, Texts{"stop"}, "chimera").fault,
+            "no command 'stop'; did you mean 'end'?; `chimera --help` lists them\n");
+  EXPECT_EQ(fault({"stop"}), "no command 'stop'; `chimera --help` lists them") << "this table has no 'end'";
   EXPECT_EQ(read({"new"}).fault, "chimera new needs a command\n`chimera new --help` says more\n");
   EXPECT_EQ(fault({"new", "ap"}), "no command 'new ap'; did you mean 'new app'?; `chimera new --help` lists them");
   EXPECT_EQ(fault({"draw", "a", "--sise=3"}), "chimera draw has no option '--sise=3'; did you mean '--size'?");
@@ -169,6 +175,10 @@ TEST(HelpText, ShowsTheCommandsOfACommand) {
             "  draw FILE                   Draw it\n"
             "  pick [SET]                  Pick some\n"
             "  set VAR VALUE               Set it\n");
+  static const Command kSpawn{.name = "spawn", .help = "Create", .is_rare = true};
+  EXPECT_EQ(help_text(std::array{&kSpawn, &kNew}, nullptr, "chimera"),
+            "  new                         Make one\n\nSeldom needed:\n"
+            "  spawn                       Create\n");
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ std::string verdict_text(const Configuration& configuration) {
 }
 
 CommandResult check(const CheckOptions& options, const Workplace& workplace) {
-  const auto library = workplace.library();
+  const auto library = workplace.library(options.file);
   if (!library) return file_refusal(library.error(), options.json);
   Verdict verdict = verify(read_description_file(options.file), *library);
   if (verdict.configuration) {

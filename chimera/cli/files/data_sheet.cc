@@ -30,7 +30,7 @@ std::string number_text(double value) { return formatted("%g", value); }
 std::string initial_text(const PortDescriptor& port) {
   const std::size_t count = port.initial.size() / port.element_size;
   const ValueForm form{port.type, port.element_size, static_cast<std::uint32_t>(count), count == 1, "1", port.fields};
-  return (port.kind == CHIMERA_IN_CONST ? "default " : "initially ") + value_text(form, port.initial);
+  return (port.kind == CHIMERA_OUT_VAR ? "initially " : "default ") + value_text(form, port.initial);
 }
 
 std::string remarks(const PortDescriptor& port) {
@@ -89,8 +89,9 @@ std::string without_links(std::string_view line) {
   for (std::size_t at = 0; at < line.size();) {
     const bool is_picture = line.substr(at).starts_with("![");
     const std::size_t open = at + (is_picture ? 1 : 0);
-    const std::size_t close = line[open] == '[' ? line.find("](", open) : std::string_view::npos;
-    const std::size_t end = close == std::string_view::npos ? close : line.find(')', close);
+    const std::size_t close = line[open] == '[' ? line.find_first_of("[]", open + 1) : std::string_view::npos;
+    const bool is_link = close != std::string_view::npos && line.substr(close).starts_with("](");
+    const std::size_t end = is_link ? line.find(')', close) : std::string_view::npos;
     if (end == std::string_view::npos) {
       text += line[at++];
       continue;

@@ -15,6 +15,8 @@ TEST(PlainSheet, ShowsEverySectionButThePorts) {
 TEST(PlainSheet, NamesPicturesAndLeavesBracketsAlone) {
   EXPECT_EQ(plain_sheet("# g\n![A step](s.svg) and in[0] (one) and [open\n"),
             "(picture: A step) and in[0] (one) and [open\n");
+  EXPECT_EQ(plain_sheet("# s\n`[0.5, 0.5]`. All in one unit; [gain](../gain/README.md) and m[1][2] [a](b)\n"),
+            "`[0.5, 0.5]`. All in one unit; gain and m[1][2] a\n");
   EXPECT_EQ(plain_sheet(""), "");
   EXPECT_EQ(plain_sheet("# only"), "");
 }

@@ -27,7 +27,7 @@ CommandResult list(const Workplace& workplace, bool json) {
   else if (library->entries().empty())
     output.err = "no components found; CHIMERA_PATH says where to look\n";
   for (const std::string& folder : library->missing_folders())
-    output.err += "warning: CHIMERA_PATH names " + folder + ", which is no folder\n";
+    output.err += "warning: CHIMERA_PATH names " + folder + "\n";
   for (const Error& fault : library->faults()) output.err += error_line(fault);
   if (!library->faults().empty() && !json) output.err += "rebuild the components that cannot be read\n";
   if (!library->faults().empty()) output.code = kRefused;

@@ -57,6 +57,10 @@ TEST_F(New, ComponentBuildsAndPassesAgainstTheBuildTree) {
   build_and_test(make(NewKind::kComponent, "low_pass"), "low_pass");
   EXPECT_NE(log().find("low_pass: on cycle"), std::string::npos) << log();  // the methods that the build found
   EXPECT_TRUE(fs::exists(folder_ + "/low_pass/build/components/low_pass.component.json"));
+  const std::string flags = "low_pass/build/CMakeFiles/component_low_pass_objects.dir/flags.make";
+  EXPECT_NE(text(flags).find("-O2"), std::string::npos) << "no build type was given\n" << text(flags);
+  ASSERT_NE(run("cd " + folder_ + "/low_pass && sed -i 's/\"s\"/\"ohmz\"/' low_pass.cc && cmake --build build"), 0);
+  EXPECT_NE(log().find("port time: \"ohmz\" is no known unit"), std::string::npos) << log();
 }
 
 TEST_F(New, ComponentInCAndApplicationBuildAndPassAgainstAnInstallation) {

@@ -31,7 +31,7 @@ ScheduleOptions options_of(const ScheduleRequest& request, const std::optional<R
 }  // namespace
 
 CommandResult schedule(const ScheduleRequest& request, const Workplace& workplace) {
-  const auto library = workplace.library();
+  const auto library = workplace.library(request.file);
   if (!library) return file_refusal(library.error(), request.json);
   Verdict verdict = verify(read_description_file(request.file), *library, Overload::kTold);
   if (verdict.configuration) {

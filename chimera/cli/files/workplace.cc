@@ -2,6 +2,7 @@
 // Finds the installed components, units and templates from the place of the program and from the environment.
 #include "chimera/cli/files/workplace.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "chimera/text/nearest.h"
@@ -18,14 +19,20 @@ Workplace Workplace::around(const std::string& program) {
   made.unit_files = {prefix + "/share/chimera/units.xml", prefix + "/../../share/chimera/units.xml"};
   made.documents = prefix + "/share/chimera";
   const std::filesystem::path checkout = std::filesystem::path(prefix).parent_path().parent_path();
-  if (std::filesystem::is_directory(checkout / "docs/formats")) made.documents = checkout.string();
+  std::error_code unknown;
+  if (std::filesystem::is_directory(checkout / "docs/formats", unknown)) made.documents = checkout.string();
   return made;
 }
 
-Result<Library> Workplace::library() const {
+Result<Library> Workplace::library(const std::string& description) const {
   auto units = UnitSystem::load(unit_files);
   if (!units) return units.error();
-  return Library::make(component_folders, *std::move(units));
+  std::vector<std::string> folders = component_folders;
+  std::error_code unknown;
+  const auto built = absolute(std::filesystem::path(description).parent_path() / "build/components", unknown);
+  const auto behind_path = static_cast<std::ptrdiff_t>(std::min(chimera::component_folders({}).size(), folders.size()));
+  if (std::filesystem::is_directory(built, unknown)) folders.insert(folders.begin() + behind_path, built.string());
+  return Library::make(folders, *std::move(units));
 }
 
 Error no_component(const std::string& name, const Library& library) {
@@ -39,6 +46,12 @@ Error no_component(const std::string& name, const Library& library) {
   else if (!nearest.empty()) message += did_you_mean(nearest);
   else message += "; `chimera list` names those that are, CHIMERA_PATH says where to look";
   return {ErrorCode::kNotFound, {message}, {}};
+}
+
+std::string absolute_path(const std::string& path) {
+  std::error_code unknown;
+  const std::filesystem::path whole = std::filesystem::absolute(path, unknown);
+  return unknown ? path : whole.string();
 }
 
 std::string program_path() {

@@ -4,6 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "chimera/base/testing/tree_path.h"
 
 namespace chimera::cli {
 namespace {
@@ -39,6 +43,18 @@ TEST(Workplace, RefusesToGuessUnits) {
   ASSERT_FALSE(library);
   EXPECT_NE(std::string(library.error().message.view()).find("/nowhere/units.xml"), std::string::npos)
       << library.error().message.c_str();
+}
+
+TEST(Workplace, FindsTheComponentsThatAreBuiltBesideADescription) {
+  const std::filesystem::path folder = testing::TempDir() + "workplace_beside";
+  std::filesystem::create_directories(folder / "build/components");
+  std::ofstream(folder / "build/components/cut.component.json") << "{";
+  Workplace place;
+  place.unit_files = {source_path("share/chimera/units.xml")};
+  const auto found = [&](const std::string& description) { return place.library(description)->faults().size(); };
+  EXPECT_EQ(found((folder / "app.yaml").string()), 1u) << "the cut descriptor is read";
+  EXPECT_EQ(found((folder / "build/app.yaml").string()), 0u);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(ProgramPath, IsThisProgram) { EXPECT_NE(program_path().find("/cli_test"), std::string::npos); }

@@ -200,8 +200,14 @@ RunningCommand receipts_row() {
 }
 
 RunningCommand reinit_row() {
-  return signal_row(Signal::kReinit, "Have tasks read their constants anew", "Has tasks read their constants anew.",
-                    "chimera reinit pid");
+  RunningCommand row = signal_row(
+      Signal::kReinit, "Call `reinit` of tasks with the constants of the start; the file is not read",
+      "Calls `reinit` of each TASK, with the constants of the start and of other tasks: the file is not read again.",
+      "chimera reinit pid");
+  row.show = [](const Json& answer) {
+    return signal_text(answer) + "the file was not read: constants in it are those of the start\n";
+  };
+  return row;
 }
 
 RunningCommand ring_row() {
@@ -272,6 +278,7 @@ RunningCommand set_row() {
                     .least = 2,
                     .most = kAnyNumber,
                     .operand_kind = WordKind::kSetting,
+                    .operand_help = "an operator variable, and its value with a unit",
                     .example = "chimera set kp '[100 90] N.m/rad'",
                     .manual = "Gives an operator variable a value with its unit. Values for all elements stand in "
                               "brackets.",
@@ -401,7 +408,11 @@ std::vector<RunningCommand> table() {
                                       kill_row(),   off_row(),   on_row(),     profile_row(), receipts_row(),
                                       reinit_row(), ring_row(),  save_row(),   scope_row(),  set_row(),  spawn_row(),
                                       status_row(), switch_row(), top_row(),  watch_row(),  why_row()};
-  for (RunningCommand& row : rows) row.words.which = kWhichOne;
+  constexpr std::string_view kRare[] = {"clear", "kill", "reinit", "ring", "spawn"};
+  for (RunningCommand& row : rows) {
+    row.words.which = kWhichOne;
+    row.words.is_rare = std::ranges::find(kRare, row.words.name) != std::end(kRare);
+  }
   return rows;
 }
 

@@ -8,7 +8,7 @@
 #include "chimera/base/hosted/wording.h"
 #include "chimera/description/draft.h"
 #include "chimera/description/yaml_reader.h"
-#include "chimera/text/json.h"
+#include "chimera/verify/setting.h"
 
 namespace chimera::cli {
 namespace {
@@ -112,14 +112,6 @@ bool is_in_brackets(std::string_view text, const Draft& draft) {
   return before != std::string_view::npos && text[before] == '{';
 }
 
-std::string written(const Node& value) {
-  if (value.is_scalar()) return value.quoted ? Json(value.text).dump() : value.text;
-  const std::string words = join_n(value.items.size(), ", ", [&value](std::size_t i) {
-    return (value.is_map() ? value.keys[i].text + ": " : "") + written(value.items[i]);
-  });
-  return value.is_map() ? "{" + words + "}" : "[" + words + "]";
-}
-
 struct Editing {
   std::string_view text;
   const UnitSystem& units;
@@ -138,7 +130,7 @@ bool add_edits(const Node& given, const Node& now, const std::string& words, con
     if (given.kind != now.kind || given.items.size() != now.items.size()) return false;
     for (std::size_t i = 0; i < given.items.size(); ++i) {
       const Node* item = given.is_map() ? now.find(given.keys[i].text) : &now.items[i];
-      if (item == nullptr || !add_edits(given.items[i], *item, written(*item), in, edits)) return false;
+      if (item == nullptr || !add_edits(given.items[i], *item, written_text(*item), in, edits)) return false;
     }
     return true;
   }

@@ -133,6 +133,23 @@ void Scope::add(const Json& params) {
   prune();
 }
 
+void Scope::add_values(const Json& params) {
+  const std::int64_t now = whole_of(params, "at_ns");
+  for (const auto& [name, reading] : params["values"].items()) {
+    const Stream& of = stream("operator", name);
+    const std::int64_t published = whole_of(reading, "published_ns");
+    // The first value has held for long: it counts from now on.
+    const std::int64_t at = of.oldest ? published : now;
+    if (!of.oldest || published > of.newest.count)
+      add({{"rtpu", "operator"},
+           {"task", name},
+           {"variables", Json::array({name})},
+           {"first", of.next.value_or(0)},
+           {"rows", Json::array({Json::array({at, of.sequence + 1, reading["value"]})})}});
+    stream("operator", name).newest = Nanoseconds{now};
+  }
+}
+
 bool Scope::is_complete() const {
   if (is_full_) return true;
   if (!begin_) return false;

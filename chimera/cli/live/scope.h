@@ -43,6 +43,8 @@ class Scope {
 
   /// Takes the parameters of a `tap` notification (docs/formats/control.md); others are passed over.
   void add(const Json& params);
+  /// Takes the parameters of a `values` notification of operator variables, which no tap has: a row for each new value.
+  void add_values(const Json& params);
   bool is_triggered() const noexcept { return begin_.has_value(); }
   /// Edges of the trigger that came before there was a whole pre-trigger, and so did not begin it.
   std::uint64_t early_edges() const noexcept { return early_edges_; }

@@ -41,6 +41,7 @@ Result<Nanoseconds> duration(const Call& call, const char* option, Nanoseconds o
 struct Known {
   std::string unit;
   bool is_scalar = true;
+  bool is_given = false;  ///< an operator variable: no task publishes it
 };
 
 Result<Known> known(const Json& described, const std::string& name) {
@@ -49,7 +50,7 @@ Result<Known> known(const Json& described, const std::string& name) {
     names.push_back(text_of(variable, "variable"));
     if (names.back() != name) continue;
     if (truth_at(variable, "constant")) return wrong("'" + name + "' is a constant: no task publishes it");
-    return Known{text_of(variable, "unit"), text_of(variable, "shape").empty()};
+    return Known{text_of(variable, "unit"), text_of(variable, "shape").empty(), truth_at(variable, "given")};
   }
   return Error{ErrorCode::kNotFound, {no_such("state variable", name, names)}, {}};
 }
@@ -57,10 +58,11 @@ Result<Known> known(const Json& described, const std::string& name) {
 struct Asked {
   ScopeRequest request;
   Nanoseconds wait;
-  Json variables = Json::array();
+  Json variables = Json::array(), given = Json::array();
 
-  void subscribe_to(const std::string& variable) {
-    if (std::find(variables.begin(), variables.end(), variable) == variables.end()) variables.push_back(variable);
+  void subscribe_to(const std::string& variable, const Known& what) {
+    Json& list = what.is_given ? given : variables;
+    if (std::find(list.begin(), list.end(), variable) == list.end()) list.push_back(variable);
   }
 };
 
@@ -71,7 +73,7 @@ Result<void> add_channels(Asked& asked, const Call& call, const Json& described)
     const auto what = known(described, name.value().variable);
     if (!what) return what.error();
     asked.request.channels.push_back({name.value(), what.value().unit, what.value().is_scalar});
-    asked.subscribe_to(name.value().variable);
+    asked.subscribe_to(name.value().variable, what.value());
   }
   return {};
 }
@@ -88,7 +90,7 @@ Result<void> add_trigger(Asked& asked, const Call& call, const Json& described, 
   if (!what.value().is_scalar && trigger->channel().part.empty())
     return wrong("trigger '" + trigger->text() + "': say which element, such as " + trigger->channel().variable +
                  "[0]");
-  asked.subscribe_to(trigger->channel().variable);
+  asked.subscribe_to(trigger->channel().variable, what.value());
   asked.request.trigger_is_scalar = what.value().is_scalar;
   asked.request.trigger = std::move(*trigger);
   return {};
@@ -124,6 +126,7 @@ std::optional<Error> record(Session& session, Scope& scope, const Asked& asked) 
     if (woken.by == By::kStop) return std::nullopt;
     if (woken.by == By::kLost) return woken.error;
     if (woken.by == By::kNote && woken.note.method == "tap") scope.add(*woken.note.parameters);
+    if (woken.by == By::kNote && woken.note.method == "values") scope.add_values(*woken.note.parameters);
     if (scope.is_triggered() && !was_triggered) {
       was_triggered = true;
       until = scope.begin() + asked.request.duration + kGrace;
@@ -173,9 +176,15 @@ CommandResult scope(Session& session, const Call& call, const Screen& screen) {
     if (call.has(option))
       if (const auto may = may_write_recorded_profile(call.value(option)); !may) return refused(may.error(), call.json);
   const control::RpcResponse hello = session.ask("hello");
-  const control::RpcResponse subscribed =
-      session.ask("subscribe", {{"to", "tap"}, {"variables", asked.value().variables}});
-  if (!subscribed.is_good()) return refused(subscribed, call.json);
+  std::vector<std::int64_t> subscriptions;
+  for (const auto& [to, variables] : {std::pair{"tap", asked->variables}, {"values", asked->given}}) {
+    if (variables.empty()) continue;
+    Json wanted = {{"to", to}, {"variables", variables}};
+    if (to == std::string("values")) wanted["period_ms"] = 20;  // the shortest
+    const control::RpcResponse subscribed = session.ask("subscribe", wanted);
+    if (!subscribed.is_good()) return refused(subscribed, call.json);
+    subscriptions.push_back(whole_of(*subscribed.result, "subscription"));
+  }
   Scope scope(asked.value().request);
   if (asked->request.pre.count > 0 && !call.json && screen.err != nullptr) {
     std::fprintf(screen.err, "recording the pre-trigger of %s first; the trigger is armed after that\n",
@@ -183,7 +192,7 @@ CommandResult scope(Session& session, const Call& call, const Screen& screen) {
     std::fflush(screen.err);
   }
   const auto end = record(session, scope, asked.value());
-  session.ask("unsubscribe", {{"subscription", whole_of(*subscribed.result, "subscription")}});
+  for (const std::int64_t subscription : subscriptions) session.ask("unsubscribe", {{"subscription", subscription}});
   if (end && !scope.is_triggered()) return refused(*end, call.json);
   if (!scope.is_triggered()) {
     const std::string early = scope.early_edges() == 0 ? ""

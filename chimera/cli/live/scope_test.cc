@@ -189,6 +189,33 @@ TEST(Scope, MemoryIsBoundedWhileItWaits) {
   EXPECT_EQ(scope.rows(), 4u);
 }
 
+/// A notification of the operator variable q: its value since `published`, at `now`.
+Json given(std::int64_t now_ms, std::int64_t published_ms, double value) {
+  return {{"at_ns", now_ms * 1'000'000},
+          {"values", {{"q", {{"published_ns", published_ms * 1'000'000}, {"value", Json::array({value, value})}}}}}};
+}
+
+TEST(Scope, AnOperatorVariableIsRecordedAndTriggers) {
+  ScopeRequest asked = request("", 0, 4);
+  asked.trigger = Trigger::read("q[0] > 15 rad", our_units()).value();
+  ASSERT_TRUE(asked.trigger->settle("rad", our_units()));
+  Scope scope(asked);
+  scope.add_values(given(1000, 3, 10));
+  scope.add(pid(0, {{1001, 1, 0.5}}));
+  scope.add_values(given(1002, 3, 10));
+  EXPECT_FALSE(scope.is_triggered());
+  scope.add_values(given(1004, 1003, 20));
+  ASSERT_TRUE(scope.is_triggered());
+  EXPECT_EQ(scope.begin(), milliseconds(1003)) << "the time of `set`, not of its notification";
+  scope.add(pid(1, {{1005, 2, 0.25}, {1008, 3, 0}}));
+  EXPECT_FALSE(scope.is_complete()) << "q may still change";
+  scope.add_values(given(1008, 1003, 20));
+  EXPECT_TRUE(scope.is_complete());
+  EXPECT_EQ(scope.csv(), "t(s),error(rad),q[0](rad),q[1](rad),lost\n"
+                         "0.000000000,0.5,20,20,0\n"
+                         "0.002000000,0.25,20,20,0\n");
+}
+
 TEST(Scope, OddMessagesArePassedOver) {
   Scope scope(request("", 0, 1));
   for (const char* odd : {"null", "{}", R"({"rows": 3})", R"({"rows": [1, [], ["a", 1], [1]]})",

@@ -179,7 +179,7 @@ std::string plan_text(const Json& answer) {
             text_of(variable, "to") + "\n";
   }
   if (const Json& off = answer["late_off"]; off.is_object())
-    text += "  off of " + text_of(off, "task") + " was never called and is taken to need " +
+    text += "  off of " + text_of(off, "task") + " is taken to need " +
             duration_text(whole_of(off, "needs_ns")) +
             "; no gap is as long, so it runs 100 ms after the change and may delay cycles\n";
   return text;

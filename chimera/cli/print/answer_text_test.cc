@@ -111,8 +111,8 @@ TEST(AnswerText, DryRunNamesAnOffThatFitsNoGap) {
   EXPECT_EQ(plan_text(answer),
             "switch from 'both' to 'light' would begin, the fast way; it is expected to take 1.00 ms\n"
             "  leaves: old\n"
-            "  off of old was never called and is taken to need 880 us; no gap is as long, so it runs 100 ms after the "
-            "change and may delay cycles\n");
+            "  off of old is taken to need 880 us; no gap is as long, so it runs 100 ms after the change and may delay "
+            "cycles\n");
 }
 
 TEST(AnswerText, WhyOfAnOperatorVariable) {

@@ -57,7 +57,7 @@ EventLines::Event EventLines::read(const Json& event) {
           whole_of(event, "wall_ns"),
           text_of(event, "kind"),
           task.empty() ? text_of(event, "rtpu") : task,
-          text_of(event, "text")};
+          text_of(event, "text") + (text_of(event, "by").empty() ? "" : ", by " + text_of(event, "by"))};
 }
 
 std::string EventLines::line_of(const Event& event) {

@@ -30,6 +30,12 @@ TEST(EventLines, AreNumberedAndTimedAndCountLostEvents) {
   EXPECT_EQ(events_text(Json::parse(R"({"first": 1, "last": 0, "events": []})"), 0), "");
 }
 
+TEST(EventLines, NameTheUserWhoseRequestAnEventIs) {
+  const Json events = Json::parse(R"({"first": 1, "last": 1, "events": [
+      {"number": 1, "at_ns": 5, "wall_ns": 0, "kind": "set", "text": "kp = 2", "by": "operate:ann"}]})");
+  EXPECT_NE(events_text(events, 0).find("set              kp = 2, by operate:ann\n"), std::string::npos);
+}
+
 Json event(int number, std::int64_t at_ms, const char* kind, const char* task, const char* text) {
   return {{"number", number},
           {"at_ns", at_ms * 1'000'000},

@@ -223,6 +223,7 @@ std::string rtpu_remarks(const Json& rtpu) {
   if (truth_at(rtpu, "flag")) line += ", FLAG";
   if (const std::int64_t bytes = whole_of(rtpu, "resident_bytes"); bytes > 0) line += ", " + memory_text(bytes);
   if (const std::string lost = text_of(rtpu, "lost_rights"); !lost.empty()) line += ", RIGHTS LOST: " + lost;
+  if (!text_of(rtpu, "not_real_time").empty()) line += ", NOT REAL TIME";
   if (const std::int64_t lost = whole_of(rtpu, "lost_events"); lost > 0)
     line += ", " + std::to_string(lost) + " events lost";
   if (const std::string end = text_of(rtpu, "last_end"); !end.empty()) line += "; last end: " + end;
@@ -242,8 +243,13 @@ OldestInput oldest_input(const Json& task) {
 std::string status_text(const Json& status) {
   std::string text = headline(status) + "\n" + face_text(status["face"]);
   if (const Columns rtpus = rtpu_table(status); !rtpus.empty()) text += "\n" + rtpus.text();
-  if (const std::string hang = text_of(status["keeper"], "hang"); !hang.empty())
-    text += "keeper: HANGS: " + hang + "\n";
+  for (const char* process : {"keeper", "guard"})
+    if (const std::string hang = text_of(status[process], "hang"); !hang.empty())
+      text += process + (": HANGS: " + hang) + "\n";
+  if (const std::string lack = text_of(status["guard"], "lack"); !lack.empty()) text += lack + "\n";
+  for (const Json& rtpu : status["rtpus"])
+    if (const std::string why = text_of(rtpu, "unguarded"); !why.empty())
+      text += text_of(rtpu, "name") + ": NO GUARD: " + why + "\n";
   for (const Json& rtpu : status["rtpus"])
     if (const std::string hang = text_of(rtpu, "hang"); !hang.empty())
       text += text_of(rtpu, "name") + ": HANGS: " + hang + "\n";
@@ -255,6 +261,9 @@ std::string status_text(const Json& status) {
   for (const Json& rtpu : status["rtpus"])
     if (const std::string lost = text_of(rtpu, "lost_rights"); !lost.empty())
       text += text_of(rtpu, "name") + ": RIGHTS LOST: " + lost + "\n";
+  for (const Json& rtpu : status["rtpus"])
+    if (const std::string why = text_of(rtpu, "not_real_time"); !why.empty())
+      text += text_of(rtpu, "name") + ": NOT REAL TIME: " + why + "\n";
   if (const Columns tasks = task_table(status); !tasks.empty()) text += "\n" + tasks.text();
   for (const Json& task : status["tasks"])
     if (const std::string fault = text_of(task, "fault"); !fault.empty())

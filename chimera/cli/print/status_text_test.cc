@@ -41,6 +41,23 @@ TEST(StatusText, PrintsTheLoadOfAnRtpuAndItsLostRights) {
             "SCHED_FIFO 80");
 }
 
+TEST(StatusText, SaysWhyAnRtpuIsNotRealTime) {
+  Json status = chimera::cli::status();
+  status["rtpus"][0]["not_real_time"] = "memory not locked";
+  EXPECT_NE(status_text(status).find("\nservo: NOT REAL TIME: memory not locked\n"), std::string::npos);
+  EXPECT_EQ(rtpu_remarks(status["rtpus"][0]), "servo serving, running pid.cycle, NOT REAL TIME");
+}
+
+TEST(StatusText, NamesAGuardThatHangsOrLacksSomethingAndTheRtpusWithoutIt) {
+  Json status = chimera::cli::status();
+  status["guard"] = {{"pid", 4713}, {"lack", "the guard is dead"}, {"hang", "does not run"}};
+  status["rtpus"][0]["unguarded"] = "no safe frame can be written: Too many open files";
+  EXPECT_NE(status_text(status).find("\nguard: HANGS: does not run\nthe guard is dead\n"
+                                     "servo: NO GUARD: no safe frame can be written: Too many open files\n"),
+            std::string::npos)
+      << status_text(status);
+}
+
 TEST(StatusText, PrintsSubsystemRtpusAndTasks) {
   EXPECT_EQ(status_text(status()),
             "puma_pid: run, up 12.5 min, flag UP by spare, operator\n"

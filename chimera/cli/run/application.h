@@ -77,4 +77,10 @@ class Application {
   std::vector<std::unique_ptr<HeapTaskSet>> contexts_;  // one; with peers_ by rtpu, null: no task is on it
 };
 
+/// The names of the numbers of a variable, in the order of Seen::numbers: "error"; of a list "q[0]"; of a struct
+/// "target.position[2]". Context: setup.
+std::vector<std::string> number_names(const Probe& probe);
+/// The unit of each number. Context: setup.
+std::vector<std::string> number_units(const Probe& probe);
+
 }  // namespace chimera::cli

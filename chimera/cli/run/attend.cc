@@ -37,6 +37,7 @@ constexpr Nanoseconds kStartPatience = seconds(20), kStartAnswer = milliseconds(
 constexpr Nanoseconds kSwitchLimit = seconds(15);  // what is not committed within 10 s is aborted
 constexpr std::size_t kEventsAtOnce = 1000;
 constexpr Nanoseconds kLastOutput = seconds(1);  // half of the time that the keeper waits for the run client to finish
+constexpr Nanoseconds kFilingLimit = milliseconds(500);  // until the disk has the last receipts
 constexpr Nanoseconds kEndLimit = seconds(600);  // the keeper ends a process that takes too long: not judged here
 
 std::string limit_text(Nanoseconds time) { return formatted("%g s", to_seconds(time)); }
@@ -361,9 +362,7 @@ std::vector<RtpuFate> RemoteTarget::rtpus_of(const Json& status) const {
   for (const Json& json : status["rtpus"]) {
     RtpuFate rtpu{text_at(json, "name"),
                   static_cast<std::uint64_t>(whole_at(json, "restarts")),
-                  kNever,
-                  truth_at(json, "given_up"),
-                  {}};
+                  kNever, truth_at(json, "given_up"), {}, text_at(json, "not_real_time")};
     if (const auto at = restarted_.find(rtpu.name); at != restarted_.end() && started_ != kNever)
       rtpu.restarted = at->second - started_;
     rtpus.push_back(std::move(rtpu));
@@ -378,9 +377,11 @@ std::vector<TaskProfile> RemoteTarget::profiles(const Json& origin) {
   return tasks ? *tasks : std::vector<TaskProfile>();
 }
 
+/// An rtpu that lives and does not run counts too: its tasks may be ON.
 bool any_lives(const Json& status) {
   const Json& rtpus = status["rtpus"];
-  return std::any_of(rtpus.begin(), rtpus.end(), [](const Json& rtpu) { return truth_at(rtpu, "alive"); });
+  return std::any_of(rtpus.begin(), rtpus.end(),
+                     [](const Json& rtpu) { return truth_at(rtpu, "alive") || rtpu["hang"].is_string(); });
 }
 
 /// Asks the keeper to turn the tasks off and kill them, and reads all events until then. Returns the status after it.
@@ -424,6 +425,15 @@ void RemoteTarget::judge_end(RunReport& report, const Json& before) {
         " of the acts of --at were carried out: the process that asked for them died");
   if (ended.empty() && !names_.tasks.empty())
     report.verdict.failures.emplace_back("the manager did not answer at the end: how the tasks ended is not known");
+  const Nanoseconds until = clock_.now() + kFilingLimit;
+  for (bool is_last = !after; !is_last; clock_.wait_until(clock_.now() + kStartLook)) {
+    const auto answer = line_.ask("receipts", {{"last", 1}});
+    const auto unfiled = static_cast<std::uint64_t>(answer ? whole_at(*answer, "unfiled") : 0);
+    is_last = unfiled == 0 || clock_.now() >= until;
+    if (unfiled > 0 && is_last)
+      report.verdict.failures.push_back(counted(unfiled, "receipt was", "receipts were") + " not filed: " +
+                                        text_at(*answer, "fault", "the disk does not answer"));
+  }
 }
 
 /// Prints the refusal. The tasks that were made are turned off and killed nevertheless, and that is judged.

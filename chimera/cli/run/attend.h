@@ -16,7 +16,7 @@ namespace chimera::cli {
 struct AttendRequest {
   std::string socket;          ///< path of the subsystem's
   RunRequest run;              ///< of these: duration, every, watch, at, expect, json
-  std::vector<double> bounds;  ///< of run.expect, each in the unit of its variable
+  std::vector<Bound> bounds;  ///< of run.expect
   int keeper = 0;              ///< process that ends the tasks when it gets SIGUSR1; 0: none
   FacePage* page = nullptr;    ///< progress of earlier run clients; null: there was none, and none will follow
   Outlet* outlet = nullptr;    ///< of `out`: asked for losses, which SIGUSR2 reports to the keeper; may be null

@@ -165,7 +165,7 @@ TEST_F(Attend, PrintsRightsWatchedValuesAndTheVerdict) {
   request_.run.watch = {"q", "x"};
   request_.run.every = milliseconds(25);
   request_.run.expect = {"|q| < 3 rad", "x > 0 m"};
-  request_.bounds = {3, 0};
+  request_.bounds = {{3}, {0}};
   EXPECT_EQ(attend(), kRefused);
   EXPECT_EQ(out_,
             "servo: real time: all granted\nspare: WARNING: not real time\n  priority 0\n  granted: memory\n"
@@ -182,7 +182,7 @@ TEST_F(Attend, PrintsRightsWatchedValuesAndTheVerdict) {
 
 TEST_F(Attend, IsASuccessWhenEveryExpectationHolds) {
   request_.run.expect = {"q > -2.5 rad"};
-  request_.bounds = {-2.5};
+  request_.bounds = {{-2.5}};
   request_.run.watch = {"q"};
   request_.run.json = true;
   EXPECT_EQ(attend(), kOk);
@@ -210,7 +210,7 @@ TEST_F(Attend, PrintsTheReceiptsOfItsOwnRunForRequestsOfAllClients) {
 TEST_F(Attend, NotANumberSatisfiesNoExpectation) {
   backend_.values["q"] = reading(Json::array({1.0, nullptr}), "[1 nan] rad");
   request_.run.expect = {"q < 3 rad"};
-  request_.bounds = {3};
+  request_.bounds = {{3}};
   EXPECT_EQ(attend(), kRefused);
   EXPECT_NE(out_.find("FAILS: q < 3 rad (q is [1 nan] rad)\n"), std::string::npos) << out_;
 }

@@ -6,9 +6,12 @@
 #include <array>
 #include <cmath>
 
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/files/blanks.h"
+#include "chimera/text/decimal.h"
 #include "chimera/text/nearest.h"
 #include "chimera/units/quantity.h"
+#include "chimera/verify/setting.h"
 
 namespace chimera::cli {
 namespace {
@@ -36,10 +39,12 @@ Result<const ConfiguredVariable*> find_variable(const Configuration& configurati
     if (variable.name == name) return &variable;
     names.push_back(variable.name);
   }
-  return Error{ErrorCode::kNotFound, {no_such("state variable", name, names)}, {configuration.file()}};
+  const std::string constant = about_constant(configuration, name);
+  const std::string why = constant.empty() ? no_such("state variable", name, names) : constant;
+  return Error{ErrorCode::kNotFound, {why}, {configuration.file()}};
 }
 
-Result<Expectation> Expectation::with_bound(const std::string& text, double bound) {
+Result<Expectation> Expectation::with_bound(const std::string& text, const Bound& bound) {
   const std::size_t at = text.find_first_of("<>");
   if (at == std::string::npos) return wrong_expectation("write 'VARIABLE <= QUANTITY', with < <= > or >=");
   Expectation made;
@@ -63,7 +68,7 @@ Result<Expectation> Expectation::parse(const std::string& text, const Configurat
 
 Result<Expectation> Expectation::read(const std::string& text, const Configuration& configuration,
                                       const UnitSystem& units) {
-  auto made = with_bound(text, 0);
+  auto made = with_bound(text, {});
   if (!made) return made;
   const auto found = find_variable(configuration, made->variable_);
   if (!found) return wrong_expectation(found.error().message.c_str());
@@ -77,14 +82,23 @@ Result<Expectation> Expectation::read(const std::string& text, const Configurati
   if (!unit) return wrong_expectation(unit.error().message.c_str());
   const auto bound = value_in(*quantity, *unit, variable.unit);
   if (!bound) return wrong_expectation(bound.error().message.c_str());
-  made->bound_ = *bound;
+  made->bound_ = {*bound, *conversion(*unit, quantity->unit)};
   return made;
 }
 
+std::string Expectation::value_text(const std::vector<double>& values, const std::string& as_is) const {
+  const Conversion& to = bound_.to_written;
+  const std::string quantity = quantity_of(text_, op_);
+  const auto number = read_decimal(quantity);
+  if (!number || (to.factor == 1 && to.offset == 0)) return as_is;
+  const std::string list = join(values, " ", [&to](double value) { return formatted("%.6g", to(value)); });
+  return with_unit(values.size() == 1 ? list : "[" + list + "]", trimmed(quantity.substr(number->length)));
+}
+
 bool Expectation::holds(const Seen& seen, std::string& said) const {
-  said = variable_ + (seen.is_written ? " is " + seen.text : " was never written");
+  said = variable_ + (seen.is_written ? " is " + value_text(seen.numbers, seen.text) : " was never written");
   return seen.is_written && std::all_of(seen.numbers.begin(), seen.numbers.end(), [this](double value) {
-           return compare(magnitude_ ? std::fabs(value) : value, op_, bound_);
+           return compare(magnitude_ ? std::fabs(value) : value, op_, bound_.value);
          });
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "chimera/units/unit.h"
 #include "chimera/units/unit_system.h"
 #include "chimera/verify/configuration.h"
 
@@ -20,6 +21,12 @@ struct Seen {
 /// The state variable of that name; refuses an unknown name with the nearest one. Context: setup.
 Result<const ConfiguredVariable*> find_variable(const Configuration& configuration, const std::string& name);
 
+/// The right side of an expectation, in the unit of its variable.
+struct Bound {
+  double value = 0;
+  Conversion to_written{};  ///< to the unit in which the expectation is written
+};
+
 /// `VARIABLE OP QUANTITY` with OP one of < <= > >=; every element of the variable must satisfy it. Around the
 /// variable may stand |bars|: the magnitude. The quantity is converted to the variable's unit.
 class Expectation {
@@ -31,19 +38,20 @@ class Expectation {
   static Result<Expectation> read(const std::string& text, const Configuration& configuration,
                                   const UnitSystem& units);
   /// One that parse() has accepted elsewhere, whose bound was `bound`. Refuses what is no comparison. Context: setup.
-  static Result<Expectation> with_bound(const std::string& text, double bound);
+  static Result<Expectation> with_bound(const std::string& text, const Bound& bound);
 
-  /// True when the value satisfies the expectation; `said` contains the value. A value that was never written, or is
-  /// NaN, satisfies no expectation.
+  /// True when the value satisfies the expectation; `said` contains the value, in the unit of the expectation. A value
+  /// that was never written, or is NaN, satisfies no expectation.
   bool holds(const Seen& seen, std::string& said) const;
+  /// "3.1 mrad": values of the variable in the unit of the expectation; `as_is` if that is the unit of the variable.
+  std::string value_text(const std::vector<double>& values, const std::string& as_is) const;
   const std::string& text() const noexcept { return text_; }
   const std::string& variable() const noexcept { return variable_; }
-  /// The bound in the unit of the variable.
-  double bound() const noexcept { return bound_; }
+  const Bound& bound() const noexcept { return bound_; }
 
  private:
   std::string text_, variable_, op_;
-  double bound_ = 0;
+  Bound bound_;
   bool magnitude_ = false;
 };
 

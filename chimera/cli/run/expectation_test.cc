@@ -23,6 +23,16 @@ TEST_F(ExpectationText, TakesEveryComparisonAndConvertsTheUnit) {
     EXPECT_EQ(refusal(text), "accepted") << text;
 }
 
+TEST_F(ExpectationText, SaysTheValueInItsOwnUnit) {
+  std::string said;
+  const auto made = Expectation::parse("dt < 2 ms", application_.configuration(), library_.units());
+  ASSERT_TRUE(made);
+  EXPECT_TRUE(made->holds({true, "0.001 s", {0.001}}, said));
+  EXPECT_EQ(said, "dt is 1 ms");
+  EXPECT_FALSE(Expectation::with_bound(made->text(), made->bound())->holds({true, "[0.0015 1] s", {0.0015, 1}}, said));
+  EXPECT_EQ(said, "dt is [1.5 1000] ms");
+}
+
 TEST_F(ExpectationText, RefusesTextThatIsNoComparison) {
   const char* form = "write 'VARIABLE <= QUANTITY', with < <= > or >=";
   EXPECT_EQ(refusal(""), std::string("--expect '': ") + form);

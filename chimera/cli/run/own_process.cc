@@ -15,6 +15,7 @@
 
 #include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/cli/run/under_way.h"
+#include "chimera/platform/orphans.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/standard_streams.h"
 #include "chimera/text/not_off.h"
@@ -87,6 +88,9 @@ class Limits {
   std::string exceeded(const UnderWay& place, bool is_asked) {
     if (making_.is_over(place.making))
       return "the run did not end within " + std::to_string(kMakingLimitSeconds) + " s " + place.text();
+    if (exit_.is_over(place.has_returned ? 1 : 0))
+      return "the run did not end within " + std::to_string(kMakingLimitSeconds) +
+             " s of its last method: an exit handler or destructor of a component does not return";
     if (!method_.is_over(is_asked || place.is_ending ? place.words() : 0)) return "";
     const UnderWay::Method method = place.method();
     const std::string within = " within " + std::to_string(kEndingLimitSeconds) + " s";
@@ -95,7 +99,7 @@ class Limits {
   }
 
  private:
-  Patience making_{kMakingLimit}, method_{kEndingLimit};
+  Patience making_{kMakingLimit}, method_{kEndingLimit}, exit_{kMakingLimit};
 };
 
 /// Waits for the child; why it was killed, "" when it was not.
@@ -133,6 +137,7 @@ int in_own_process(const std::function<int()>& work, const std::function<int(con
   if (place == nullptr) return work();
   std::fflush(nullptr);  // or both would write it
   HeldSignals held;
+  Orphans orphans;  // this process adopts what components start in the child
   const pid_t parent = ::getpid();
   const pid_t child = ::fork();
   if (child == 0) live(work, parent, *place, held);
@@ -143,6 +148,7 @@ int in_own_process(const std::function<int()>& work, const std::function<int(con
   }
   int status = 0;
   std::string why = watch(child, *place, held, status);
+  orphans.end_all(seconds(1));
   const bool is_clean = WIFEXITED(status) && place->has_returned;
   const std::string what = place->text();
   const UnderWay::Method method = place->making == 0 ? place->method() : UnderWay::Method{};

@@ -8,7 +8,7 @@
 
 namespace chimera::cli {
 
-/// The longest that one object may take to be loaded, or one state to be constructed.
+/// The longest that one object may take to be loaded, one state to be constructed, or the process to exit at the end.
 inline constexpr int kMakingLimitSeconds = 10;
 /// Limit of `off` and `kill` at the end, as in real time. It holds for all methods if the run was asked to end.
 inline constexpr int kEndingLimitSeconds = 2;
@@ -24,7 +24,7 @@ struct BrokenRun {
 /// Runs `work` in a child and returns its exit code; both write to the same files. When the child did not return from
 /// its work (a signal, exit() in a component, an object that is not loaded or a method that does not return in time: it
 /// is killed), `died` gets how it ended and the method under way, and returns the code. SIGINT and SIGTERM reach the
-/// child once.
+/// child once. Processes that the work left behind are killed.
 /// Under a debugger, and when there is no memory or process, `work` runs in this process.
 /// Requires: one thread, handlers of both signals set. Context: setup; may block.
 int in_own_process(const std::function<int()>& work, const std::function<int(const BrokenRun&)>& died);

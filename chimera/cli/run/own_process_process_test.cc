@@ -70,6 +70,34 @@ TEST(OwnProcess, NamesAnOffOrKillThatDidNotReturn) {
             "amp: amp.kill did not return within 2 s: its hardware may not be off 7");
 }
 
+TEST(OwnProcess, EndsTheProcessesThatItsWorkLeftBehind) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  EXPECT_EQ(end_of([&] {
+              ::close(ends[0]);
+              for (const bool is_detached : {false, true}) {
+                if (::fork() != 0) continue;
+                if (is_detached && (::setsid(), ::fork() != 0)) ::_exit(0);
+                for (;;) ::pause();
+              }
+              return 0;
+            }),
+            "returned 0");
+  ::close(ends[1]);
+  char byte;
+  EXPECT_EQ(::read(ends[0], &byte, 1), 0) << "no process has the other end any more";
+  ::close(ends[0]);
+}
+
+TEST(OwnProcess, NamesAnExitThatDoesNotReturn) {
+  EXPECT_EQ(end_of([] {
+              std::atexit([] { for (;;) ::pause(); });
+              return 0;
+            }),
+            "the run did not end within 10 s of its last method: an exit handler or destructor of a component does not "
+            "return 7");
+}
+
 TEST(OwnProcess, TakesNoWordForGranted) {
   EXPECT_EQ(end_of([] {
               UnderWay& place = known();

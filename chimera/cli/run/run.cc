@@ -22,6 +22,7 @@
 #include "chimera/cli/run/watch_plot.h"
 #include "chimera/control/receipt/receipt_json.h"
 #include "chimera/control/receipt/receipt_text.h"
+#include "chimera/platform/realtime.h"
 #include "chimera/platform/standard_streams.h"
 #include "chimera/runtime/record/tap_ring.h"
 
@@ -77,7 +78,8 @@ class LocalTarget final : public RunTarget {
         sink_(sink),
         out_(out),
         err_(err),
-        progress_(request, err) {}
+        progress_(request, err),
+        measures_(plan.measures) {}
 
   Result<void> start() override;
   int refuse(const Error& error) override { return refuse_run(request_, error, out_, err_); }
@@ -111,6 +113,8 @@ class LocalTarget final : public RunTarget {
   std::vector<Probe> drawn_;
   WatchPlot plot_;
   std::vector<std::uint64_t> notes_told_;  // by task
+  std::vector<Measure> measures_;
+  Nanoseconds next_sample_ = kNever;  // of the measures
 };
 
 Result<void> LocalTarget::start() {
@@ -129,6 +133,9 @@ Result<void> LocalTarget::start() {
   // Now that extents are known.
   if (!request_.svg.empty())
     for (const std::string& name : request_.watch) drawn_.push_back(*application_.probe(name));
+  for (Measure& measure : measures_)
+    if (auto bound = measure.bind(application_); !bound) return bound;
+  if (!measures_.empty()) next_sample_ = sample_distance({}, request_.duration, application_.spec());
   if (!request_.json) std::fprintf(out_, "%s\n", loop_->description().c_str());
   if (request_.virtual_time) print_notes();  // in real time the loop already runs: notes come at the end
   if (sink_ != nullptr) sink_->begin(application_.spec(), loop_->origin(), loop_->origin());
@@ -143,6 +150,9 @@ std::vector<RtpuFate> LocalTarget::fates() {
     if (peers->died(RtpuId(r)) != kNever)
       fates.push_back({.name = std::string(application_.spec().rtpus[r].name),
                        .died = peers->died(RtpuId(r)) - loop_->origin()});
+  if (!request_.virtual_time)
+    fates.push_back({.name = std::string(application_.spec().rtpus[0].name),
+                     .not_real_time = not_real_time(loop_->description()).c_str()});
   std::ranges::stable_sort(fates, {}, [](const RtpuFate& fate) { return fate.died.count; });
   return fates;
 }
@@ -168,10 +178,14 @@ std::optional<RunEnd> LocalTarget::advance(Nanoseconds until) {
   for (;;) {
     const Nanoseconds next_drain = sink_ == nullptr ? kNever : at_ + kDrainEvery;
     const Nanoseconds patience = looks_up ? at_ + kWatchEvery : kNever;
-    const Nanoseconds next = std::min({until, next_drain, patience});
+    const Nanoseconds next = std::min({until, next_drain, patience, next_sample_});
     const std::optional<RunEnd> end = loop_->advance(next);
     drain();
     at_ = next;
+    if (next == next_sample_ || end) {
+      for (Measure& measure : measures_) measure.add_sample(end ? std::min(loop_->now(), request_.duration) : at_);
+      if (!measures_.empty()) next_sample_ = at_ + sample_distance({}, request_.duration, application_.spec());
+    }
     if (progress_.is_on() && !end) progress_.show(at_);
     if (!end && next != until) continue;
     progress_.wipe();
@@ -197,6 +211,11 @@ std::vector<Reading> LocalTarget::read(const std::vector<std::string>& names) {
 }
 
 void LocalTarget::finish(RunReport& report) {
+  for (const Measure& measure : measures_) {
+    RunReport::Judged judged{measure.text(), {}, false};
+    judged.holds = measure.holds(judged.said);
+    report.expectations.push_back(std::move(judged));
+  }
   report.is_flag_up = application_.is_flag_up();
   report.subsystem = plan_.configuration.subsystem();
   report.executor = loop_->description();
@@ -246,10 +265,13 @@ void request_stop() noexcept { stop_requested = true; }
 
 bool stop_is_requested() noexcept { return stop_requested; }
 
-int run(const RunRequest& request, const Workplace& workplace, RecordSink* sink, std::FILE* out, std::FILE* err) {
+int run(const RunRequest& asked, const Workplace& workplace, RecordSink* sink, std::FILE* out, std::FILE* err) {
   int code = kRefused;
-  const auto plan = plan_run(request, workplace, out, err, &code);
+  const auto plan = plan_run(asked, workplace, out, err, &code);
   if (!plan) return code;
+  RunRequest request = asked;
+  if (!request.svg.empty())
+    request.every = sample_distance(request.every, request.duration, plan->configuration.spec());
   const auto contexts = request.virtual_time ? Application::Contexts::kByRtpu : Application::Contexts::kOne;
   auto application = Application::load(plan->configuration, plan->library, contexts);
   if (!application) return refuse_run(request, application.error(), out, err);

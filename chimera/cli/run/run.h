@@ -31,7 +31,7 @@ struct RunRequest {
   std::vector<std::string> at;        ///< timed acts, script_text.h
   std::vector<std::string> expect;    ///< expectation.h
   std::vector<std::string> watch;     ///< state variables to print while it runs
-  Nanoseconds every = seconds(1);     ///< how often
+  Nanoseconds every;                  ///< how often; 0: every second, into a picture at the shortest period
   std::string svg;                    ///< draw them to this file instead; virtual time or one process only
   std::string profile;                ///< save the profile into this file at the end; "": not
   bool json = false;

@@ -12,6 +12,7 @@
 #include "chimera/control/receipt/switch_reason.h"
 #include "chimera/platform/clock.h"
 #include "chimera/platform/realtime.h"
+#include "chimera/platform/thread.h"
 #include "chimera/runtime/executive/counter_clock.h"
 #include "chimera/runtime/executive/executive.h"
 #include "chimera/runtime/hosted/asked_set.h"
@@ -155,6 +156,7 @@ class RealTimeLoop final : public RunLoop {
     std::promise<Result<void>> started;
     auto answer = started.get_future();
     thread_ = std::thread([this, &started] {
+      use_decimal_point();
       const RealtimeRequest wanted{request_.priority, cpu_, true};
       grant_ += enter_realtime(wanted).report.c_str();
       const Result<void> result = start_result(set_, executive_.start());

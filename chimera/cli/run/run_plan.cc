@@ -7,6 +7,7 @@
 #include "chimera/analysis/schedule_report.h"
 #include "chimera/base/hosted/terminal_text.h"
 #include "chimera/base/hosted/wording.h"
+#include "chimera/cli/files/blanks.h"
 #include "chimera/cli/files/check.h"
 #include "chimera/cli/run/run.h"
 #include "chimera/cli/run/script_text.h"
@@ -88,6 +89,7 @@ Result<ScriptAct> settled(const TimedAct& timed, RunPlan& plan) {
 /// Why the act cannot be done in this run; "": it can.
 std::string why_not(const ScriptAct& act, const RunRequest& request, const Configuration& configuration) {
   const bool has_rtpus = request.virtual_time && are_on_several_rtpus(configuration);
+  if (act.at > request.duration) return "it comes after the end of the run, which --for gives";
   if (act.kind != ScriptAct::Kind::kDie) return {};
   if (!has_rtpus) return "an rtpu dies in virtual time only (--virtual), where tasks are on several rtpus";
   const auto tasks = configuration.tasks();
@@ -113,19 +115,49 @@ Result<void> judge_acts(const RunRequest& request, RunPlan& plan) {
   return {};
 }
 
+/// An expectation of the value at the end, or in virtual time of a measure of the whole run, as in a file of cases.
+Result<void> add_expectation(const std::string& text, const RunRequest& request, RunPlan& plan) {
+  const auto& units = plan.library.units();
+  auto measure = Measure::parse_expectation(text, plan.configuration, units);
+  const bool has_words = trimmed(text.substr(0, text.find_first_of("<>"))).find_first_of(" [.") != std::string::npos;
+  if (!has_words || (measure && measure->is_end_of_variable())) {
+    auto expectation = Expectation::parse(text, plan.configuration, units);
+    if (!expectation) return expectation.error();
+    plan.expectations.push_back(*std::move(expectation));
+    return {};
+  }
+  const std::string option = "--expect ";
+  if (!measure) return Error{ErrorCode::kBadInput, {option + measure.error().message.c_str()}, {}};
+  if (!request.virtual_time)
+    return Error{ErrorCode::kBadInput,
+                 {option + "'" + text + "': in real time a run judges the values of whole variables at its end; add "
+                  "--virtual, or name the variable alone"},
+                 {}};
+  plan.measures.push_back(*std::move(measure));
+  return {};
+}
+
 Result<void> judge_words(const RunRequest& request, RunPlan& plan) {
   for (const std::string& name : request.watch)
     if (auto found = find_variable(plan.configuration, name); !found) return found.error();
-  for (const std::string& text : request.expect) {
-    auto expectation = Expectation::parse(text, plan.configuration, plan.library.units());
-    if (!expectation) return expectation.error();
-    plan.expectations.push_back(*std::move(expectation));
-  }
+  for (const std::string& text : request.expect)
+    if (auto added = add_expectation(text, request, plan); !added) return added;
   if (auto known = judge_task_names(request, plan.configuration); !known) return known.error();
   return judge_acts(request, plan);
 }
 
 }  // namespace
+
+Nanoseconds sample_distance(Nanoseconds every, Nanoseconds duration, const ApplicationSpec& spec) {
+  constexpr std::int64_t kMostSamples = 1'000'000;
+  if (every.count <= 0) {
+    every = kNever;
+    for (const TaskId task : spec.start)
+      if (!spec.tasks[task.index].aperiodic) every = std::min(every, spec.tasks[task.index].period);
+    if (every == kNever) every = milliseconds(1);
+  }
+  return std::max(every, Nanoseconds{duration.count / kMostSamples + 1});
+}
 
 Result<void> admit_below(const Configuration& configuration, double share) {
   const double limit = share - (kUsualRealtimeShare - kMaxUtilisation);
@@ -163,7 +195,7 @@ int report_broken_run(const RunRequest& request, const BrokenRun& broken, std::F
 
 std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& workplace, std::FILE* out,
                                 std::FILE* err, int* code) {
-  const auto library = workplace.library();
+  const auto library = workplace.library(request.file);
   if (library) return plan_run(request, *library, out, err, code);
   if (code != nullptr) *code = kRefused;
   refuse_run(request, library.error(), out, err);
@@ -194,7 +226,7 @@ std::optional<RunPlan> plan_run(const RunRequest& request, const Library& librar
     return std::nullopt;
   }
   if (!request.json) std::fputs(verdict_text(*verdict.configuration).c_str(), out);
-  RunPlan plan{library, std::move(reading.text), *std::move(verdict.configuration), {}, {}, {}, {}};
+  RunPlan plan{library, std::move(reading.text), *std::move(verdict.configuration), {}, {}, {}, {}, {}};
   if (const auto judged = judge_words(request, plan); !judged) {
     const int usage = refuse_run(request, judged.error(), out, err, kUsage);
     if (code != nullptr) *code = usage;

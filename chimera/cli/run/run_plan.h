@@ -12,6 +12,7 @@
 #include "chimera/catalogue/library.h"
 #include "chimera/cli/files/workplace.h"
 #include "chimera/cli/run/expectation.h"
+#include "chimera/cli/run/measure.h"
 #include "chimera/cli/run/own_process.h"
 #include "chimera/runtime/cycle/script.h"
 #include "chimera/verify/configuration.h"
@@ -29,6 +30,7 @@ struct RunPlan {
   std::vector<Configuration> set;   ///< one for each act `set`, which has its value there
   std::deque<TaskLists> lists;      ///< one for each act `switch` that names tasks
   std::vector<Expectation> expectations;
+  std::vector<Measure> measures;    ///< expectations of the whole run; virtual time only
 };
 
 /// Prints the report and the verdict; nothing when the run is refused, which has been said then. `code`, where there is
@@ -39,6 +41,10 @@ std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& work
 /// plan_run() with a library that was read before.
 std::optional<RunPlan> plan_run(const RunRequest& request, const Library& library, std::FILE* out, std::FILE* err,
                                 int* code = nullptr);
+
+/// The distance of samples in virtual time: `every`, or if that is 0 the shortest period of the start set; longer if
+/// there were more than a million. Context: setup.
+Nanoseconds sample_distance(Nanoseconds every, Nanoseconds duration, const ApplicationSpec& spec);
 
 /// Refuses a start set whose budgets take more of a CPU than may be promised when the kernel leaves `share` of it to
 /// real-time threads: 0.02 less. Context: setup.

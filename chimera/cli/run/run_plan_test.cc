@@ -51,6 +51,29 @@ TEST(RunPlan, RunsTasksThatMayMissIfTheOptionNamesThem) {
   EXPECT_EQ(refusal(kTight, missing({"a", "b", "see"})), "error: --may-miss: no task 'see'\n");
 }
 
+TEST(RunPlan, RefusesAnActAfterTheEndOfTheRun) {
+  RunRequest request;
+  request.virtual_time = true;
+  request.duration = seconds(1);
+  request.at = {"5 s: off counter"};
+  EXPECT_NE(refusal(kCounterText, request)
+                .find("error: --at '5 s: off counter': it comes after the end of the run, which --for gives\n"),
+            std::string::npos)
+      << refusal(kCounterText, request);
+  request.at = {"1 s: off counter"};
+  EXPECT_EQ(refusal(kCounterText, request), "");
+}
+
+TEST(RunPlan, RefusesMeasuresInRealTime) {
+  RunRequest request;
+  request.expect = {"max count <= 3"};
+  EXPECT_EQ(refusal(kCounterText, request),
+            "error: --expect 'max count <= 3': in real time a run judges the values of whole variables at its end; add "
+            "--virtual, or name the variable alone\n");
+  request.virtual_time = true;
+  EXPECT_EQ(refusal(kCounterText, request), "");
+}
+
 TEST(RunPlan, AnOptionThatFitsNoDescriptionIsWrongUsage) {
   const TestFile file(kCounterText);
   RunRequest request;

@@ -15,8 +15,8 @@ int RunSession::run() {
 }
 
 RunEnd RunSession::watch() {
-  Nanoseconds next_line = request_.watch.empty() ? kNever : request_.every;
-  while (next_line < target_.printed_until()) next_line += request_.every;
+  Nanoseconds next_line = request_.watch.empty() ? kNever : every_;
+  while (next_line < target_.printed_until()) next_line += every_;
   for (;;) {
     const Nanoseconds next = std::min(next_line, request_.duration);
     const std::optional<RunEnd> end = target_.advance(next);
@@ -24,7 +24,7 @@ RunEnd RunSession::watch() {
     if (is_due || (end && target_.shows_values_at(*end)))
       show_values(end && *end != RunEnd::kTime ? target_.now() : next);
     if (end) return *end;
-    if (is_due) next_line += request_.every;
+    if (is_due) next_line += every_;
   }
 }
 

@@ -51,7 +51,12 @@ class RunSession {
  public:
   RunSession(const RunRequest& request, std::vector<Expectation> expectations, RunTarget& target, std::FILE* out,
              std::FILE* err)
-      : request_(request), expectations_(std::move(expectations)), target_(target), out_(out), err_(err) {}
+      : request_(request),
+        every_(request.every.count > 0 ? request.every : seconds(1)),
+        expectations_(std::move(expectations)),
+        target_(target),
+        out_(out),
+        err_(err) {}
 
   /// Starts, runs and reports; returns the exit code.
   int run();
@@ -62,6 +67,7 @@ class RunSession {
   int report(RunEnd end);
 
   const RunRequest& request_;
+  const Nanoseconds every_;
   std::vector<Expectation> expectations_;
   RunTarget& target_;
   std::FILE* out_;

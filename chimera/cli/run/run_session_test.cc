@@ -47,7 +47,7 @@ std::pair<int, std::string> run(FakeTarget& target, const std::vector<std::strin
   request.every = milliseconds(10);
   request.watch = {"v"};
   std::vector<Expectation> expectations;
-  for (const std::string& text : expect) expectations.push_back(*Expectation::with_bound(text, 20));
+  for (const std::string& text : expect) expectations.push_back(*Expectation::with_bound(text, {20}));
   char* text = nullptr;
   std::size_t size = 0;
   std::FILE* out = ::open_memstream(&text, &size);

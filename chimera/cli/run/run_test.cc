@@ -108,6 +108,19 @@ TEST(Run, AnExpectationThatFailsIsNoSuccess) {
   EXPECT_NE(said.out.find("FAILS: count < 10 (count is 10)\n"), std::string::npos) << said.out;
 }
 
+TEST(Run, JudgesMeasuresOfTheWholeRunInVirtualTime) {
+  RunRequest request = lasting(milliseconds(10));
+  request.expect = {"max count <= 10", "mean |count| < 6", "settling count >= 5 within 6 ms", "count <= 10"};
+  const Said said = said_by(request, kCounterText);
+  EXPECT_EQ(said.code, kOk) << said.out << said.err;
+  EXPECT_NE(said.out.find("holds: max count <= 10 (max count is 10)\n"), std::string::npos) << said.out;
+  request.expect = {"max count <= 9"};
+  EXPECT_EQ(said_by(request, kCounterText).code, kRefused);
+  request.expect = {"maximum count <= 9"};
+  const std::string wrong = "--expect 'maximum count <= 9': no measure 'maximum'";
+  EXPECT_NE(said_by(request, kCounterText).err.find(wrong), std::string::npos);
+}
+
 TEST(Run, TheSameSeedGivesTheSameBytes) {
   RunRequest request = lasting(milliseconds(50));
   request.seed = 7;
@@ -181,14 +194,14 @@ TEST(Run, AValueSetAtATimeCountsFromTheNextJobOn) {
   request.every = milliseconds(10);
   request.at = {"15 ms: set x 180 deg", "30 ms: set x -1 rad"};
   const Said said = said_by(request, kGain);
-  EXPECT_NE(said.out.find("t 0.010 s  y 2 m2.kg/s2\nt 0.020 s  y 2 m2.kg/s2\n"
-                          "t 0.030 s  y 6.28319 m2.kg/s2\nt 0.040 s  y -2 m2.kg/s2\n"),
+  EXPECT_NE(said.out.find("t 0.010 s  y 2 N.m\nt 0.020 s  y 2 N.m\n"
+                          "t 0.030 s  y 6.28319 N.m\nt 0.040 s  y -2 N.m\n"),
             std::string::npos)
       << said.out << said.err;
   EXPECT_EQ(said_by(request, kGain).out, said.out) << "each run gives equal bytes";
   request.preemptive = true;
   EXPECT_NE(said_by(request, kGain).out.find(
-                "t 0.030 s  y 6.28319 m2.kg/s2\nt 0.040 s  y -2 m2.kg/s2\n"), std::string::npos);
+                "t 0.030 s  y 6.28319 N.m\nt 0.040 s  y -2 N.m\n"), std::string::npos);
 }
 
 TEST(Run, AValueThatCannotBeSetIsRefusedBeforeAnythingRuns) {

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "chimera/base/hosted/wording.h"
+#include "chimera/platform/realtime.h"
 #include "chimera/text/json_text.h"
 #include "chimera/text/not_off.h"
 
@@ -41,6 +42,8 @@ void add_rtpu(RunVerdict& verdict, const RtpuFate& rtpu, bool is_told) {
     verdict.since.push_back(rtpu.name + ": the counts of its tasks begin at its restart" +
                             (rtpu.restarted == kNever ? "" : " at " + seconds_text(rtpu.restarted) + " s"));
   }
+  if (!rtpu.not_real_time.empty() && rtpu.not_real_time.find(kAskedWords) == std::string::npos)
+    verdict.remarks.push_back(rtpu.name + " was not real time: " + rtpu.not_real_time);
   if (rtpu.died != kNever)
     verdict.remarks.push_back(rtpu.name + " died at " + seconds_text(rtpu.died) + " s and is not restarted");
   if (rtpu.is_given_up)

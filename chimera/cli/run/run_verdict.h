@@ -18,6 +18,7 @@ struct RtpuFate {
   Nanoseconds restarted = kNever;  ///< since the start of the run, the last time; kNever: not known
   bool is_given_up = false;        ///< dead, and not started again
   std::string bad_end = {};        ///< how it ended although all was to be turned off in order; "": in order
+  std::string not_real_time = {};  ///< not_real_time() of its rights; "": real time, or virtual
   Nanoseconds died = kNever;       ///< since the start, in virtual time, where no rtpu is restarted; kNever: not
 };
 

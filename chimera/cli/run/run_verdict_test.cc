@@ -35,6 +35,15 @@ TEST(RunVerdict, AGoodRunIsOneLineAndASuccessStrictToo) {
   }
 }
 
+TEST(RunVerdict, ARunThatWasNotRealTimeIsNotCleanUnlessThatWasAskedFor) {
+  const char* why = "no PREEMPT_RT in the kernel: nothing bounds the jitter";
+  const RunVerdict verdict = judged({task("pi")}, {{.name = "servo", .not_real_time = why}}, false, true);
+  EXPECT_EQ(verdict.text(), "not clean: servo was not real time: " + std::string(why) +
+                                "\nFAILED: not clean, and --strict makes that a failure\n");
+  const char* asked = "memory not locked; ordinary scheduling was asked for (priority 0): any job may come late";
+  EXPECT_TRUE(judged({task("pi")}, {{.name = "servo", .not_real_time = asked}}).is_clean());
+}
+
 TEST(RunVerdict, ADeathThatWasAskedForIsNotCleanAndFailsOnlyAStrictRun) {
   TaskProfile lost = task("pi", State::kError);
   lost.rtpu = "servo";

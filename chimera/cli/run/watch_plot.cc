@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "chimera/cli/run/probe_numbers.h"
-
 namespace chimera::cli {
 
 void WatchPlot::add_sample(Nanoseconds at, std::span<const Probe> probes) {

@@ -122,7 +122,7 @@ void Drill::take(const KeeperMessage& written) {
   if (written.kind != KeeperMessage::Kind::kFramesWritten || written.index != killed.rtpu.index) return;
   killed.is_told = true;
   killed.good = static_cast<std::uint32_t>(written.code);
-  killed.bad = written.letter;
+  killed.bad = written.letter + written.late;
   if (killed.good > 0) killed.after = written.at - present_->killed_at;
   due_ = {};
 }

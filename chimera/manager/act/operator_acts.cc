@@ -7,6 +7,7 @@
 #include "chimera/manager/answer/status_json.h"
 #include "chimera/manager/answer/value_json.h"
 #include "chimera/text/json.h"
+#include "chimera/verify/setting.h"
 
 namespace chimera::manager {
 namespace {
@@ -41,6 +42,8 @@ std::variant<std::vector<VariableId>, RpcResponse> variables_named(const Manager
   std::vector<bool> is_named(state.readings ? state.readings->size() : 0);
   for (const std::string& name : names) {
     const auto variable = state.readings ? state.readings->find(name) : std::nullopt;
+    const std::string constant = variable || !state.configuration ? "" : about_constant(*state.configuration, name);
+    if (!constant.empty()) return RpcResponse::unknown(constant, name, "");
     if (!variable) return RpcResponse::no_such("state variable", name, variable_names(state));
     if (!is_named[variable->index]) found.push_back(*variable);
     is_named[variable->index] = true;
@@ -113,12 +116,13 @@ RpcResponse set_flag(ManagerState& state, bool up) {
 
 RpcResponse saved_values(const ManagerState& state) {
   Json saved = Json::object();
-  for (std::size_t v = 0; state.readings && v < state.readings->size(); ++v) {
-    const VariableId variable(v);
-    if (!state.readings->is_operators(variable)) continue;
-    const VariableReading reading = state.readings->read(variable);
-    saved[state.readings->configured(variable).name] =
-        description_text(reading.form, reading.value, columns(state, variable));
+  if (!state.readings) return RpcResponse::good({{"operator", std::move(saved)}});
+  for (const NamedNode& given : state.configuration->draft().operators) {
+    const auto variable = state.readings->find(given.name.text);
+    if (!variable) continue;  // no task reads it
+    const VariableReading reading = state.readings->read(*variable);
+    const std::string text = description_text(reading.form, reading.value, columns(state, *variable));
+    saved[given.name.text] = in_words_of(given.value, text, state.bundle.library.units());
   }
   return RpcResponse::good({{"operator", std::move(saved)}});
 }

@@ -134,9 +134,11 @@ Result<OperatorBytes> operator_bytes(const Configuration& configuration, const L
     const ValueForm& form = forms.at(name);
     const ApplicationSpec& spec = configuration.spec();
     const Json rows = with_rows(value, spec.operators[operator_named(spec, name)], form);
-    for (NamedNode& given : draft.operators)
-      if (given.name.text == name)
-        given.value = in_unit(node_of(rows, form, form.unit, form.type), form.unit, library.units());
+    const auto given = std::ranges::find(draft.operators, name, [](const NamedNode& node) { return node.name.text; });
+    if (given == draft.operators.end()) return refused(default_of_an_input(name), name);
+    auto put = in_unit(node_of(rows, form, form.unit, form.type), form.unit, library.units());
+    if (!put) return refused("operator variable '" + name + "': " + put.error().message.c_str(), name);
+    given->value = *std::move(put);
   }
   const Verdict verdict = chimera::verify(draft, library);
   if (!verdict.configuration)

@@ -28,6 +28,52 @@ bool RtpuLinks::is_current(RtpuId rtpu) const noexcept {
   return segment.is_there() && segment.incarnation() == state_.rtpus[rtpu.index].incarnation;
 }
 
+// Something in the words of the rtpu that the rtpu would not write; "" if there is nothing.
+std::string RtpuLinks::wrong_word(RtpuId rtpu) const {
+  const PeerSegment& segment = state_.peers[rtpu];
+  if (const auto whole = segment.check(); !whole) return std::string(whole.error().message.view());
+  const BlockHead& head = segment.block().head();
+  if (head.phase.load(std::memory_order_relaxed) > PeerPhase::kEnded) return "its phase";
+  if (head.lost_posts > most_in(now() - state_.keeper.origin)) return "its lost events";
+  for (const TaskId task : links_[rtpu.index].tasks)
+    if (segment.block().is_status_lost(task)) return "the state of " + state_.name(task);
+  return "";
+}
+
+std::string RtpuLinks::wrong_count(RtpuId rtpu, Nanoseconds at) const {
+  for (const TaskId task : links_[rtpu.index].tasks) {
+    if (!is_credible(state_.peers[rtpu].block().profile(task), at - state_.keeper.origin))
+      return "the counters of " + state_.name(task);
+    if (!is_credible(state_.peers.fault(task), state_.keeper.origin, at))
+      return "the last fault of " + state_.name(task);
+  }
+  return "";
+}
+
+// False if there is no memory of the present incarnation, or something has overwritten it. Call it after a word was
+// read and before it is used: the memory may be overwritten at any time, its head first.
+bool RtpuLinks::believes(RtpuId rtpu) {
+  if (!is_current(rtpu)) return false;
+  const std::string wrong = wrong_word(rtpu);
+  if (!wrong.empty()) disbelieve(rtpu, wrong);
+  return wrong.empty();
+}
+
+// Nothing in the memory of the rtpu is read any more. RtpuWatch has a living one killed.
+void RtpuLinks::disbelieve(RtpuId rtpu, std::string_view why) {
+  RtpuRecord& record = this->record(rtpu);
+  links_[rtpu.index].inbox = {};  // both point into the mapping that ends
+  links_[rtpu.index].outbox = {};
+  state_.peers.forget(rtpu);
+  record.is_overwritten = true;
+  record.is_up = false;
+  record.is_away = record.is_alive;
+  state_.tell("fault", TaskId{}, rtpu,
+              "something in it has overwritten its memory (" + std::string(why) + ")" +
+                  (record.is_alive ? ": its states and numbers are not shown, and it is ended" : ""),
+              now());
+}
+
 // True if another serving rtpu has not finished the last switch. Tasks that come back now could conflict with the steps
 // that it must undo.
 bool RtpuLinks::is_switch_open_beside(RtpuId rtpu) const noexcept {
@@ -49,7 +95,7 @@ void RtpuLinks::started(const KeeperMessage& message) {
   rtpu.incarnation = message.incarnation;
   rtpu.restarts = message.incarnation - 1;
   rtpu.is_alive = true;
-  rtpu.is_up = rtpu.is_away = false;
+  rtpu.is_up = rtpu.is_away = rtpu.is_overwritten = false;
   rtpu.hang.clear();
   rtpu.ended_for.clear();
 }
@@ -61,9 +107,8 @@ void RtpuLinks::mapped(const KeeperMessage& message, int descriptor) {
   link.outbox = {};
   if (const auto mapped = state_.peers.map(rtpu, message.incarnation, descriptor); !mapped) {
     const Error& why = mapped.error();
-    std::string text = "its memory cannot be read";
-    if (why.code == ErrorCode::kBadInput) text += ", something in it has overwritten it";
-    text += " (" + std::string(why.message.view()) + ")";
+    if (why.code == ErrorCode::kBadInput) return disbelieve(rtpu, why.message.view());
+    std::string text = "its memory cannot be read (" + std::string(why.message.view()) + ")";
     if (record(rtpu).is_alive)
       text += ": the manager cannot send commands to it; `kill -KILL " + std::to_string(record(rtpu).pid) +
               "` restarts it";
@@ -94,7 +139,7 @@ void RtpuLinks::ended(const KeeperMessage& message, Events& events) {
   RtpuRecord& record = this->record(rtpu);
   record.incarnation = message.incarnation;
   record.restarts = message.incarnation - 1;
-  const bool left_words = is_current(rtpu);
+  const bool left_words = believes(rtpu);
   const bool is_known = message.incarnation <= state_.own.block().memory().handled[rtpu.index];  // by a predecessor
   if (left_words) take_posts(rtpu, events);
   if (left_words || !is_known) {
@@ -102,16 +147,16 @@ void RtpuLinks::ended(const KeeperMessage& message, Events& events) {
     links_[rtpu.index].has_died = true;
   }
   for (const TaskId task : links_[rtpu.index].tasks) {
-    const bool is_readable = left_words && !state_.peers[rtpu].block().is_status_lost(task);
-    if (!is_readable && is_known) continue;
+    if (!left_words && is_known) continue;
     if (left_words) seen_[task.index] = state_.peers.status(task);
-    const TaskStatus last = is_readable ? last_status(state_, task) : state_.own.block().view().status(task);
+    const TaskStatus last = left_words ? last_status(state_, task) : state_.own.block().view().status(task);
     events.push_back(subsystem::TaskSeen{task, last});
   }
   record.is_alive = record.is_up = record.is_away = false;
   record.hang.clear();
   const BlockView left = left_words ? state_.peers[rtpu].block() : BlockView();
-  record.last_end = cause_text(state_.spec(), message, left, what_it_made(rtpu));
+  record.last_end = cause_text(state_.spec(), message, left,
+                               record.is_overwritten ? "with its memory overwritten" : what_it_made(rtpu));
   if (!record.ended_for.empty()) record.last_end += ": " + std::exchange(record.ended_for, "");
   if (left_words && !is_known)
     for (const Unfinished& one : unfinished(state_, rtpu, left, record.last_end))
@@ -141,14 +186,14 @@ void RtpuLinks::look(Events& events) {
   for (std::uint32_t r = 0; r < links_.size(); ++r) {
     const RtpuId rtpu(r);
     RtpuRecord& record = this->record(rtpu);
-    if (!record.is_alive || !is_current(rtpu)) continue;
+    if (!record.is_alive || !believes(rtpu)) continue;
     const PeerPhase phase = state_.peers[rtpu].block().head().phase.load(std::memory_order_acquire);
     const bool waits = links_[r].has_died && is_switch_open_beside(rtpu);
     const bool rises = !record.is_up && phase == PeerPhase::kServing && links_[r].outbox.is_followed() && !waits;
     take_posts(rtpu, events);
     if (record.is_up || rises)
       for (const TaskId task : links_[r].tasks) see(task, events, rises);
-    if (!rises) continue;
+    if (!rises || record.is_overwritten) continue;
     record.is_up = true;
     links_[r].has_died = false;
     events.push_back(subsystem::RtpuUp{rtpu, record.incarnation});
@@ -158,8 +203,9 @@ void RtpuLinks::look(Events& events) {
 void RtpuLinks::see(TaskId task, Events& events, bool always) {
   const TaskStatus status = state_.peers.status(task);
   if (!always && status == seen_[task.index]) return;
+  if (!believes(state_.spec().tasks[task.index].rtpu)) return;
   seen_[task.index] = status;
-  if (!state_.peers.of(task).block().is_status_lost(task)) state_.own.block().set_status(task, status);
+  state_.own.block().set_status(task, status);
   events.push_back(subsystem::TaskSeen{task, status});
 }
 
@@ -185,7 +231,7 @@ void RtpuLinks::log(const Post& post, RtpuId rtpu) {
   const bool has_task = post.task.index < seen_.size();
   std::string words;
   if (has_task && post.happening == EventKind::kNote)
-    words = state_.peers.fault(post.task).note;
+    words = state_.fault(post.task).note;
   else if (has_task)
     words = fault_text(state_, post.task);
   std::string text = event_text(state_.spec(), post, words);
@@ -199,7 +245,7 @@ void RtpuLinks::log(const Post& post, RtpuId rtpu) {
 }
 
 void RtpuLinks::tell_not_off(TaskId task, Method method, RtpuId rtpu, Nanoseconds at) {
-  const FaultRecord fault = state_.peers.fault(task);
+  const FaultRecord fault = state_.fault(task);
   const char* words = fault.method == method ? fault.last.text : "its text was replaced by that of a later fault";
   state_.tell("not-off", task, rtpu, not_off_text(method, words), at);
 }
@@ -207,9 +253,13 @@ void RtpuLinks::tell_not_off(TaskId task, Method method, RtpuId rtpu, Nanosecond
 void RtpuLinks::look_at_counters(Nanoseconds at) {
   for (std::uint32_t r = 0; r < links_.size(); ++r) {
     if (!state_.peers[RtpuId(r)].is_there()) continue;
+    if (const std::string wrong = wrong_count(RtpuId(r), at); !wrong.empty()) {
+      disbelieve(RtpuId(r), wrong);
+      continue;
+    }
     for (const TaskId task : links_[r].tasks) count(task, at);
     const std::uint64_t lost = state_.peers[RtpuId(r)].block().head().lost_posts;
-    if (lost > links_[r].lost)
+    if (lost > links_[r].lost && wrong_word(RtpuId(r)).empty())
       state_.tell("lost", TaskId{}, RtpuId(r), tally("event", "lost for lack of room", lost - links_[r].lost, lost),
                   at);
     links_[r].lost = lost;
@@ -217,14 +267,9 @@ void RtpuLinks::look_at_counters(Nanoseconds at) {
 }
 
 void RtpuLinks::count(TaskId task, Nanoseconds at) {
-  const Profile p = state_.peers.of(task).block().profile(task);
+  const Profile p = state_.profile(task);
   Counted& before = counted_[task.index];
   const RtpuId rtpu = state_.spec().tasks[task.index].rtpu;
-  if (!is_credible(p, at - state_.keeper.origin)) {
-    if (!std::exchange(before.is_untrue, true))
-      state_.tell("fault", task, rtpu, "its counters are wrong: something in its rtpu has overwritten them", at);
-    return;
-  }
   if (p.missed > before.missed)
     state_.tell("miss", task, rtpu, tally("deadline", "missed", p.missed - before.missed, p.missed), at);
   if (p.overrun > before.overrun)

@@ -42,7 +42,6 @@ class RtpuLinks {
  private:
   struct Counted {
     std::uint64_t missed = 0, overrun = 0, stale = 0;
-    bool is_untrue = false;  ///< was reported
   };
   struct Link {
     Inbox inbox;
@@ -54,6 +53,10 @@ class RtpuLinks {
 
   RtpuRecord& record(RtpuId rtpu) noexcept { return state_.rtpus[rtpu.index]; }
   bool is_current(RtpuId rtpu) const noexcept;
+  bool believes(RtpuId rtpu);
+  std::string wrong_word(RtpuId rtpu) const;
+  std::string wrong_count(RtpuId rtpu, Nanoseconds at) const;
+  void disbelieve(RtpuId rtpu, std::string_view why);
   bool is_switch_open_beside(RtpuId rtpu) const noexcept;
   bool has_room(RtpuId rtpu, std::size_t posts) const noexcept;
   void take_posts(RtpuId rtpu, Events& events);

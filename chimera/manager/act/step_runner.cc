@@ -29,7 +29,8 @@ void StepRunner::step(const subsystem::Event& event) {
 void StepRunner::command(Signal signal, std::vector<TaskId> tasks, Answered answered) {
   const std::uint64_t id = ++last_command_;
   waiting_[id] = [this, words = command_text(state_.spec(), signal, tasks),
-                  answered = std::move(answered)](const subsystem::CommandAnswer& answer) {
+                  answered = std::move(answered), by = state_.acting](const subsystem::CommandAnswer& answer) {
+    const Acting acting(state_, by);
     const bool is_done = answer.is_accepted();
     state_.tell("command", is_done ? TaskId{} : answer.at, RtpuId{},
                 words + (is_done ? ": done" : ": refused: " + answer.refusal.text()), now());

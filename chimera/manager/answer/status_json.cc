@@ -10,6 +10,8 @@
 #include "chimera/control/receipt/switch_reason.h"
 #include "chimera/manager/state/cause.h"
 #include "chimera/manager/watch/face_watch.h"
+#include "chimera/manager/watch/guard_news.h"
+#include "chimera/platform/realtime.h"
 #include "chimera/text/json.h"
 
 namespace chimera::manager {
@@ -76,18 +78,21 @@ Json rtpu_json(const ManagerState& state, RtpuId rtpu) {
                {"lost_events", 0},
                {"resident_bytes", record.resident_bytes},
                {"first_resident_bytes", record.first_resident_bytes},
+               {"not_real_time", Json()},
                {"lost_rights", record.is_alive ? or_null(record.lost_rights) : Json()},
+               {"unguarded", or_null(unguarded_text(state, rtpu))},
                {"flag", false}};
   if (!segment.is_there()) return json;
   const BlockHead& head = segment.block().head();
   json["grant"] = grant_of(head);
+  json["not_real_time"] = or_null(not_real_time(grant_of(head)).c_str());
   if (record.is_alive) json["running"] = or_null(running_text(state.spec(), head.running));
   json["lost_events"] = head.lost_posts.load(std::memory_order_relaxed);
   json["flag"] = head.flag.load(std::memory_order_relaxed) != 0;
   return json;
 }
 
-Json inputs_json(const ManagerState& state, TaskId task, Nanoseconds at) {
+Json inputs_json(const ManagerState& state, TaskId task) {
   Json inputs = Json::array();
   for (const ConfiguredPort& port : state.configuration->tasks()[task.index].ports) {
     if (port.kind != CHIMERA_IN_VAR) continue;
@@ -99,7 +104,7 @@ Json inputs_json(const ManagerState& state, TaskId task, Nanoseconds at) {
     inputs.push_back({{"port", port.name},
                       {"variable", port.variable},
                       {"age_ns", is_operators ? Json(0)
-                                 : is_there   ? Json(reading.age(at).count)
+                                 : is_there   ? Json(std::max(reading.age(now()), Nanoseconds{1}).count)
                                               : Json()}});
   }
   return inputs;
@@ -119,7 +124,7 @@ Json task_json(const ManagerState& state, TaskId task, Nanoseconds at) {
   const TaskSpec& spec = state.spec().tasks[task.index];
   const TaskStatus status = state.peers.status(task);
   const Profile p = state.profile(task);
-  const FaultRecord fault = state.peers.fault(task);
+  const FaultRecord fault = state.fault(task);
   return {{"task", spec.name},
           {"component", spec.component},
           {"rtpu", state.name(spec.rtpu)},
@@ -150,7 +155,7 @@ Json task_json(const ManagerState& state, TaskId task, Nanoseconds at) {
           {"exhausted", p.exhausted},
           {"fault", or_null(fault_text(state, task))},
           {"faults", fault.count},
-          {"inputs", state.configuration ? inputs_json(state, task, at) : Json::array()}};
+          {"inputs", state.configuration ? inputs_json(state, task) : Json::array()}};
 }
 
 Json port_json(const ConfiguredPort& port) {
@@ -209,7 +214,7 @@ Json flag_json(const ManagerState& state) {
 }
 
 std::string fault_text(const ManagerState& state, TaskId task) {
-  const FaultRecord fault = state.peers.fault(task);
+  const FaultRecord fault = state.fault(task);
   if (fault.count == 0) return "";
   return std::string(method_name(fault.method)) + ": " + fault.last.text;
 }
@@ -237,6 +242,7 @@ Json status_json(const ManagerState& state, Nanoseconds at) {
           {"ending", state.is_ending()},
           {"flag", flag_json(state)},
           {"keeper", {{"pid", state.keeper_pid}, {"hang", or_null(state.keeper_hang)}}},
+          {"guard", guard_json(state)},
           {"face", face_json(state)},
           {"rtpus", std::move(rtpus)},
           {"tasks", std::move(tasks)}};
@@ -269,7 +275,7 @@ Json profile_json(const ManagerState& state, Nanoseconds at) {
     const TaskSpec& spec = state.spec().tasks[t];
     const Profile profile = state.profile(TaskId(t));
     tasks.push_back({std::string(spec.name), std::string(spec.component), state.state(TaskId(t)), spec.period, profile,
-                     state.peers.fault(TaskId(t)), std::string(state.name(spec.rtpu)),
+                     state.fault(TaskId(t)), std::string(state.name(spec.rtpu)),
                      state.configuration ? transfer_of(*state.configuration, t) : TransferCost{},
                      on_time(state, TaskId(t), profile, at), spec.server});
   }
@@ -284,6 +290,7 @@ Json event_json(const ManagerState& state, const LoggedEvent& event) {
                {"text", event.text}};
   if (event.task.is_valid()) json["task"] = state.name(event.task);
   if (event.rtpu.is_valid()) json["rtpu"] = state.name(event.rtpu);
+  if (!event.by.empty()) json["by"] = event.by;
   return json;
 }
 

@@ -8,6 +8,7 @@
 #include "chimera/base/hosted/wording.h"
 #include "chimera/catalogue/descriptor_value.h"
 #include "chimera/manager/answer/status_json.h"
+#include "chimera/platform/realtime.h"
 #include "chimera/text/json.h"
 #include "chimera/text/value_renderer.h"
 
@@ -89,6 +90,10 @@ void add_producer(const ManagerState& state, TaskId task, VariableFacts& facts) 
     facts.timing = timing_text(profile);
     if (rtpu.is_alive && !rtpu.lost_rights.empty())
       append_joined(facts.timing, ", ", facts.rtpu + ": " + rtpu.lost_rights);
+    const char* grant = segment.block().head().grant;
+    if (const auto why = not_real_time({grant, ::strnlen(grant, sizeof BlockHead::grant)});
+        rtpu.is_alive && !facts.timing.empty() && !why.view().empty())
+      append_joined(facts.timing, ", ", facts.rtpu + " is not real time: " + why.c_str());
     facts.waits_for_events = spec.server && profile.events == 0;
   }
   for (const PortSpec& port : spec.ports)
@@ -112,7 +117,7 @@ VariableFacts facts_of(const ManagerState& state, VariableId variable, Nanosecon
   facts.stale_after = patience(state, variable);
   facts.is_written = reading.is_valid;
   facts.published = {reading.slot.published_ns};
-  facts.age = reading.age(at);
+  facts.age = reading.age(std::max(at, now()));  // it may be younger than the question
   facts.is_finite = is_finite(reading.form, reading.value);
   facts.value = short_text(reading.form, reading.value);
   if (state.readings->is_operators(variable)) {

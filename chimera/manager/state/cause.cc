@@ -5,8 +5,10 @@
 #include "chimera/base/hosted/wording.h"
 #include "chimera/platform/descriptor.h"
 #include "chimera/platform/process.h"
+#include "chimera/rtpu/rtpu.h"
 #include "chimera/runtime/task_word.h"
 #include "chimera/task/signal.h"
+#include "chimera/text/time_text.h"
 
 namespace chimera::manager {
 
@@ -19,11 +21,23 @@ std::string running_text(const ApplicationSpec& spec, std::uint32_t running) {
   return word.has_method() ? task + "." + method_name(word.method()) : "";
 }
 
+std::string overuse_text(const TaskSpec& task, Nanoseconds used) {
+  const bool has_budget = task.budget > Nanoseconds{};
+  const Nanoseconds stated = has_budget ? task.budget : task.period;
+  return "used " + time_text(used) + ", " + std::to_string(used / stated) + " x its " +
+         (has_budget ? "budget of " : "period of ") + time_text(stated) +
+         (has_budget ? ": raise budget, or say on_overrun: abort and heed expired()"
+                     : ": lower its rate, or state a budget and on_overrun: abort");
+}
+
 std::string hung_text(const ApplicationSpec& spec, const BlockHead& left) {
   const std::string method = running_text(spec, left.hung);
+  if (method.empty()) return "";
+  if (left.hung_used.load() > 0)
+    return method + " " + overuse_text(spec.tasks[TaskWord::found(left.hung).task().index], {left.hung_used.load()});
   const auto limit = static_cast<double>(left.hung_limit.load());
   const std::string why = limit > 0 ? formatted(" did not return within %.3g s", limit * 1e-9) : " ended its thread";
-  return method.empty() ? "" : method + why;
+  return method + why;
 }
 
 std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, const BlockView& left,
@@ -32,6 +46,7 @@ std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, 
     return "was ended: " + hung;
   std::string text = "ended with status " + std::to_string(ended.code);
   if (ended.by_signal == 0 && ended.code == kDescriptorLost) text += " (its descriptors were closed)";
+  if (ended.by_signal == 0 && ended.code == kThreadLost) text += " (a component ended one of its threads)";
   if (ended.by_signal != 0) text = "ended by " + std::string(signal_text(ended.code).view());
   if (!made.empty()) {
     text += " " + made;

@@ -14,6 +14,10 @@ namespace chimera::manager {
 /// Context: setup.
 std::string running_text(const ApplicationSpec& spec, std::uint32_t running);
 
+/// Why a job was given up that used too much (runtime/job/hang_rule.h), with the remedy: "used 5.2 ms, 1040 x its
+/// budget of 5 us: raise budget, ...". Context: setup.
+std::string overuse_text(const TaskSpec& task, Nanoseconds used);
+
 /// "pid.off did not return within 2 s" of an rtpu that gave itself up, or "pid.cycle ended its thread"; "" for other
 /// ends. Context: setup.
 std::string hung_text(const ApplicationSpec& spec, const BlockHead& left);

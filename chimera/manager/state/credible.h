@@ -8,16 +8,33 @@
 
 #include "chimera/base/time.h"
 #include "chimera/task/abi.h"
+#include "chimera/task/fault_record.h"
 #include "chimera/task/task.h"
 #include "chimera/units/quantity.h"
 
 namespace chimera::manager {
 
-/// True if these can be counts of a subsystem that runs for `age`. No count grows faster than the shortest period
-/// allows, times the inputs of a cycle; no duration exceeds `age`. Context: any; wait-free.
+/// The longest duration in a subsystem that runs for `age`, with a second for clocks. Context: any; wait-free.
+inline std::int64_t longest_in(Nanoseconds age) noexcept { return std::max<std::int64_t>((age + seconds(1)).count, 0); }
+/// The highest count: none grows faster than the shortest period allows, times the inputs of a cycle. Context: any;
+/// wait-free.
+inline std::uint64_t most_in(Nanoseconds age) noexcept {
+  return static_cast<std::uint64_t>(longest_in(age) / kShortestPeriod.count) * CHIMERA_MAX_PORTS;
+}
+
+/// True if a fault of a subsystem that began at `origin` can be this one. Context: any; wait-free.
+inline bool is_credible(const FaultRecord& fault, Nanoseconds origin, Nanoseconds now) noexcept {
+  const std::uint64_t most = most_in(now - origin);
+  const bool has_method = static_cast<std::uint32_t>(fault.method) < CHIMERA_METHODS &&
+                          static_cast<std::uint32_t>(fault.off_method) < CHIMERA_METHODS;
+  return has_method && fault.count <= most && fault.notes <= most && fault.off_count <= most &&
+         fault.at.count >= 0 && fault.at <= now + seconds(1);
+}
+
+/// True if these can be counts of a subsystem that runs for `age`. Context: any; wait-free.
 inline bool is_credible(const Profile& counted, Nanoseconds age) noexcept {
-  const std::int64_t longest = std::max<std::int64_t>((age + seconds(1)).count, 0);
-  const auto most = static_cast<std::uint64_t>(longest / kShortestPeriod.count) * CHIMERA_MAX_PORTS;
+  const std::int64_t longest = longest_in(age);
+  const std::uint64_t most = most_in(age);
   for (const std::uint64_t count : {counted.missed, counted.overrun, counted.stale, counted.dropped})
     if (count > most) return false;
   const auto is_duration = [&](Nanoseconds took) { return took.count >= -longest && took.count <= longest; };

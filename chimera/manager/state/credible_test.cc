@@ -36,6 +36,26 @@ TEST(Credible, NothingTookLongerThanTheWholeRunNorBeganBeforeTheClock) {
   EXPECT_TRUE(is_refused([](Profile& p) { p.on_before = {INT64_MAX}; }));
 }
 
+TEST(Credible, AFaultHasAMethodAnInstantOfTheRunAndAPossibleCount) {
+  const Nanoseconds origin = seconds(1000), now = seconds(1010);
+  const auto is_refused = [&](auto change) {
+    FaultRecord fault;
+    fault.count = 1;
+    fault.at = seconds(1005);
+    EXPECT_TRUE(is_credible(fault, origin, now));
+    change(fault);
+    return !is_credible(fault, origin, now);
+  };
+  EXPECT_TRUE(is_credible(FaultRecord{}, origin, now)) << "no fault yet";
+  EXPECT_TRUE(is_refused([](FaultRecord& fault) { fault.count = UINT64_MAX; }));
+  EXPECT_TRUE(is_refused([](FaultRecord& fault) { fault.notes = UINT64_MAX; }));
+  EXPECT_TRUE(is_refused([](FaultRecord& fault) { fault.off_count = UINT64_MAX; }));
+  EXPECT_TRUE(is_refused([](FaultRecord& fault) { fault.at = seconds(2000); }));
+  EXPECT_TRUE(is_refused([](FaultRecord& fault) { fault.at = Nanoseconds{-1}; }));
+  EXPECT_TRUE(is_refused([](FaultRecord& fault) { fault.method = static_cast<Method>(99); }));
+  EXPECT_TRUE(is_refused([](FaultRecord& fault) { fault.off_method = static_cast<Method>(99); }));
+}
+
 TEST(Credible, ACountWithoutAValueIsNotCredible) {
   Profile counted;
   counted.start_delay.count = 1;

@@ -21,6 +21,7 @@ struct LoggedEvent {
   TaskId task;                ///< invalid: none
   RtpuId rtpu;                ///< invalid: none
   std::string text;
+  std::string by;             ///< role and user of the request that caused it: "operate:ann"; "": no request did
 };
 
 inline constexpr std::size_t kEventsKept = 10'000;

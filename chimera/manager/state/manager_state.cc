@@ -43,9 +43,14 @@ Profile ManagerState::profile(TaskId task) const noexcept {
   return segment.is_there() ? credible(segment.block().profile(task), now() - keeper.origin) : Profile{};
 }
 
+FaultRecord ManagerState::fault(TaskId task) const noexcept {
+  const FaultRecord read = peers.fault(task);
+  return is_credible(read, keeper.origin, now()) ? read : FaultRecord{};
+}
+
 void ManagerState::tell(std::string kind, TaskId task, RtpuId rtpu, std::string text, Nanoseconds at) {
   own.block().memory().events.store(log.last() + 1, std::memory_order_release);
-  log.add({0, at, wall_ns(at), std::move(kind), task, rtpu, std::move(text)});
+  log.add({0, at, wall_ns(at), std::move(kind), task, rtpu, std::move(text), acting});
 }
 
 void ManagerState::announce() noexcept {

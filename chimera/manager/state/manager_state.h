@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chimera/manager/state/bundle.h"
@@ -29,6 +30,7 @@ struct RtpuRecord {
   std::uint32_t restarts = 0;  ///< starts beyond the first
   std::string last_end;        ///< "ended by signal 9 (SIGKILL)"; "" if it never ended
   bool is_away = false;        ///< alive, but does not run: its data is out of date
+  bool is_overwritten = false; ///< its memory was overwritten: nothing in it is believed, and it is killed
   std::string hang;            ///< object or method that does not run or end: "log.init for 2.0 s"; "": none
   std::string ended_for;       ///< reason why this manager had it killed; "": it did not
   std::uint64_t resident_bytes = 0, first_resident_bytes = 0;  ///< now, and when it was ON; 0: unknown
@@ -55,17 +57,20 @@ struct ManagerState {
   std::vector<RtpuRecord> rtpus;
   std::vector<std::uint32_t> tap_users;  ///< by task: subscriptions that want its publications
   std::int32_t keeper_pid = 0;
-  std::string keeper_hang;  ///< "" while it runs
+  std::string keeper_hang, guard_hang;  ///< "" while it runs
+  std::string acting;                   ///< Asker::text() of the request that is being carried out; "": none is
 
   const ApplicationSpec& spec() const noexcept { return peers.spec(); }
   /// State as users see it: a task of an rtpu that does not run counts as ERROR, like a task of a dead rtpu.
   State state(TaskId task) const noexcept {
     const State state = logic.state(task);
-    const bool is_away = rtpus[spec().tasks[task.index].rtpu.index].is_away;
-    return is_away && state != State::kNotCreated ? State::kError : state;
+    const RtpuRecord& rtpu = rtpus[spec().tasks[task.index].rtpu.index];
+    return rtpu.is_away && (rtpu.is_overwritten || state != State::kNotCreated) ? State::kError : state;
   }
   /// Counts of the task in its rtpu; empty if there is no rtpu or the counts are not credible.
   Profile profile(TaskId task) const noexcept;
+  /// The last fault of the task; none if it is not credible.
+  FaultRecord fault(TaskId task) const noexcept;
   /// The tasks that are ON, as users see them.
   TaskBits tasks_on() const noexcept {
     TaskBits on;
@@ -87,6 +92,19 @@ struct ManagerState {
   void tell(std::string kind, TaskId task, RtpuId rtpu, std::string text, Nanoseconds at);
   /// Wakes all peers to read this manager's block, because it has changed.
   void announce() noexcept;
+};
+
+/// While this lives, each event names `by`, an Asker::text(), as the author of its request. Context: setup.
+class Acting {
+ public:
+  Acting(ManagerState& state, std::string by) : state_(state), before_(std::exchange(state.acting, std::move(by))) {}
+  Acting(const Acting&) = delete;
+  Acting& operator=(const Acting&) = delete;
+  ~Acting() { state_.acting = std::move(before_); }
+
+ private:
+  ManagerState& state_;
+  std::string before_;
 };
 
 /// The time of the manager: CLOCK_MONOTONIC, or the clock of use_clock(). Context: any; wait-free.

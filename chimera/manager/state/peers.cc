@@ -43,7 +43,6 @@ FaultRecord Peers::fault(TaskId task) const noexcept {
   std::memcpy(static_cast<void*>(&record), payload.data(), sizeof record);
   record.last.text[sizeof record.last.text - 1] = '\0';
   record.note[sizeof record.note - 1] = '\0';
-  if (static_cast<std::uint32_t>(record.method) >= CHIMERA_METHODS) record.method = Method::kError;
   return record;
 }
 

@@ -29,11 +29,14 @@ class Peers {
   std::shared_ptr<const PeerSegment> hold(RtpuId rtpu) const noexcept { return segments_[rtpu.index]; }
   /// Replaces the present incarnation by another. Closes `descriptor` in any case.
   Result<void> map(RtpuId rtpu, std::uint32_t incarnation, int descriptor);
+  /// Reads nothing more of the present incarnation.
+  void forget(RtpuId rtpu) { segments_[rtpu.index] = std::make_shared<const PeerSegment>(); }
 
   /// The segment of the task's rtpu; not there before it arrived.
   const PeerSegment& of(TaskId task) const noexcept { return *segments_[spec_->tasks[task.index].rtpu.index]; }
   /// The status word in the segment, even if the rtpu is dead.
   TaskStatus status(TaskId task) const noexcept;
+  /// As it stands there: maybe overwritten. ManagerState::fault() is what users see.
   FaultRecord fault(TaskId task) const noexcept;
 
  private:

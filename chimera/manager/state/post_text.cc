@@ -3,6 +3,7 @@
 #include "chimera/manager/state/post_text.h"
 
 #include "chimera/base/hosted/wording.h"
+#include "chimera/manager/state/cause.h"
 #include "chimera/runtime/refusal.h"
 #include "chimera/text/time_text.h"
 
@@ -104,6 +105,9 @@ std::string event_text(const ApplicationSpec& spec, const Post& post, const std:
       return "missed its deadline: it waits in a system call (it used " + duration_of(post) + ")";
     case EventKind::kHang:
       if (post.detail == 0) return "its thread ended in a cycle: this rtpu ends";
+      if (post.used > 0 && post.task.index < spec.tasks.size())
+        return "this rtpu ends: its job " +
+               overuse_text(spec.tasks[post.task.index], Nanoseconds{static_cast<std::int64_t>(post.used)});
       return "its job has not ended " + duration_of(post) + " after its release: this rtpu ends";
     case EventKind::kGaveWay:
       return "demoted below all other threads: the tasks of its rtpu used " + duration_of(post) +

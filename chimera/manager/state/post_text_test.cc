@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "chimera/manager/state/cause.h"
+
 namespace chimera::manager {
 namespace {
 
@@ -14,6 +16,7 @@ struct PostText : ::testing::Test {
     tasks[0].name = "law";
     tasks[0].budget = microseconds(300);
     tasks[1].name = "log";
+    tasks[1].period = milliseconds(100);
     spec.tasks = tasks;
   }
 
@@ -50,6 +53,13 @@ TEST_F(PostText, AJobThatWaitsHangsOrIsDemotedSaysItsTime) {
             "missed its deadline: it waits in a system call (it used 20 us)");
   EXPECT_EQ(text(EventKind::kHang, kLaw, TaskId{}, seconds(3)),
             "its job has not ended 3 s after its release: this rtpu ends");
+  Post overuse;
+  overuse.happening = EventKind::kHang;
+  overuse.task = kLaw;
+  overuse.used = overuse.detail = 3'100'000;
+  EXPECT_EQ(event_text(spec, overuse, ""), "this rtpu ends: its job used 3.1 ms, 10 x its budget of 300 us: raise "
+                                           "budget, or say on_overrun: abort and heed expired()");
+  EXPECT_EQ(overuse_text(spec.tasks[kLog.index], seconds(1)).substr(0, 14), "used 1 s, 10 x") << "without a budget";
   EXPECT_EQ(text(EventKind::kHang, kLaw, TaskId{}, {}), "its thread ended in a cycle: this rtpu ends");
   EXPECT_EQ(text(EventKind::kGaveWay, kLaw, TaskId{}, milliseconds(930)),
             "demoted below all other threads: the tasks of its rtpu used 930 ms lately, nearly all that the "

@@ -35,6 +35,8 @@ class ReceiptArchive {
   int descriptor() const noexcept;
   Nanoseconds next_due() const noexcept;
   void look(Nanoseconds now);
+  /// The next look() tries again after a fault, before kTryAgain is over.
+  void try_again(Nanoseconds now) noexcept { tries_again_ = now; }
   /// Files the receipts that are left; blocks for `limit` at most.
   void flush(Nanoseconds limit);
 

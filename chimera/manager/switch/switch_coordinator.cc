@@ -14,6 +14,8 @@ namespace chimera::manager {
 namespace {
 
 constexpr Nanoseconds kGrace = milliseconds(500);  // time in which the rtpus abort by themselves
+// Time for one step after the deadline: a device has as long on the way back.
+constexpr Nanoseconds kStepPatience = kReadyLimit + kGrace;
 
 /// "14:03:07", of the wall clock.
 std::string time_of_day(Nanoseconds at) {
@@ -65,6 +67,14 @@ Nanoseconds longest_gap(const ApplicationSpec& spec, const TaskBits& on, RtpuId 
 std::string asker_text(const BegunSwitch& begun, const ApplicationSpec& spec) {
   if (begun.cause == SwitchCause::kScript) return begun.asked_by.text();
   return control::asked_by({begun.order.after, begun.cause, begun.by}, spec);
+}
+
+/// Typical time of the method; for a method that was never called, the guess of IdleGap.
+Nanoseconds method_time(const ManagerState& state, TaskId task, Method method) {
+  const Nanoseconds budget = state.spec().tasks[task.index].budget;
+  const Nanoseconds guess = budget > Nanoseconds{} ? budget : IdleGap::kUnknownMethod;
+  const Profile profile = state.profile(task);
+  return profile.execution[static_cast<int>(method)].count == 0 ? guess : profile.of_late(method);
 }
 
 }  // namespace
@@ -121,22 +131,27 @@ SwitchCoordinator::SwitchCoordinator(ManagerState& state, ReceiptArchive& archiv
 
 /// Forgets a switch that was never announced. If only its last try was not announced, continues with the tries before.
 void SwitchCoordinator::take_over() {
-  auto begun = journal_.begun();
-  if (!begun) return;
   const PlanWord plan = agreement().plan();
   const std::size_t n_sets = state_.spec().sets.size();
+  last_ = agreement().order(plan, n_sets, state_.spec().tasks.size());
+  last_plan_ = plan;
+  auto begun = journal_.begun();
+  if (!begun) return;
   const bool is_damaged = begun->order.after != set_of(state_.spec(), begun->order.target) ||
                           (begun->before >= n_sets && begun->before != kNoSet) ||
                           begun->asked_by.role > control::Role::kConfigure ||
                           begun->cancelled_by.role > control::Role::kConfigure || !is_cause(*begun, state_.spec()) ||
                           !is_way(begun->way, state_.spec());
-  const bool is_announced = plan.number == begun->order.number;
+  // A number that is neither its own nor the one before was written by something else: see look().
+  const bool is_announced = next_plan(plan.number) != begun->order.number;
   if (is_damaged || (!is_announced && begun->tries <= 1)) return journal_.forget();
   if (!is_announced) {
     begun->order.number = plan.number;
     --begun->tries;
   }
   present_ = Present{*begun, {}};
+  last_ = begun->order;
+  if (plan.number != last_->number) last_plan_ = {};
   state_.announce();
 }
 
@@ -175,11 +190,13 @@ void SwitchCoordinator::assess(TaskBits& target, SwitchOutcome& outcome) {
   receipt.way = orders_.way();
   if (present_) {
     receipt.said.assign(under_way() + ", is under way: " + progress());
+    outcome.remedy = way_out();
   } else if (!is_free()) {
     receipt.said.assign("the rtpus are not done with the last switch");
+    outcome.remedy = way_out();
   } else if (!state_.logic.is_settled()) {
     receipt.said.assign("tasks are being brought up");
-    outcome.remedy = "`chimera status` shows which; ask again when they are ON";
+    outcome.remedy = way_out("`chimera status` shows which; ask again when they are ON");
   }
   if (!receipt.said.view().empty()) {
     receipt.why = NoSwitch::kUnderWay;
@@ -215,22 +232,12 @@ void SwitchCoordinator::find_late_off(ForeseenSwitch& foreseen) const {
   const TaskBits after = target_of(foreseen.plan);
   for (const TaskId task : foreseen.plan.leaving) {
     const TaskSpec& spec = state_.spec().tasks[task.index];
-    const Profile profile = state_.profile(task);
-    const bool was_called = profile.execution[static_cast<int>(Method::kOff)].count != 0;
-    const Nanoseconds needed = IdleGap::needed(spec, profile, Method::kOff);
-    if (was_called || !members_.needs_gaps(task) || needed <= longest_gap(state_.spec(), after, spec.rtpu)) continue;
+    const Nanoseconds needed = IdleGap::needed(spec, state_.profile(task), Method::kOff);
+    if (!members_.needs_gaps(task) || needed <= longest_gap(state_.spec(), after, spec.rtpu)) continue;
     foreseen.late_off = task;
     foreseen.needed = needed;
     return;
   }
-}
-
-/// Typical time of the method; for a method that was never called, the guess of IdleGap.
-Nanoseconds SwitchCoordinator::method_time(TaskId task, Method method) const {
-  const Nanoseconds budget = state_.spec().tasks[task.index].budget;
-  const Nanoseconds guess = budget > Nanoseconds{} ? budget : IdleGap::kUnknownMethod;
-  const Profile profile = state_.profile(task);
-  return profile.execution[static_cast<int>(method)].count == 0 ? guess : profile.of_late(method);
 }
 
 /// Estimated time to the change, if only the flag must be waited for. Requires: orders_ has judged.
@@ -238,13 +245,13 @@ Nanoseconds SwitchCoordinator::expected() {
   Nanoseconds sum;
   const std::uint8_t slow = orders_.way().slow;
   if (slow == 0) {
-    for (const TaskId task : orders_.plan().arriving) sum = sum + method_time(task, Method::kOn);
+    for (const TaskId task : orders_.plan().arriving) sum = sum + method_time(state_, task, Method::kOn);
     return sum + orders_.lead();
   }
   const Method methods[] = {Method::kCycle, Method::kOff, Method::kKill, Method::kInit, Method::kReinit, Method::kOn};
   static_assert(std::size(methods) == static_cast<std::size_t>(SlowAct::kOn) + 1);
   for (const SlowStep& step : slow_.plan(orders_.plan(), orders_.constants_in_force(), slow))
-    if (step.act != SlowAct::kCheck) sum = sum + method_time(step.task, methods[static_cast<int>(step.act)]);
+    if (step.act != SlowAct::kCheck) sum = sum + method_time(state_, step.task, methods[static_cast<int>(step.act)]);
   return (slow & kSlowForConstants) != 0 ? sum + flag_lead(state_.spec(), orders_.on()) : sum;
 }
 
@@ -273,7 +280,7 @@ void SwitchCoordinator::ask(const SwitchRequest& request, TaskBits target, Asker
   journal_.begin(begun);
   present_ = Present{begun, {}};
   present_->switched.push_back(std::move(switched));
-  orders_.announce(begun);
+  announce();
   state_.tell("switch", TaskId{}, RtpuId{}, under_way() + ": begun", now);
 }
 
@@ -293,27 +300,30 @@ bool SwitchCoordinator::cancel(Asker cancelled_by, Switched switched) {
 }
 
 Nanoseconds SwitchCoordinator::next_due() const noexcept {
-  const bool is_open = present_ && agreement().plan().is_open();  // if it is not open, the rtpus ring
-  return is_open ? present_->begun.order.until + kGrace : kNever;
+  if (!present_) return kNever;
+  const bool is_open = agreement().plan().is_open();  // if it is not open, the rtpus ring
+  return is_open ? present_->begun.order.until + kGrace : overdue_at();
 }
 
 bool SwitchCoordinator::is_tried_again(const SwitchReceipt& receipt, Nanoseconds now) {
   const bool is_cancelled = present_->begun.cancelled_by.role != control::Role::kNone;
-  if (is_cancelled || state_.is_ending()) return false;
+  if (is_cancelled || present_->damaged_at != kNever || state_.is_ending()) return false;
   if (!orders_.make_next_try(present_->begun, receipt.why, now)) return false;
   journal_.change(present_->begun);
-  orders_.announce(present_->begun);
+  announce();
   return true;
 }
 
 /// Aborts an open plan that the journal does not contain: no manager follows it.
 void SwitchCoordinator::look(Nanoseconds now) {
+  look_at_page(now);
   const PlanWord plan = agreement().plan();
   if (!present_ && plan.is_open() && agreement().abort(plan.number)) state_.announce();
   if (!present_) return;
   const bool is_due = now >= present_->begun.order.until + kGrace || state_.is_ending();
   if (is_due) (void)orders_.abort(present_->begun);
-  if (!orders_.is_over(present_->begun)) return;
+  const bool is_lost = present_->damaged_at != kNever && now >= present_->damaged_at + kStepPatience;
+  if (!orders_.is_over(present_->begun) && !is_lost) return;
   auto outcome = collect(present_->begun, now);
   if (is_tried_again(outcome->receipt, now)) return;
   const Present over = *std::exchange(present_, std::nullopt);
@@ -321,7 +331,99 @@ void SwitchCoordinator::look(Nanoseconds now) {
   file(std::move(outcome), over.begun, now, over.switched);
 }
 
-std::shared_ptr<SwitchOutcome> SwitchCoordinator::collect(const BegunSwitch& over, Nanoseconds now) const {
+void SwitchCoordinator::announce() {
+  last_ = present_->begun.order;
+  last_plan_ = {};
+  orders_.announce(present_->begun);
+}
+
+/// Writes the last order anew if something has overwritten the page. A switch that was not committed is then aborted; a
+/// slow one takes back all steps.
+void SwitchCoordinator::look_at_page(Nanoseconds now) {
+  if (!last_) return;
+  const SwitchOrder& order = *last_;
+  if (!agreement().is_overwritten(order.number)) {
+    last_plan_ = agreement().plan();
+    return;
+  }
+  std::uint16_t turn = 0;
+  if (order.slow != 0 && orders_.find_plan_of(order))
+    turn = static_cast<std::uint16_t>(TurnWord::kBack |
+                                      slow_.plan(orders_.plan(), order.constants, order.slow).size());
+  if (last_plan_.phase != SwitchPhase::kCommitted) last_plan_ = {order.number, SwitchPhase::kAborted, 0};
+  agreement().restore(order, last_plan_, turn);
+  state_.announce();
+  if (present_ && present_->damaged_at == kNever) present_->damaged_at = now;
+}
+
+std::uint64_t SwitchCoordinator::words_of_progress() const {
+  std::uint64_t words = state_.page.switching.plan.load(std::memory_order_acquire);
+  words = words * 31 + state_.page.switching.turn.load(std::memory_order_acquire);
+  for (std::uint32_t r = 0; r < state_.peers.n_rtpus(); ++r) {
+    if (!state_.peers[RtpuId(r)].is_there()) continue;
+    const SwitchProgress& progress = state_.peers[RtpuId(r)].block().head().switching;
+    words = (words * 31 + progress.adopted) * 31 + progress.over;
+  }
+  return words;
+}
+
+/// A job of a task that leaves may take its whole period.
+Nanoseconds SwitchCoordinator::overdue_at() const noexcept {
+  Nanoseconds longest;
+  for (const TaskSpec& task : state_.spec().tasks)
+    if (!task.aperiodic) longest = std::max(longest, task.period);
+  return std::max(present_->begun.order.until, present_->moved_at) + kStepPatience + longest;
+}
+
+std::vector<RtpuId> SwitchCoordinator::held_up_by() {
+  const SwitchOrder& order = present_->begun.order;
+  const PlanWord plan = agreement().plan();
+  std::vector<RtpuId> busy, late;
+  for (std::uint32_t r = 0; r < state_.peers.n_rtpus(); ++r) {
+    if (((order.members >> r) & 1u) == 0 || !members_.is_busy_with(r, order.number)) continue;
+    const SwitchProgress& progress = state_.peers[RtpuId(r)].block().head().switching;
+    busy.emplace_back(r);
+    if (progress.adopted.load(std::memory_order_acquire) != order.number) late.emplace_back(r);  // SwitchProgress
+  }
+  if (plan.phase == SwitchPhase::kCommitted) return late.empty() ? busy : late;  // the others wait for these
+  const auto run = agreement().run(order.number);
+  if (order.slow == 0 || !run || !orders_.find_plan_of(order)) return busy;
+  const SlowCourse course(slow_.plan(orders_.plan(), order.constants, order.slow));
+  const auto step = course.turn_at(*run);
+  if (!step) return busy;
+  const RtpuId next = state_.spec().tasks[course.steps()[*step].task.index].rtpu;
+  return std::ranges::find(busy, next) == busy.end() ? busy : std::vector<RtpuId>{next};
+}
+
+/// Leaves an rtpu that does not run to RtpuWatch: a debugger may hold it.
+std::vector<RtpuId> SwitchCoordinator::overdue(Nanoseconds now) {
+  if (!present_ || state_.is_ending()) return {};
+  const std::uint64_t words = words_of_progress();
+  if (std::exchange(present_->words, words) != words) present_->moved_at = now;
+  if (now < overdue_at()) return {};
+  present_->moved_at = now;
+  std::vector<RtpuId> over;
+  for (const RtpuId rtpu : held_up_by()) {
+    RtpuRecord& record = state_.rtpus[rtpu.index];
+    if (record.is_away) continue;
+    record.ended_for = "it held up switch " + std::to_string(present_->begun.number);
+    if (!record.hang.empty()) record.ended_for += ": " + record.hang;
+    over.push_back(rtpu);
+  }
+  return over;
+}
+
+std::string SwitchCoordinator::way_out(const std::string& otherwise) const {
+  for (std::uint32_t r = 0; r < state_.peers.n_rtpus(); ++r) {
+    const RtpuRecord& record = state_.rtpus[r];
+    if (!record.is_alive || record.hang.empty()) continue;
+    const std::string name = state_.name(RtpuId(r));
+    return "`kill -KILL " + std::to_string(record.pid) + "` restarts rtpu " + name + ", which hangs: " + record.hang;
+  }
+  return otherwise;
+}
+
+std::shared_ptr<SwitchOutcome> SwitchCoordinator::collect(const BegunSwitch& over, Nanoseconds now) {
   auto outcome = std::make_shared<SwitchOutcome>();
   SwitchReceipt& receipt = outcome->receipt;
   outcome->tasks.resize(state_.spec().tasks.size());
@@ -330,7 +432,12 @@ std::shared_ptr<SwitchOutcome> SwitchCoordinator::collect(const BegunSwitch& ove
   receipt.tasks = outcome->tasks;
   receipt.variables = outcome->variables;
   receipt.reinitialised = outcome->reinitialised;
-  orders_.collect(over, state_.is_ending() ? NoSwitch::kRunEnded : NoSwitch::kMemberDied, now, receipt);
+  NoSwitch otherwise = NoSwitch::kMemberDied;
+  if (state_.is_ending()) otherwise = NoSwitch::kRunEnded;
+  else if (present_->damaged_at != kNever) otherwise = NoSwitch::kDamaged;
+  else if (now >= over.order.until + kGrace) otherwise = NoSwitch::kNoAnswer;
+  orders_.look();
+  orders_.collect(over, otherwise, now, receipt);
   outcome->tasks.resize(receipt.tasks.size());
   outcome->variables.resize(receipt.variables.size());
   outcome->reinitialised.resize(receipt.reinitialised.size());

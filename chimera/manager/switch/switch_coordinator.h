@@ -39,7 +39,7 @@ struct ForeseenSwitch {
   SwitchPlan plan;        ///< empty for a refusal
   std::string remedy;
   Nanoseconds expected;   ///< estimated time from the request to the change, without gaps, inputs and `safe_when`
-  TaskId late_off;        ///< its `off` was never called and fits no gap: it comes IdleGap::kLongestWait late
+  TaskId late_off;        ///< its `off` fits no gap: it comes IdleGap::kLongestWait late
   Nanoseconds needed;     ///< idle time that the `off` of late_off needs
 };
 
@@ -81,6 +81,10 @@ class SwitchCoordinator {
 
   /// Handles the progress of the rtpus since the last call.
   void look(Nanoseconds now);
+  /// The rtpus that must be killed, so that the switch ends: all others have waited in vain for one of their steps.
+  std::vector<RtpuId> overdue(Nanoseconds now);
+  /// Remedy for a refusal: the command that ends an rtpu which hangs; `otherwise` if none does.
+  std::string way_out(const std::string& otherwise = "ask again when it is over") const;
   /// Time when look() is due if no bell rings; kNever: not due.
   Nanoseconds next_due() const noexcept;
 
@@ -88,16 +92,23 @@ class SwitchCoordinator {
   struct Present {
     BegunSwitch begun;
     std::vector<Switched> switched;  // empty: the request came to a predecessor
+    Nanoseconds damaged_at = kNever;  // the first time that the page was found overwritten
+    std::uint64_t words = 0;          // those by which the rtpus show their progress
+    Nanoseconds moved_at{};           // they changed last
   };
 
   SwitchAgreement agreement() const noexcept { return orders_.agreement(); }
   void take_over();
+  void announce();
+  void look_at_page(Nanoseconds now);
+  std::vector<RtpuId> held_up_by();
+  std::uint64_t words_of_progress() const;
+  Nanoseconds overdue_at() const noexcept;
   void assess(TaskBits& target, SwitchOutcome& outcome);
-  Nanoseconds method_time(TaskId task, Method method) const;
   Nanoseconds expected();
   void find_late_off(ForeseenSwitch& foreseen) const;
   bool is_tried_again(const SwitchReceipt& receipt, Nanoseconds now);
-  std::shared_ptr<SwitchOutcome> collect(const BegunSwitch& over, Nanoseconds now) const;
+  std::shared_ptr<SwitchOutcome> collect(const BegunSwitch& over, Nanoseconds now);
   void file(std::shared_ptr<SwitchOutcome> outcome, const BegunSwitch& of, Nanoseconds now,
             std::vector<Switched> switched);
   void tell(const SwitchOutcome& outcome, Nanoseconds now);
@@ -110,6 +121,8 @@ class SwitchCoordinator {
   SwitchOrders orders_;
   SlowPlanner slow_;
   std::optional<Present> present_;
+  std::optional<SwitchOrder> last_;  // announced last; none: not known, since it was before this manager
+  PlanWord last_plan_;               // of last_, as it was seen last
 };
 
 }  // namespace chimera::manager

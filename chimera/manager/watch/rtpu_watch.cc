@@ -32,7 +32,11 @@ RtpuWatch::RtpuWatch(ManagerState& state) : state_(state) {
 
 std::vector<RtpuId> RtpuWatch::look(Nanoseconds at) {
   due_ = at + kWatchEvery;
-  look_at_keeper(at);
+  const std::uint64_t beats = state_.keeper.beats.load(std::memory_order_acquire);
+  state_.keeper_hang = look_at(keeper_, "keeper", {at, beats, process_state(state_.keeper_pid)});
+  const std::int32_t guard = state_.keeper.guard_pid.load(std::memory_order_relaxed);
+  const std::uint64_t rounds = state_.page.guard_beats.load(std::memory_order_relaxed);
+  state_.guard_hang = guard == 0 ? "" : look_at(guard_, "guard", {at, rounds, process_state(guard)});
   std::vector<RtpuId> over;
   for (std::uint32_t r = 0; r < rtpus_.size(); ++r) {
     const RtpuId rtpu(r);
@@ -44,6 +48,12 @@ std::vector<RtpuId> RtpuWatch::look(Nanoseconds at) {
     record.hang.clear();
     record.is_away = false;
     if (!record.is_alive) continue;
+    if (record.is_overwritten) {
+      record.is_away = true;
+      record.hang = "something in it has overwritten its memory";
+      over.push_back(rtpu);
+      continue;
+    }
     if (look_at_life(rtpu, at)) over.push_back(rtpu);
     if (!record.is_away) look_at_methods(rtpu, at);
   }
@@ -103,16 +113,15 @@ void RtpuWatch::tell(RtpuId rtpu, const MethodVerdict& verdict, Nanoseconds at) 
   if (verdict.is_news) state_.tell("hang", TaskWord::found(word).task(), rtpu, text, at);
 }
 
-void RtpuWatch::look_at_keeper(Nanoseconds at) {
-  const std::uint64_t beats = state_.keeper.beats.load(std::memory_order_acquire);
-  const LifeVerdict verdict = keeper_.look({at, beats, process_state(state_.keeper_pid)}, {});
-  state_.keeper_hang =
-      verdict.life == Life::kRuns ? "" : "does not run: " + verdict.text() + ", for " + seconds_text(verdict.silent);
-  if (!verdict.is_news) return;
-  state_.tell("hang", TaskId{}, RtpuId{},
-              verdict.life == Life::kRuns ? "keeper runs again after " + seconds_text(verdict.silent)
-                                          : "keeper " + state_.keeper_hang,
-              at);
+/// How the keeper or the guard hangs; "" if it runs. A process that has not begun its loop has longer for its start.
+std::string RtpuWatch::look_at(LifeWatch& watch, const char* name, const LifeSample& sample) {
+  const bool is_slow_start = sample.beats == 0 && sample.process.letter != 'T';
+  const LifeVerdict verdict = watch.look(sample, {.told = is_slow_start ? kStartPatience : LifeLimits().told});
+  const bool runs = verdict.life == Life::kRuns;
+  const std::string hang = "does not run: " + verdict.text() + ", for " + seconds_text(verdict.silent);
+  const std::string news = runs ? "runs again after " + seconds_text(verdict.silent) : hang;
+  if (verdict.is_news) state_.tell("hang", TaskId{}, RtpuId{}, name + (" " + news), sample.at);
+  return runs ? "" : hang;
 }
 
 void RtpuWatch::told(const KeeperMessage& hung, Nanoseconds at) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Watches the processes that do not watch the manager: the rtpus, the running method in each of them, and the keeper.
+// Watches the processes that do not watch the manager: rtpus, their running methods, the keeper and the guard.
 // docs/formats/processes.md, "Who watches whom".
 #pragma once
 
@@ -19,8 +19,8 @@ class RtpuWatch {
 
   /// Time when look() is due.
   Nanoseconds due() const noexcept { return due_; }
-  /// Checks all rtpus and the keeper, and reports changes. Records rtpus that do not run and methods that do not
-  /// return. Returns the rtpus that must be killed.
+  /// Checks all rtpus, the keeper and the guard, and reports changes. Records rtpus that do not run and methods that do
+  /// not return. Returns the rtpus that must be killed.
   std::vector<RtpuId> look(Nanoseconds at);
   /// The keeper reports a manager that did not answer.
   void told(const KeeperMessage& hung, Nanoseconds at);
@@ -34,12 +34,12 @@ class RtpuWatch {
 
   bool look_at_life(RtpuId rtpu, Nanoseconds at);
   void look_at_methods(RtpuId rtpu, Nanoseconds at);
-  void look_at_keeper(Nanoseconds at);
+  std::string look_at(LifeWatch& watch, const char* name, const LifeSample& sample);
   void tell(RtpuId rtpu, const MethodVerdict& verdict, Nanoseconds at);
 
   ManagerState& state_;
   std::vector<std::unique_ptr<Rtpu>> rtpus_;
-  LifeWatch keeper_;
+  LifeWatch keeper_, guard_;
   Nanoseconds due_;
 };
 

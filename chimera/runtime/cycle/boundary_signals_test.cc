@@ -38,7 +38,7 @@ struct Guest final : BoundaryListener {
   void publish() noexcept override {}
   void told(const SignalReport& report, Nanoseconds) noexcept override { reports.push_back(report); }
   void missed(TaskId task, const MissCause::Verdict&, Nanoseconds) noexcept override { misses.push_back(task); }
-  void hangs(TaskWord, Nanoseconds, Nanoseconds) noexcept override {}
+  void hangs(TaskWord, Nanoseconds, Nanoseconds, Nanoseconds) noexcept override {}
   void gave_way(TaskId, Nanoseconds, Nanoseconds) noexcept override {}
   void show(const Task& task) noexcept override { shown.push_back(task.id); }
 

@@ -34,10 +34,14 @@ struct DecisionPage {
   /// its number plus 1; bits 0-31: its incarnation; 0: none. Compare-and-swap, acq_rel: the new holder of the claim
   /// sees the status words that the holder before has stored. A claim of a dead process is free.
   alignas(64) std::atomic<std::uint64_t> claims[kMaxGroups];
+  /// Rounds of the guard: four a second, or it hangs. Relaxed, pairs with nothing.
+  alignas(64) std::atomic<std::uint64_t> guard_beats{0};
   /// How far a switch of configurations has come. Outlives the manager, which plans.
   SwitchPage switching;
 };
 static_assert(kMaxRtpus <= kMaxContexts);
+
+enum class GuardState : std::int32_t { kWell, kLate, kDead };  ///< kLate: without real-time rights
 
 /// Writable by the keeper alone. `alive` and `ending` are stored with release and loaded with acquire: what the keeper
 /// did before is seen with them. The others are figures that pair with nothing.
@@ -51,6 +55,10 @@ struct KeeperPage {
   std::atomic<std::uint32_t> face_deaths{0};
   std::atomic<std::int32_t> face_signal{0};
   std::atomic<std::int32_t> lost_output{0};
+  // The guard.
+  std::atomic<std::int32_t> guard_pid{0};  ///< 0: there is none
+  std::atomic<GuardState> guard_state{GuardState::kWell};
+  std::atomic<std::int32_t> unguarded[kMaxRtpus];  ///< errno: why no frame of the rtpu can be written; 0: it can
 };
 
 }  // namespace chimera

@@ -12,18 +12,25 @@ Result<PeerSegment> PeerSegment::open(int descriptor, const PeerLayout& layout, 
                                       std::uint32_t peer, std::uint32_t incarnation) {
   auto region = MemoryRegion::open_read_only(descriptor, peer_segment_bytes(layout.table(), n_tasks));
   if (!region) return region.error();
-  if (const auto table = SegmentView::open(region->bytes(), layout.table().hash()); !table) return table.error();
   PeerSegment made;
-  made.block_ = BlockView(region->bytes().data() + block_offset(layout.table()), n_tasks);
-  const BlockHead& head = made.block_.head();
-  if (head.magic != kBlockMagic || head.peer != peer || head.incarnation != incarnation || head.n_tasks != n_tasks)
-    return (Message() << "segment says peer " << head.peer << " in incarnation " << head.incarnation << " with "
-                      << head.n_tasks << " tasks, expected " << peer << ", " << incarnation << ", " << n_tasks)
-        .error(ErrorCode::kBadInput);
   made.region_ = *std::move(region);
   made.layout_ = &layout;
   made.incarnation_ = incarnation;
+  made.peer_ = peer;
+  made.n_tasks_ = n_tasks;
+  made.block_ = BlockView(made.region_.bytes().data() + block_offset(layout.table()), n_tasks);
+  if (const auto whole = made.check(); !whole) return whole.error();
   return made;
+}
+
+Result<void> PeerSegment::check() const {
+  if (const auto table = SegmentView::open(region_.bytes(), layout_->table().hash()); !table) return table.error();
+  const BlockHead& head = block_.head();
+  if (head.magic == kBlockMagic && head.peer == peer_ && head.incarnation == incarnation_ && head.n_tasks == n_tasks_)
+    return {};
+  return (Message() << "segment says peer " << head.peer << " in incarnation " << head.incarnation << " with "
+                    << head.n_tasks << " tasks, expected " << peer_ << ", " << incarnation_ << ", " << n_tasks_)
+      .error(ErrorCode::kBadInput);
 }
 
 GroupReader PeerSegment::group(GroupId id) const noexcept {

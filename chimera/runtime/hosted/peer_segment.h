@@ -24,6 +24,8 @@ class PeerSegment {
 
   /// False for an empty one. Context: any; wait-free, as everything below.
   bool is_there() const noexcept { return block_.is_there(); }
+  /// Refuses a segment whose headers are not those of open(): its owner has overwritten them. Requires: is_there().
+  Result<void> check() const;
   const BlockView& block() const noexcept { return block_; }
   std::uint32_t incarnation() const noexcept { return incarnation_; }
   /// Requires: is_there(), and that `id` is a group of the layout.
@@ -33,7 +35,7 @@ class PeerSegment {
   MemoryRegion region_;
   BlockView block_;
   const PeerLayout* layout_ = nullptr;
-  std::uint32_t incarnation_ = 0;
+  std::uint32_t incarnation_ = 0, peer_ = 0, n_tasks_ = 0;
 };
 
 }  // namespace chimera

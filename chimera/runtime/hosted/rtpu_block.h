@@ -49,10 +49,12 @@ struct alignas(64) BlockHead {
   std::atomic<std::uint32_t> hung{0};        ///< as `running`: the method because of which the rtpu ends itself
   std::atomic<std::uint32_t> attended{0};    ///< rounds of its main thread: one every 50 ms, or it hangs
   std::atomic<std::int64_t> hung_limit{0};   ///< nanoseconds for which that method was waited for
-  char grant[432] = {};                      ///< one line about real-time rights, zero-terminated
+  std::atomic<std::int64_t> hung_used{0};    ///< nanoseconds that it used, if it used too much; else 0
+  char grant[424] = {};                      ///< one line about real-time rights, zero-terminated
   std::atomic<std::uint32_t> at_edge{0};     ///< as `running`, for a method called at a cycle boundary; 0: none
   std::atomic<std::uint32_t> background{0};  ///< as `running`: the background that is under way longest; 0: none
   std::atomic<std::uint32_t> jobs{0};        ///< cycles of the task in `running` that ended, as the main thread saw
+  std::atomic<std::int32_t> pid{0};          ///< of the owner; 0: it has no process of its own
   SwitchProgress switching;                  ///< how far this rtpu has come with a switch
   SwitchWishWords wish;                      ///< the configuration that a task of this rtpu asked for last
 };

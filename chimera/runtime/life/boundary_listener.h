@@ -38,8 +38,8 @@ class BoundaryListener {
   /// The task missed a deadline, maybe with a job that is under way; the verdict says why. Context: cycle boundary.
   virtual void missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds now) noexcept = 0;
   /// A job does not end by itself: `job` is its task and method, `age` the time since its release; zero: its thread is
-  /// gone. Context: cycle boundary.
-  virtual void hangs(TaskWord job, Nanoseconds age, Nanoseconds now) noexcept = 0;
+  /// gone. `used`: its execution time if that is beyond most_use(); zero: it sleeps. Context: cycle boundary.
+  virtual void hangs(TaskWord job, Nanoseconds age, Nanoseconds used, Nanoseconds now) noexcept = 0;
   /// Jobs here used `used` of the time that the kernel looks back to, about all it lets real-time threads have: one of
   /// the task went on below all others. Context: cycle boundary.
   virtual void gave_way(TaskId task, Nanoseconds used, Nanoseconds now) noexcept = 0;

@@ -27,7 +27,7 @@ class IdleGap {
  public:
   /// Assumed duration of a method that was never called, if its task has no budget.
   static constexpr Nanoseconds kUnknownMethod = microseconds(100);
-  /// Longest wait for a gap: for a method that was never called, or while the flag is up.
+  /// Longest wait for a gap: for `off`, or while the flag is up.
   static constexpr Nanoseconds kLongestWait = milliseconds(100);
 
   /// All arguments outlive this.

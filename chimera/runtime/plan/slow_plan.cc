@@ -6,6 +6,30 @@
 
 namespace chimera {
 
+SlowCourse::SlowCourse(std::span<const SlowStep> steps) noexcept : steps_(steps) {
+  const auto count = [steps](SlowAct act) {
+    const auto is_its = [act](const SlowStep& step) { return step.act == act; };
+    return static_cast<std::size_t>(std::count_if(steps.begin(), steps.end(), is_its));
+  };
+  n_checks_ = count(SlowAct::kCheck);
+  const auto is_reinit = [](const SlowStep& step) { return step.act == SlowAct::kReinit; };
+  first_reinit_ = static_cast<std::size_t>(std::find_if(steps.begin(), steps.end(), is_reinit) - steps.begin());
+  end_of_reinits_ = first_reinit_ + count(SlowAct::kReinit);
+}
+
+std::size_t SlowCourse::undone_with(std::size_t left) const noexcept {
+  const std::size_t step = left - 1;
+  const bool is_reinit = step >= first_reinit_ && step < end_of_reinits_;
+  return is_reinit ? first_reinit_ + end_of_reinits_ - 1 - step : step;
+}
+
+std::optional<std::size_t> SlowCourse::turn_at(std::uint16_t run) const noexcept {
+  const bool is_back = (run & TurnWord::kBack) != 0;
+  const std::size_t done = run & ~std::uint32_t{TurnWord::kBack};
+  if (done > steps_.size() || steps_.empty() || (is_back && done <= n_checks_)) return std::nullopt;
+  return is_back ? undone_with(done) : std::min(done, steps_.size() - 1);
+}
+
 void SlowPlanner::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   spec_ = &spec;
   rivals_.prepare(spec, memory);

@@ -16,7 +16,9 @@
 // constants before (in the same order: producers first), kill for spawn, spawn for kill, on for off.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "chimera/runtime/plan/constant_choice.h"
@@ -32,6 +34,29 @@ struct SlowStep {
   SlowAct act = SlowAct::kCheck;
   TaskId task;
   constexpr bool operator==(const SlowStep&) const noexcept = default;
+};
+
+/// The steps of a slow switch, and whose turn it is at a turn word. Plain value. Context: cycle boundary; wait-free.
+class SlowCourse {
+ public:
+  explicit SlowCourse(std::span<const SlowStep> steps = {}) noexcept;
+  std::span<const SlowStep> steps() const noexcept { return steps_; }
+  /// The first steps, which only check.
+  std::size_t n_checks() const noexcept { return n_checks_; }
+  /// The step that is undone next when `left` steps are left. A user of a constant is re-initialised after the producer
+  /// of the constant, on the way back too.
+  std::size_t undone_with(std::size_t left) const noexcept;
+  /// The steps that are to be undone when `done` of them are done: all users are re-initialised if one was.
+  std::size_t left_of(std::size_t done) const noexcept {
+    return done > first_reinit_ && done < end_of_reinits_ ? end_of_reinits_ : done;
+  }
+  /// The step whose context moves the word on when it says `run` (TurnWord). None: each context ends by itself.
+  std::optional<std::size_t> turn_at(std::uint16_t run) const noexcept;
+
+ private:
+  std::span<const SlowStep> steps_;
+  std::size_t n_checks_ = 0;
+  std::size_t first_reinit_ = 0, end_of_reinits_ = 0;
 };
 
 /// Holds the steps of one plan at a time.

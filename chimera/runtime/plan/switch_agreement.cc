@@ -64,14 +64,14 @@ std::optional<std::uint16_t> SwitchAgreement::run(std::uint16_t number) const no
   return turn.number == number ? std::optional(turn.run) : std::nullopt;
 }
 
-void SwitchAgreement::announce(const SwitchOrder& order) noexcept {
+void SwitchAgreement::write(const SwitchOrder& order, const PlanWord& plan, std::uint16_t run) noexcept {
   const Words words = words_of(order);
   for (std::size_t i = 0; i < words.size(); ++i) page_->order[i].store(words[i], std::memory_order_relaxed);
   page_->order[words.size()].store(sum_of(words), std::memory_order_relaxed);
-  page_->turn.store(TurnWord{order.number, 0, order.members}.word(), std::memory_order_release);
+  page_->turn.store(TurnWord{order.number, run, order.members}.word(), std::memory_order_release);
   std::uint64_t before = page_->plan.load(std::memory_order_acquire);
-  const std::uint64_t prepared = PlanWord{order.number, SwitchPhase::kPrepared, 0}.word();
-  while (!page_->plan.compare_exchange_weak(before, prepared, std::memory_order_acq_rel, std::memory_order_acquire)) {
+  const std::uint64_t after = plan.word();
+  while (!page_->plan.compare_exchange_weak(before, after, std::memory_order_acq_rel, std::memory_order_acquire)) {
   }
 }
 

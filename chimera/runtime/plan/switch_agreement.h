@@ -14,6 +14,7 @@
 //   move_turn  step k -> step k + 1, of a slow switch, or backwards
 //   commit     PREPARED -> COMMITTED               of a slow switch, by the context of the last step
 //   abort      PREPARED or PROPOSED -> ABORTED     by any; never after COMMITTED
+//   restore    overwritten words -> ABORTED, or COMMITTED as before, by the manager
 #pragma once
 
 #include <array>
@@ -154,7 +155,15 @@ class SwitchAgreement {
   std::optional<std::uint16_t> run(std::uint16_t number) const noexcept;
 
   /// Requires: every context that lives is over with the plan before; one context, or the manager, plans.
-  void announce(const SwitchOrder& order) noexcept;
+  void announce(const SwitchOrder& order) noexcept { write(order, {order.number, SwitchPhase::kPrepared, 0}, 0); }
+  /// True if something has overwritten the words of that plan. Requires: it was announced last.
+  bool is_overwritten(std::uint16_t number) const noexcept {
+    const PlanWord now = plan();
+    return now.number != number || (now.phase != SwitchPhase::kCommitted && !run(number));
+  }
+  /// Writes all words anew. `plan` is that of the order, aborted or committed; `run` goes into the turn word. Requires:
+  /// is_overwritten().
+  void restore(const SwitchOrder& order, const PlanWord& plan, std::uint16_t run) noexcept { write(order, plan, run); }
   /// False: the plan is no longer in that run.
   bool hand_on(std::uint16_t number, std::uint16_t run) noexcept;
   /// Slow switch: sets the number of steps done, or left to be undone (TurnWord). False: the turn was not at `from`.
@@ -173,6 +182,7 @@ class SwitchAgreement {
   bool abort(std::uint16_t number) noexcept;
 
  private:
+  void write(const SwitchOrder& order, const PlanWord& plan, std::uint16_t run) noexcept;
   bool move(std::uint16_t number, SwitchPhase from, PlanWord to) noexcept;
 
   SwitchPage* page_;

@@ -164,6 +164,28 @@ TEST_F(SwitchAgreementTest, ASlowPlanCountsItsStepsForwardsAndBackAndCommitsAtOn
   EXPECT_FALSE(agreement.commit(8, kOrigin));
 }
 
+TEST_F(SwitchAgreementTest, OverwrittenWordsAreWrittenAnewAsAborted) {
+  const SwitchOrder order = some_order();
+  for (const std::uint64_t word : {std::uint64_t{0}, ~std::uint64_t{0}, std::uint64_t{0x5a5a'5a5a'5a5a'5a5a}}) {
+    for (std::atomic<std::uint64_t>* one : {&page.plan, &page.turn}) {
+      agreement.announce(order);
+      EXPECT_FALSE(agreement.is_overwritten(7));
+      one->store(word);
+      page.order[2].store(word);
+      EXPECT_TRUE(agreement.is_overwritten(7));
+      agreement.restore(order, {7, SwitchPhase::kAborted, 0}, TurnWord::kBack | 3);
+      EXPECT_FALSE(agreement.is_overwritten(7));
+      EXPECT_EQ(agreement.plan().phase, SwitchPhase::kAborted);
+      EXPECT_EQ(agreement.run(7), TurnWord::kBack | 3);
+      EXPECT_EQ(*agreement.order(agreement.plan(), 2, 70), order);
+    }
+  }
+  agreement.announce(order);
+  EXPECT_TRUE(agreement.commit(7, kOrigin));
+  page.turn.store(0);
+  EXPECT_FALSE(agreement.is_overwritten(7)) << "a plan that is committed needs no turn";
+}
+
 // Fault row 27, the stale plan after a restart: any acts of earlier plans come between any two steps of the present
 // plan, which is still committed or aborted.
 TEST_F(SwitchAgreementTest, AHundredThousandActsOfOlderPlansChangeNothing) {

@@ -10,6 +10,7 @@ JobThread::JobThread(Task& owner) noexcept : task(owner), spec(*owner.spec), id(
 
 void JobThread::attach() noexcept {
   thread_id_ = carrier = this_thread();
+  use_decimal_point();
   if (sporadic) sporadic->attach();
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "chimera/platform/thread.h"
+#include "chimera/runtime/job/hang_rule.h"
 #include "chimera/runtime/hosted/refusal_text.h"
 
 namespace chimera {
@@ -141,8 +142,10 @@ void PreemptiveExecutor::run_edge(Nanoseconds now) noexcept {
 void PreemptiveExecutor::report_hanging(Nanoseconds now) noexcept {
   for (const JobThread& job : ready_.threads()) {
     if (!supervisor_.pop_hanging(job)) continue;
-    const bool is_gone = job.used() == Nanoseconds{};
-    guest_->hangs(TaskWord(job.id, job.method()), is_gone ? Nanoseconds{} : now - job.job.release, now);
+    const Nanoseconds used = job.used();
+    const bool is_gone = used == Nanoseconds{}, uses_too_much = used > most_use(job.spec);
+    guest_->hangs(TaskWord(job.id, job.method()), is_gone ? Nanoseconds{} : now - job.job.release,
+                  uses_too_much ? used : Nanoseconds{}, now);
   }
   if (const TaskId task = share_.pop_demoted(); task.is_valid()) guest_->gave_way(task, share_.used(now), now);
 }

@@ -5,14 +5,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "chimera/runtime/job/hang_rule.h"
+
 namespace chimera {
 namespace {
 
-// A job that has used ten times its budget (without one: its period) does not end by itself.
-constexpr std::int64_t kBudgetsOfAHangingJob = 10;
-// Nor does one that sleeps in system calls for 2 s, and for ten periods.
-constexpr Nanoseconds kSleepOfAHangingJob = seconds(2);
-constexpr std::int64_t kPeriodsOfAHangingJob = 10;
 // Least time between two alarms: the supervisor runs at the ceiling and keeps every job from running.
 constexpr Nanoseconds kMinAlarmGap = microseconds(5);
 // How often the share is checked while no job is found that may be demoted.
@@ -140,8 +137,7 @@ void Supervisor::charge(JobThread& job, Nanoseconds now) noexcept {
   const Nanoseconds all = used_by(job.thread());
   if (all == kNever) return reap(job, now);
   const Nanoseconds used = all - job.used_before();
-  const Nanoseconds allowed = has_budget ? s.budget : s.period;
-  if (used > allowed * kBudgetsOfAHangingJob || sleeps_for_good(job, used, now)) return give_up(job, used, now);
+  if (hangs(s, used, slept(job, used, now))) return give_up(job, used, now);
   if (has_budget && used > s.budget && !releases_.misses().is_reported_overrun(job.id)) return overrun(job, now);
   if (ready_.policy() != Policy::kMufLaxity || job.is_demoted) return;
   ready_.rekey(job, std::max(s.budget - used, Nanoseconds{}));
@@ -163,8 +159,8 @@ void Supervisor::report_late(const JobThread& job, bool has_begun) noexcept {
   if (releases_.settlement().is_unsettled(job.id)) processor_.edge_bell().ring();
 }
 
-// The job used nothing since the last look, and no more urgent one had the processor.
-bool Supervisor::sleeps_for_good(const JobThread& job, Nanoseconds used, Nanoseconds now) noexcept {
+// Time for which the job used nothing while no more urgent one had the processor, up to this look.
+Nanoseconds Supervisor::slept(const JobThread& job, Nanoseconds used, Nanoseconds now) noexcept {
   Seen& last = seen(job);
   const Nanoseconds period = job.spec.period, since = std::min(now - last.at, period);
   const bool is_asleep = used == last.used && (job.is_demoted || &job == ready_.most_urgent_running());
@@ -172,7 +168,7 @@ bool Supervisor::sleeps_for_good(const JobThread& job, Nanoseconds used, Nanosec
   if (is_asleep) last.slept += since;
   last.used = used;
   last.at = now;
-  return last.slept > std::max(kSleepOfAHangingJob, period * kPeriodsOfAHangingJob);
+  return last.slept;
 }
 
 // The other jobs keep their deadlines. The owner of the context ends the context, because nothing else ends the job.

@@ -58,7 +58,7 @@ class Supervisor {
   void charge(JobThread& job, Nanoseconds now) noexcept;
   void overrun(JobThread& job, Nanoseconds now) noexcept;
   void report_late(const JobThread& job, bool has_begun) noexcept;
-  bool sleeps_for_good(const JobThread& job, Nanoseconds used, Nanoseconds now) noexcept;
+  Nanoseconds slept(const JobThread& job, Nanoseconds used, Nanoseconds now) noexcept;
   void give_up(JobThread& job, Nanoseconds used, Nanoseconds now) noexcept;
   void reap(JobThread& job, Nanoseconds now) noexcept;
   void follow_server(JobThread& job, Nanoseconds now) noexcept;

@@ -81,11 +81,22 @@ TEST_F(SupervisorTest, ActsOnABudgetOnce) {
   EXPECT_TRUE(releases().misses().is_reported_overrun(job.id));
 }
 
-TEST_F(SupervisorTest, GivesUpAJobThatUsedTenTimesItsBudget) {
-  add("loops", milliseconds(10)).budget = microseconds(100);
+TEST_F(SupervisorTest, KeepsAJobThatUsedTenTimesABudgetOfMicroseconds) {
+  add("small", microseconds(500)).budget = microseconds(5);
   make();
   JobThread& job = begin(0, origin);
-  use(microseconds(1100));
+  use(microseconds(130));
+  supervisor().check_running(at(1));
+  EXPECT_FALSE(job.is_demoted);
+  EXPECT_FALSE(supervisor().pop_hanging(job));
+  EXPECT_TRUE(releases().misses().is_reported_overrun(job.id));
+}
+
+TEST_F(SupervisorTest, GivesUpAJobThatUsedMoreThanTheRuleAllows) {
+  add("loops", milliseconds(1)).budget = microseconds(100);
+  make();
+  JobThread& job = begin(0, origin);
+  use(microseconds(5100));
   supervisor().check_running(at(2));
   EXPECT_TRUE(job.is_demoted);
   EXPECT_TRUE(supervisor().pop_hanging(job));

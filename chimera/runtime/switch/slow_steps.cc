@@ -26,14 +26,6 @@ void CreationSteps::begin() noexcept {
   std::fill(killed_.begin(), killed_.end(), false);
 }
 
-StepEnd CreationSteps::cut(const Task& task, Signal signal) noexcept {
-  if (asked_ != task.id) return StepEnd::kFailed;
-  if (task.in_service()) return StepEnd::kWaits;
-  asked_ = TaskId();
-  mark(task.id, signal, true);
-  return StepEnd::kDone;
-}
-
 void SlowSteps::begin(const SwitchOrder& order) noexcept {
   order_ = &order;
   created_.begin();
@@ -180,14 +172,9 @@ StepEnd SlowSteps::turn_on(Task& task, Nanoseconds now) noexcept {
   return StepEnd::kDone;  // what is done is undone as all others
 }
 
-StepEnd SlowSteps::leave(const SlowStep& step, Nanoseconds now) noexcept {
-  Task& each = task(step.task);
-  if (step.act == SlowAct::kOn && each.standing == Standing::kHalfOn) {
-    if (!parts_.threads.claim(each.id)) return StepEnd::kWaits;
-    (void)move(each, Signal::kOff, now);
-  }
-  if (step.act != SlowAct::kKill && step.act != SlowAct::kSpawn) return StepEnd::kFailed;
-  return created_.cut(each, step.act == SlowAct::kKill ? Signal::kKill : Signal::kSpawn);
+bool SlowSteps::has_begun(const SlowStep& step) const noexcept {
+  const bool is_half_on = parts_.set.tasks()[step.task.index].standing == Standing::kHalfOn;
+  return step.act == SlowAct::kOn ? is_half_on : is_under_way(step.task);
 }
 
 StepEnd SlowSteps::undo(const SlowStep& step, Nanoseconds now) noexcept {
@@ -198,7 +185,8 @@ StepEnd SlowSteps::undo(const SlowStep& step, Nanoseconds now) noexcept {
   constants.read_foreign();
   constants.put_in_force(order_->constants);
   parts_.set.sources().follow_others();
-  if (step.act == SlowAct::kOn && each.state == State::kOn) (void)move(each, Signal::kOff, now);
+  const bool has_begun = each.state == State::kOn || each.standing == Standing::kHalfOn;
+  if (step.act == SlowAct::kOn && has_begun) (void)move(each, Signal::kOff, now);
   if (step.act == SlowAct::kOff && each.state == State::kOff) return turn_on_again(each, now);
   if (step.act == SlowAct::kKill || step.act == SlowAct::kSpawn) {
     const Signal done = step.act == SlowAct::kKill ? Signal::kKill : Signal::kSpawn;

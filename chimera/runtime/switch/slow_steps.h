@@ -39,9 +39,14 @@ class CreationSteps {
     mark(task.id, signal, true);
     return StepEnd::kDone;
   }
-  /// Takes a step back that was carried out here. kDone also if the other method failed.
+  /// Takes a step back that was carried out here, or was under way when the switch was aborted. kDone also if the other
+  /// method failed. Requires: the service thread does not have the task.
   template <class Move>
   StepEnd undo(Task& task, Signal signal, Move move) {
+    if (asked_ == task.id && asked_for_ == signal) {
+      asked_ = TaskId();
+      mark(task.id, signal, true);
+    }
     if (!is_done(task.id, signal)) return StepEnd::kDone;
     const Signal back = signal == Signal::kSpawn ? Signal::kKill : Signal::kSpawn;
     if (asked_ != task.id && next(task.state, back, false).kind == Next::Kind::kImpossible) return StepEnd::kDone;
@@ -49,8 +54,6 @@ class CreationSteps {
     mark(task.id, signal, false);
     return StepEnd::kDone;
   }
-  /// The switch was aborted while the step was under way. kDone: it is to be undone. kFailed: it had not begun.
-  StepEnd cut(const Task& task, Signal signal) noexcept;
 
  private:
   static State after(Signal signal) noexcept { return signal == Signal::kSpawn ? State::kOff : State::kNotCreated; }
@@ -58,6 +61,7 @@ class CreationSteps {
   StepEnd go_on(Task& task, Signal signal, Move move) {
     if (asked_ != task.id) {
       asked_ = task.id;
+      asked_for_ = signal;
       move(task, signal);
     }
     if (task.in_service()) return StepEnd::kWaits;
@@ -70,6 +74,7 @@ class CreationSteps {
 
   std::span<bool> spawned_, killed_;  // by task
   TaskId asked_;
+  Signal asked_for_ = Signal::kSpawn;
 };
 
 /// Reason why a step failed, or why its result is not acceptable. Plain value.
@@ -104,9 +109,8 @@ class SlowSteps {
   /// of the switch even if the step is kDone.
   StepEnd carry_out(const SlowStep& step, Nanoseconds now) noexcept;
   const StepFailure& failure() const noexcept { return failure_; }
-  /// The switch was aborted when the step was next. kDone: the step was carried out, and is to be undone. kFailed: it
-  /// was not.
-  StepEnd leave(const SlowStep& step, Nanoseconds now) noexcept;
+  /// The step was begun, and carry_out() has not ended it: undo() takes it back, too.
+  bool has_begun(const SlowStep& step) const noexcept;
   /// Takes back what carry_out() did. A step that cannot be undone, because a signal or an error came between, is left
   /// as it is.
   StepEnd undo(const SlowStep& step, Nanoseconds now) noexcept;

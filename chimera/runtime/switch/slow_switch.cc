@@ -21,24 +21,12 @@ void SlowSwitch::begin(SwitchAgreement agreement, const SwitchPlan& plan, const 
   peers_ = &peers;
   steps_ = planner_.plan(plan, order.constants, order.slow);
   here_.begin(order_);
-  const auto is_check = [](const SlowStep& step) { return step.act == SlowAct::kCheck; };
-  n_checks_ = static_cast<std::size_t>(std::count_if(steps_.begin(), steps_.end(), is_check));
-  const auto is_reinit = [](const SlowStep& step) { return step.act == SlowAct::kReinit; };
-  first_reinit_ = static_cast<std::size_t>(std::find_if(steps_.begin(), steps_.end(), is_reinit) - steps_.begin());
-  end_of_reinits_ = first_reinit_ + static_cast<std::size_t>(std::count_if(steps_.begin(), steps_.end(), is_reinit));
+  course_ = SlowCourse(steps_);
   held_since_ = wake_ = kNever;
   was_raised_ = parts_.set.flag().is_raised();
   is_safe_ = false;
   (void)agreement.agree(order.number, me);  // no context commits before all have agreed
   peers.ring();
-}
-
-// The step that is undone next when `left` steps are left. A user of a constant is re-initialised after the producer of
-// the constant, on the way back too.
-std::size_t SlowSwitch::undone_with(std::size_t left) const noexcept {
-  const std::size_t step = left - 1;
-  const bool is_reinit = step >= first_reinit_ && step < end_of_reinits_;
-  return is_reinit ? first_reinit_ + end_of_reinits_ - 1 - step : step;
 }
 
 // A context that has come back since its death knows nothing of the switch.
@@ -53,9 +41,8 @@ bool SlowSwitch::is_of_dead(std::size_t step) const noexcept {
 // An aborted switch is turned round by the context whose step it is, which knows that no method of it is under way; for
 // a dead one by any.
 bool SlowSwitch::turns_round(std::size_t done) const noexcept {
-  if (steps_.empty()) return true;
-  const std::size_t step = std::min(done, steps_.size() - 1);
-  return is_mine(step) || is_of_dead(step);
+  const auto step = course_.turn_at(static_cast<std::uint16_t>(done));
+  return !step || is_mine(*step) || is_of_dead(*step);
 }
 
 bool SlowSwitch::step(SwitchAgreement agreement, Nanoseconds now) noexcept {
@@ -63,12 +50,12 @@ bool SlowSwitch::step(SwitchAgreement agreement, Nanoseconds now) noexcept {
     wake_ = kNever;
     const PlanWord plan = agreement.plan();
     const auto turn = agreement.run(order_.number);
-    if (plan.number != order_.number || !turn) return conclude(SwitchEnd::kAborted, now), true;
+    const std::size_t done = turn.value_or(0) & ~TurnWord::kBack;
+    if (plan.number != order_.number || !turn || done > steps_.size()) return false;  // overwritten: see restore()
     if (plan.phase == SwitchPhase::kCommitted) return conclude(SwitchEnd::kDone, now), true;
     const bool is_back = (*turn & TurnWord::kBack) != 0;
-    const std::size_t done = *turn & ~TurnWord::kBack;
-    if (done > n_checks_) hold_flag(now);
-    if (is_back && done <= n_checks_) return conclude(SwitchEnd::kAborted, now), true;
+    if (done > course_.n_checks()) hold_flag(now);
+    if (is_back && done <= course_.n_checks()) return conclude(SwitchEnd::kAborted, now), true;
     const auto pass_on = [&](std::size_t to, std::uint16_t back) {
       parts_.set.on_set_changed();
       peers_->show();
@@ -76,7 +63,7 @@ bool SlowSwitch::step(SwitchAgreement agreement, Nanoseconds now) noexcept {
       peers_->ring();
     };
     if (is_back) {
-      const std::size_t step = undone_with(done);
+      const std::size_t step = course_.undone_with(done);
       if (!is_mine(step) && !is_of_dead(step)) return false;
       if (is_mine(step) && here_.undo(steps_[step], now) == StepEnd::kWaits) {
         wake_ = here_.wake();
@@ -84,9 +71,9 @@ bool SlowSwitch::step(SwitchAgreement agreement, Nanoseconds now) noexcept {
       }
       pass_on(done - 1, TurnWord::kBack);
     } else if (plan.phase == SwitchPhase::kAborted) {
-      std::size_t left = done;
-      if (!turns_round(done) || !leave(done, left, now)) return false;
-      pass_on(left > first_reinit_ ? std::max(left, end_of_reinits_) : left, TurnWord::kBack);
+      if (!turns_round(done)) return false;
+      const bool has_begun = done < steps_.size() && is_mine(done) && here_.has_begun(steps_[done]);
+      pass_on(course_.left_of(has_begun ? done + 1 : done), TurnWord::kBack);
     } else if (!may_go_on(agreement, done, now)) {
       continue;
     } else if (done == steps_.size()) {
@@ -225,14 +212,6 @@ StepEnd SlowSwitch::carry_out(SwitchAgreement agreement, const SlowStep& step, N
   abort(agreement, failure.why, failure.task, failure.variable);
   parts_.record.receipt().said = failure.said;
   return end;
-}
-
-// The switch is aborted at a step of this context that may be under way: `left` steps are to be undone. False: later.
-bool SlowSwitch::leave(std::size_t done, std::size_t& left, Nanoseconds now) noexcept {
-  if (done >= steps_.size() || !is_mine(done)) return true;
-  const StepEnd end = here_.leave(steps_[done], now);
-  if (end == StepEnd::kDone) left = done + 1;
-  return end != StepEnd::kWaits;
 }
 
 }  // namespace chimera

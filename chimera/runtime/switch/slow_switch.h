@@ -39,14 +39,12 @@ class SlowSwitch {
   void cut(SwitchAgreement agreement) noexcept;
 
  private:
-  std::size_t undone_with(std::size_t left) const noexcept;
   bool is_mine(std::size_t step) const noexcept { return parts_.set.is_mine(steps_[step].task); }
   bool is_of_dead(std::size_t step) const noexcept;
   bool turns_round(std::size_t done) const noexcept;
   bool may_go_on(SwitchAgreement agreement, std::size_t done, Nanoseconds now) noexcept;
   TaskId find_disturbed(std::size_t done) const noexcept;
   bool is_as_left(const Task& task, std::size_t done) const noexcept;
-  bool leave(std::size_t done, std::size_t& left, Nanoseconds now) noexcept;
   void hold_flag(Nanoseconds now) noexcept;
   void conclude(SwitchEnd end, Nanoseconds now) noexcept;
   StepEnd carry_out(SwitchAgreement agreement, const SlowStep& step, Nanoseconds now) noexcept;
@@ -58,8 +56,7 @@ class SlowSwitch {
   const SwitchPlan* plan_ = nullptr;
   SwitchOrder order_;
   std::span<const SlowStep> steps_;
-  std::size_t n_checks_ = 0;
-  std::size_t first_reinit_ = 0, end_of_reinits_ = 0;  // in steps_
+  SlowCourse course_;
   Nanoseconds wake_ = kNever;
   Nanoseconds held_since_ = kNever;  // the flag, by this context
   SwitchEnd end_ = SwitchEnd::kAborted;

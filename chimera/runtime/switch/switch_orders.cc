@@ -17,6 +17,19 @@ void append_within(std::span<T>& list, const T& item, std::size_t room) noexcept
   list.back() = item;
 }
 
+// Tasks by what happens to them, tasks that were re-initialised in the order of initialisation.
+void sort(SwitchReceipt& receipt, std::span<const TaskId> init_order) noexcept {
+  const auto is_before = [](const TaskPart& a, const TaskPart& b) { return a.move < b.move; };
+  const auto begin = receipt.tasks.begin();
+  for (auto part = begin; part != receipt.tasks.end(); ++part)  // std::stable_sort allocates
+    std::rotate(std::upper_bound(begin, part, *part, is_before), part, part + 1);
+  const std::span<TaskId> list = receipt.reinitialised;
+  std::size_t n = 0;
+  for (const TaskId next : init_order)
+    for (std::size_t i = n; i < list.size(); ++i)
+      if (list[i] == next) std::swap(list[n++], list[i]);
+}
+
 }  // namespace
 
 void SwitchOrders::prepare(const ApplicationSpec& spec, bool is_alone, SetupMemory& memory) {
@@ -112,6 +125,12 @@ bool SwitchOrders::abort(const OrderedSwitch& present) noexcept {
   return true;
 }
 
+bool SwitchOrders::find_plan_of(const SwitchOrder& order) noexcept {
+  for (std::size_t t = 0; t < statuses_.size(); ++t)
+    statuses_[t] = {order.on.has(TaskId(t)) ? State::kOn : State::kOff, false};
+  return static_cast<bool>(planner_.plan(order.target, statuses_, plan_));
+}
+
 bool SwitchOrders::are_over(std::uint16_t plan, std::uint16_t contexts) const noexcept {
   for (std::uint32_t c = 0; c < kMaxContexts; ++c)
     if ((contexts >> c & 1u) != 0 && members_.is_busy_with(c, plan)) return false;
@@ -121,7 +140,10 @@ bool SwitchOrders::are_over(std::uint16_t plan, std::uint16_t contexts) const no
 void SwitchOrders::collect(const OrderedSwitch& over, NoSwitch otherwise, Nanoseconds now,
                            SwitchReceipt& receipt) const noexcept {
   const PlanWord word = agreement().plan();
-  const bool is_committed = word.number == over.order.number && word.phase == SwitchPhase::kCommitted;
+  Nanoseconds at = kNever;
+  if (otherwise == NoSwitch::kDamaged) at = on() == over.order.target ? told_change(over, now) : kNever;
+  else if (word.number == over.order.number && word.phase == SwitchPhase::kCommitted) at = agreement().at(word);
+  const bool is_committed = at != kNever;
   SwitchReceipt empty;
   empty.tasks = receipt.tasks.first(0);
   empty.variables = receipt.variables.first(0);
@@ -137,7 +159,7 @@ void SwitchOrders::collect(const OrderedSwitch& over, NoSwitch otherwise, Nanose
   receipt.way = over.way;
   receipt.tries = over.tries;
   receipt.end = is_committed ? SwitchEnd::kDone : SwitchEnd::kAborted;
-  if (is_committed) receipt.at = agreement().at(word);
+  receipt.at = at;
   for (std::uint32_t c = 0; c < kMaxContexts; ++c) {
     SwitchReceipt part;
     const bool is_member = (over.order.members >> c & 1u) != 0;
@@ -145,7 +167,17 @@ void SwitchOrders::collect(const OrderedSwitch& over, NoSwitch otherwise, Nanose
   }
   if (receipt.ended == kNever) receipt.ended = now;
   if (!is_committed && receipt.why == NoSwitch::kNone) receipt.why = otherwise;
-  sort(receipt);
+  sort(receipt, spec_->init_order);
+}
+
+// The instant of the change in the part of a context; `otherwise`, which is later, if no part has it.
+Nanoseconds SwitchOrders::told_change(const OrderedSwitch& over, Nanoseconds otherwise) const noexcept {
+  for (std::uint32_t c = 0; c < kMaxContexts; ++c) {
+    SwitchReceipt part;
+    if ((over.order.members >> c & 1u) == 0 || !members_.read_part(c, over.order.number, part)) continue;
+    if (part.end == SwitchEnd::kDone && part.at >= over.asked && part.at <= otherwise) return part.at;
+  }
+  return otherwise;
 }
 
 bool SwitchOrders::is_of(TaskId task, std::uint32_t context) const noexcept {
@@ -182,19 +214,6 @@ void SwitchOrders::add_lists(const SwitchReceipt& part, std::uint32_t context, S
   }
   for (const TaskId each : part.reinitialised)
     if (is_of(each, context)) append_within(to.reinitialised, each, n_tasks);
-}
-
-// Tasks by what happens to them, tasks that were re-initialised in the order of initialisation.
-void SwitchOrders::sort(SwitchReceipt& receipt) const noexcept {
-  const auto is_before = [](const TaskPart& a, const TaskPart& b) { return a.move < b.move; };
-  const auto begin = receipt.tasks.begin();
-  for (auto part = begin; part != receipt.tasks.end(); ++part)  // std::stable_sort allocates
-    std::rotate(std::upper_bound(begin, part, *part, is_before), part, part + 1);
-  const std::span<TaskId> list = receipt.reinitialised;
-  std::size_t n = 0;
-  for (const TaskId next : spec_->init_order)
-    for (std::size_t i = n; i < list.size(); ++i)
-      if (list[i] == next) std::swap(list[n++], list[i]);
 }
 
 bool SwitchOrders::make_next_try(OrderedSwitch& over, NoSwitch why, Nanoseconds now) noexcept {

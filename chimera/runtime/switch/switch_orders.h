@@ -104,6 +104,8 @@ class SwitchOrders : private NeededGaps {
   void announce(const OrderedSwitch& next) noexcept;
   /// False: the plan is committed, or of another number.
   bool abort(const OrderedSwitch& present) noexcept;
+  /// Finds the plan that the contexts made of that order. False: they made none.
+  bool find_plan_of(const SwitchOrder& order) noexcept;
   /// Every context of `contexts` that lives is over with that plan.
   bool are_over(std::uint16_t plan, std::uint16_t contexts) const noexcept;
   /// Nothing is left to do for it.
@@ -111,7 +113,8 @@ class SwitchOrders : private NeededGaps {
     return !agreement().plan().is_open() && are_over(present.order.number, present.order.members);
   }
   /// Puts the parts together in `receipt`, whose lists have room for all tasks and variables. `otherwise`: why it was
-  /// aborted if no context says so. Instants after `now` are wrong.
+  /// aborted if no context says so; kDamaged: the page was overwritten, so that only the tasks that look() found
+  /// ON say how the switch ended. Instants after `now` are wrong.
   void collect(const OrderedSwitch& over, NoSwitch otherwise, Nanoseconds now, SwitchReceipt& receipt) const noexcept;
   /// Makes the next order of a switch that has ended with that reason: with more lead if it was only late, else the
   /// slow way. False: another try would not help. Requires: `why` is of collect().
@@ -120,11 +123,11 @@ class SwitchOrders : private NeededGaps {
  private:
   Nanoseconds for_on(TaskId task) const noexcept override;
   TaskId heed_persons(TaskBits& target) const noexcept;
+  Nanoseconds told_change(const OrderedSwitch& over, Nanoseconds otherwise) const noexcept;
   bool is_of(TaskId task, std::uint32_t context) const noexcept;
   void make_order(OrderedSwitch& next, const TaskBits& target, Nanoseconds until) const noexcept;
   void add_part(const SwitchReceipt& part, std::uint32_t context, Nanoseconds now, SwitchReceipt& to) const noexcept;
   void add_lists(const SwitchReceipt& part, std::uint32_t context, SwitchReceipt& to) const noexcept;
-  void sort(SwitchReceipt& receipt) const noexcept;
 
   SwitchMembers& members_;
   const ApplicationSpec* spec_ = nullptr;

@@ -376,9 +376,7 @@ bool Switching::turn_off_all(Nanoseconds now, bool at_once) noexcept {
     Task& next = task(undoes ? plan_.arriving[n - 1 - n_off_] : plan_.leaving[n_off_]);
     // A task of another context, or a signal has turned the task OFF before.
     if (!parts_.set.is_mine(next.id) || next.standing != Standing::kOwesOff) continue;
-    const bool is_unknown = next.profile.execution[static_cast<int>(Method::kOff)].count == 0;
-    const Nanoseconds patience = is_unknown ? IdleGap::kLongestWait : kSwitchPatience;
-    const Nanoseconds most = parts_.threads.preempt() ? gap_.soon() : patience;
+    const Nanoseconds most = parts_.threads.preempt() ? gap_.soon() : IdleGap::kLongestWait;
     const bool may_wait = !at_once && now < off_since_ + most;
     if (may_wait && !gap_.is_for(next, Method::kOff, now)) return false;
     const Nanoseconds began = parts_.clock.now();

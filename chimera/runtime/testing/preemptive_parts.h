@@ -34,7 +34,7 @@ class CountingGuest final : public BoundaryListener {
   void publish() noexcept override {}
   void told(const SignalReport&, Nanoseconds) noexcept override {}
   void missed(TaskId, const MissCause::Verdict& verdict, Nanoseconds) noexcept override { verdicts.push_back(verdict); }
-  void hangs(TaskWord, Nanoseconds, Nanoseconds) noexcept override {}
+  void hangs(TaskWord, Nanoseconds, Nanoseconds, Nanoseconds) noexcept override {}
   void gave_way(TaskId, Nanoseconds, Nanoseconds) noexcept override {}
   void show(const Task&) noexcept override { ++shown; }
 

@@ -31,7 +31,7 @@ class VirtualControl final : public BoundaryListener {
   void publish() noexcept override;
   void told(const SignalReport&, Nanoseconds) noexcept override {}
   void missed(TaskId, const MissCause::Verdict&, Nanoseconds) noexcept override {}
-  void hangs(TaskWord, Nanoseconds, Nanoseconds) noexcept override {}
+  void hangs(TaskWord, Nanoseconds, Nanoseconds, Nanoseconds) noexcept override {}
   void gave_way(TaskId, Nanoseconds, Nanoseconds) noexcept override {}
   void show(const Task&) noexcept override {}
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rules on the component of a task. The component must be known, built and of a supported kind. Each key of the task
 // names a port of the component, of the kind that the key accepts.
+#include <algorithm>
 #include <optional>
 #include <string_view>
 
@@ -47,7 +48,7 @@ void refuse_unknown(Model& model, const DraftTask& task) {
   const std::string near = model.library.nearest_name(name);
   std::string remedy = "'chimera list' shows the library; CHIMERA_PATH adds folders to it";
   for (const std::string& folder : model.library.missing_folders())
-    remedy += "; CHIMERA_PATH names " + folder + ", which is no folder";
+    remedy += "; CHIMERA_PATH names " + folder;
   model.error("component-unknown", task.component.at, component + "is not in the library", name,
               "a component of the library", near, near.empty() ? remedy : "");
 }
@@ -150,7 +151,8 @@ std::optional<std::size_t> instances(Model& model, const TaskModel& task, const 
                                      const DraftAlias* alias) {
   const Instances found = count_instances(task, port, alias);
   // An empty list means that no instance is wanted; a missing port may be an oversight.
-  const bool may_have_none = port.kind == CHIMERA_IN_CONST && !port.initial.empty();
+  const bool may_have_none =
+      may_be_left_out(port) || (port.kind == CHIMERA_IN_CONST && !port.initial.empty());
   const bool is_said_none = alias != nullptr && alias->variables.empty();
   const std::size_t least = may_have_none || is_said_none ? 0 : 1;
   if (found.count >= least && found.count <= port.max_instances) return found.count;
@@ -203,6 +205,22 @@ void link_port(Model& model, std::size_t task_index, std::uint32_t index) {
   for (std::uint32_t i = 0; i < count.value_or(0); ++i) add_port(task, task_index, index, i, alias);
 }
 
+/// True if a task of each configuration with `task` produces a variable of the port's name, type and unit.
+bool is_offered(const Model& model, std::size_t task, const PortDescriptor& port) {
+  const auto makes_it = [&](const LinkedPort& other) {
+    const PortDescriptor& declared = *other.declared;
+    return declared.kind == CHIMERA_OUT_VAR && other.variable == port.name && declared.type == port.type &&
+           declared.type_name == port.type_name && declared.unit == port.unit;
+  };
+  const auto produces = [&](const TaskModel& other) { return std::ranges::any_of(other.ports, makes_it); };
+  const std::size_t reader = model.primary_of(task).value_or(task);
+  const auto offers = [&](const SetModel& set) {
+    return !set.has(reader) ||
+           std::ranges::any_of(set.tasks, [&](TaskId other) { return produces(model.tasks[other.index]); });
+  };
+  return std::ranges::any_of(model.tasks, produces) && std::ranges::all_of(model.sets, offers);
+}
+
 }  // namespace
 
 void find_components(Model& model) {
@@ -229,6 +247,19 @@ void link_ports(Model& model) {
     check_keys(model, task);
     for (std::uint32_t p = 0; p < task.component->ports.size(); ++p) link_port(model, i, p);
     CHIMERA_ASSERT(task.ports.size() <= CHIMERA_MAX_PORTS);  // describe() counts every instance
+  }
+}
+
+void link_left_out(Model& model) {
+  for (std::size_t t = 0; t < model.tasks.size(); ++t) {
+    TaskModel& task = model.tasks[t];
+    if (task.component == nullptr) continue;
+    for (std::uint32_t p = 0; p < task.component->ports.size(); ++p) {
+      const PortDescriptor& port = task.component->ports[p];
+      const bool is_open = may_be_left_out(port) && alias_of(*task.draft, port.name) == nullptr;
+      if (is_open && is_offered(model, t, port)) add_port(task, t, p, 0, nullptr);
+    }
+    std::ranges::stable_sort(task.ports, {}, &LinkedPort::index);
   }
 }
 

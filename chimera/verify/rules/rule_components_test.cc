@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -59,6 +60,51 @@ TEST_F(RuleComponents, AComponentThatCannotBeReadIsNotMissing) {
             "app.yaml:2:9: error: task 'motor': the component 'motor' cannot be used: " + root +
                 "one/motor.component.json: $.abi_version: motor was built for ABI 99, and this chimera needs ABI 1 "
                 "[component-unknown]\n  rebuild the component motor\n");
+}
+
+/// An arm, a path that may measure it, and a counter whose output has the name of a port of the path.
+Library arm_and_path() {
+  const auto made = [](const std::string& name, std::vector<PortDescriptor> ports) {
+    Descriptor d;
+    d.name = name;
+    d.default_rate_hz = 100;
+    d.methods[CHIMERA_CYCLE] = true;
+    d.ports = std::move(ports);
+    EXPECT_TRUE(complete(d));
+    return d;
+  };
+  const PortDescriptor measured{.name = "q", .unit = "rad", .repeated = true, .max_instances = 1};
+  const PortDescriptor q{.name = "q", .unit = "rad", .kind = CHIMERA_OUT_VAR};
+  const PortDescriptor reference{.name = "q_ref", .unit = "rad", .kind = CHIMERA_OUT_VAR};
+  return Library::of({made("arm", {q, {.name = "q_ref", .unit = "rad"}}), made("path", {measured, reference}),
+                      made("counter", {{.name = "q", .unit = "m", .kind = CHIMERA_OUT_VAR}})},
+                     our_units());
+}
+
+/// The tasks of the first configuration in their order, each with the number of its inputs.
+std::string order_of(const std::string& tasks) {
+  const Verdict verdict = verify(read_description("subsystem: demo\n" + tasks, "app.yaml"), arm_and_path());
+  EXPECT_TRUE(verdict.configuration) << verdict.report.text();
+  if (!verdict.configuration) return "";
+  const ApplicationSpec& spec = verdict.configuration->spec();
+  std::string order;
+  for (const TaskId task : spec.start) {
+    std::size_t inputs = 0;
+    for (const Variable& variable : spec.variables)
+      inputs += static_cast<std::size_t>(
+          std::ranges::count_if(variable.consumers, [&](const PortOf& port) { return port.task == task; }));
+    order += std::string(spec.tasks[task.index].name) + std::to_string(inputs) + " ";
+  }
+  return order;
+}
+
+TEST(LeftOut, AMeasuredPortJoinsTheVariableOfItsNameAndClosesNoLoop) {
+  EXPECT_EQ(order_of("tasks: {path: {}, arm: {}}"), "arm1 path1 ") << "the arm goes ON first";
+  EXPECT_EQ(order_of("tasks: {path: {}}"), "path0 ");
+  EXPECT_EQ(order_of("tasks: {path: {alias: {q: []}}, arm: {}}"), "path0 arm1 ");
+  EXPECT_EQ(order_of("tasks: {path: {}, counter: {}}"), "path0 counter0 ") << "another unit";
+  EXPECT_EQ(order_of("tasks: {path: {}, arm: {}}\nconfigurations: {all: [path, arm], alone: [path]}"), "path0 arm1 ")
+      << "one configuration has no arm";
 }
 
 }  // namespace

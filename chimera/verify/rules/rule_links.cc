@@ -10,8 +10,6 @@
 namespace chimera {
 namespace {
 
-constexpr std::size_t kListed = 8;
-
 VariableModel& variable_of(Model& model, const std::string& name, bool is_constant) {
   const auto [entry, is_new] = model.variable_index.emplace(name, model.variables.size());
   if (is_new) {
@@ -44,9 +42,14 @@ void refuse_both(Model& model, const LinkedPort& port) {
               port.variable, {}, {}, "rename one of the two: alias: {" + port.declared->name + ": another_name}");
 }
 
+/// An input with a default that no alias links.
+bool is_optional(const LinkedPort& port) {
+  return port.is(CHIMERA_IN_VAR) && !port.declared->initial.empty() && port.variable == port.declared->name;
+}
+
 void add_port(Model& model, PortRef ref) {
   LinkedPort& port = model.port(ref);
-  if (!port.is_linked() || port.is(CHIMERA_IN_CONST)) return;
+  if (!port.is_linked() || port.is(CHIMERA_IN_CONST) || is_optional(port)) return;
   VariableModel& variable = variable_of(model, port.variable, port.declared->is_constant());
   if (variable.is_constant == port.declared->is_constant()) {
     (port.is_producer() ? variable.producers : variable.consumers).push_back(ref);
@@ -68,6 +71,28 @@ void add_in_const(Model& model, PortRef ref) {
     refuse_both(model, port);
 }
 
+/// Links an optional input to the variable of its name if that is produced or given; otherwise to its default, the
+/// operator variable TASK.PORT.
+void add_optional(Model& model, PortRef ref) {
+  LinkedPort& port = model.port(ref);
+  if (!is_optional(port)) return;
+  const VariableModel* known = model.variable(port.variable);
+  if (known != nullptr && known->is_constant) {
+    refuse_both(model, port);
+    port.variable.clear();
+    return;
+  }
+  if (known == nullptr || (!known->is_given() && known->producers.empty()))
+    port.variable = model.tasks[ref.task].name() + "." + port.variable;
+  VariableModel& variable = variable_of(model, port.variable, false);
+  if (!variable.is_given() && variable.producers.empty()) {
+    variable.given = &model.defaults.emplace_back(NamedNode{{variable.name, port.at}, {}});
+    variable.is_default = true;
+    port.source = ConstSource::kDefault;
+  }
+  variable.consumers.push_back(ref);
+}
+
 std::vector<PortRef> producers_in(const VariableModel& variable, const SetModel& set) {
   std::vector<PortRef> out;
   for (const PortRef ref : variable.producers)
@@ -75,21 +100,15 @@ std::vector<PortRef> producers_in(const VariableModel& variable, const SetModel&
   return out;
 }
 
-/// "'q' by 'arm', 'tau' by 'pid'": the outputs of a configuration, for the message of an unmet input.
-std::string products(const Model& model, const SetModel& set, std::vector<std::string>& names) {
-  std::string out;
-  std::size_t count = 0;
+/// The variables of a configuration that an input in the unit of `port` could read.
+std::vector<std::string> fitting(const Model& model, const LinkedPort& port, const SetModel& set) {
+  std::vector<std::string> names;
   for (const VariableModel& variable : model.variables) {
-    if (variable.is_constant) continue;
-    for (const PortRef ref : producers_in(variable, set)) {
-      names.push_back(variable.name);
-      if (++count <= kListed)
-        out += (out.empty() ? "'" : ", '") + variable.name + "' by '" + model.tasks[ref.task].name() + "'";
-    }
-    if (variable.given != nullptr) names.push_back(variable.name);
+    if (variable.is_constant || variable.is_default) continue;
+    if (variable.given == nullptr && producers_in(variable, set).empty()) continue;
+    if (!port.unit || !variable.unit || same(*port.unit, *variable.unit)) names.push_back(variable.name);
   }
-  if (count > kListed) out += " and " + std::to_string(count - kListed) + " more";
-  return out.empty() ? "nothing" : out;
+  return names;
 }
 
 std::string unmet_remedy(const Model& model, const LinkedPort& port, const VariableModel& variable, const SetModel& set,
@@ -102,13 +121,13 @@ std::string unmet_remedy(const Model& model, const LinkedPort& port, const Varia
   return "add a task that produces it, or give it under 'operator'";
 }
 
-void report_unmet(Model& model, const LinkedPort& port, const VariableModel& variable, const SetModel& set) {
-  std::vector<std::string> names;
-  const std::string made = products(model, set, names);
-  const std::string near = nearest(variable.name, names);
-  model.has_unmet = true;
-  model.error("input-unmet", port.at,
-              model.say(port) + " has no producer in configuration '" + set.name + "', which produces " + made,
+void report_unmet(Model& model, const UnmetInput& unmet) {
+  const VariableModel& variable = model.variables[unmet.variable];
+  const SetModel& set = model.sets[unmet.set];
+  const LinkedPort& port = model.port(unmet.port);
+  const std::string near = nearest(variable.name, fitting(model, port, set));
+  const std::string unit = port.unit && port.unit_text != "1" ? "; it is in " + port.unit_text : "";
+  model.error("input-unmet", port.at, unmet.said + " has no producer in configuration '" + set.name + "'" + unit,
               variable.name, "a producer of '" + variable.name + "'", near,
               unmet_remedy(model, port, variable, set, near));
 }
@@ -172,7 +191,7 @@ std::vector<PortRef> producers_of(const Model& model, const VariableModel& varia
 void collect_variables(Model& model) {
   add_given(model, model.draft.constants, true);
   add_given(model, model.draft.operators, false);
-  for (const auto add : {add_port, add_in_const})
+  for (const auto add : {add_port, add_in_const, add_optional})
     for (std::size_t t = 0; t < model.tasks.size(); ++t)
       for (std::size_t p = 0; p < model.tasks[t].ports.size(); ++p) add(model, {t, p});
 }
@@ -186,19 +205,26 @@ void refuse_two_producers(Model& model) {
         report_two(model, variable, model.sets[s]);
 }
 
-void refuse_unmet_inputs(Model& model) {
-  std::set<const LinkedPort*> reported;
-  for (const SetModel& set : model.sets) {
-    if (!set.is_whole || model.draft.is_partial) continue;
-    const Members on = members(model, set), reading = readers(model, on);
-    for (const VariableModel& variable : model.variables) {
+void find_unmet_inputs(Model& model) {
+  std::set<const LinkedPort*> found;
+  for (std::size_t s = 0; s < model.sets.size(); ++s) {
+    if (!model.sets[s].is_whole || model.draft.is_partial) continue;
+    const Members on = members(model, model.sets[s]), reading = readers(model, on);
+    for (std::size_t v = 0; v < model.variables.size(); ++v) {
+      const VariableModel& variable = model.variables[v];
       if (variable.is_constant || fault_of(variable, on, reading) != SetFault::kNoProducer) continue;
-      for (const PortRef ref : variable.consumers) {
-        const LinkedPort& port = model.port(ref);
-        if (reading[ref.task] && reported.insert(&port).second) report_unmet(model, port, variable, set);
-      }
+      for (const PortRef ref : variable.consumers)
+        if (reading[ref.task] && found.insert(&model.port(ref)).second)
+          model.unmet.push_back({ref, s, v, model.say(model.port(ref))});
     }
   }
+  for (const UnmetInput& each : model.unmet)
+    if (model.variables[each.variable].producers.empty()) model.unlink(each.port);
+  model.has_unmet = model.has_unmet || !model.unmet.empty();
+}
+
+void refuse_unmet_inputs(Model& model) {
+  for (const UnmetInput& each : model.unmet) report_unmet(model, each);
 }
 
 }  // namespace chimera

@@ -12,8 +12,9 @@
 namespace chimera {
 namespace {
 
-/// The kinds of places where a loop may be cut, best first.
-enum class Cut : std::uint8_t { kByDescription, kByComponent, kNot };
+/// The kinds of places where a loop may be cut, best first. A link that only `on` reads is no part of a loop of cycles;
+/// it is cut last, so that its producer goes ON first.
+enum class Cut : std::uint8_t { kByDescription, kByComponent, kNot, kReadByOn };
 
 /// `from` produces `variable`, `to` reads it.
 struct Arc {
@@ -169,19 +170,26 @@ class SetOrder {
       const Cut cut = port.own != nullptr               ? Cut::kByDescription
                       : !port.declared->initial.empty() ? Cut::kByComponent
                                                         : Cut::kNot;
-      VariableArcs link{{cut, by_name_[index]}, {}};
-      for (const PortRef consumer : variable.consumers) {
-        const std::size_t to = position_[consumer.task];
-        if (to == kMaxTasks) continue;
-        arcs_.push_back({from, to, index, cut});
-        if (!link.consumers[to]) ++between_[from * set_.tasks.size() + to];
-        link.consumers.set(to);
-      }
-      next_[from] |= link.consumers;
-      for (std::size_t to = link.consumers._Find_first(); to < kMaxTasks; to = link.consumers._Find_next(to))
-        previous_[to].set(from);
-      links_[from].push_back(link);
+      add_link(from, index, cut, false);
+      add_link(from, index, Cut::kReadByOn, true);
     }
+  }
+
+  /// Adds the arcs to the consumers that read the variable in `on` only, or to the others.
+  void add_link(std::size_t from, std::size_t index, Cut cut, bool is_read_by_on) {
+    VariableArcs link{{cut, by_name_[index]}, {}};
+    for (const PortRef consumer : model_.variables[index].consumers) {
+      const std::size_t to = position_[consumer.task];
+      if (to == kMaxTasks || may_be_left_out(*model_.port(consumer).declared) != is_read_by_on) continue;
+      arcs_.push_back({from, to, index, cut});
+      if (!link.consumers[to]) ++between_[from * set_.tasks.size() + to];
+      link.consumers.set(to);
+    }
+    if (link.consumers.none()) return;
+    next_[from] |= link.consumers;
+    for (std::size_t to = link.consumers._Find_first(); to < kMaxTasks; to = link.consumers._Find_next(to))
+      previous_[to].set(from);
+    links_[from].push_back(link);
   }
 
   /// Sorts the links of each task, the best cut first.

@@ -171,7 +171,7 @@ void take_from_values(Model& model, ExtentBindings& bindings) {
     return extents;
   };
   for (VariableModel& variable : model.variables) {
-    if (variable.has_extents || variable.given == nullptr) continue;
+    if (variable.has_extents || !variable.is_written()) continue;
     variable.extents = shape_of(variable.given->value);
     variable.has_extents = true;
     spread(model, bindings);

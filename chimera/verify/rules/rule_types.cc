@@ -68,7 +68,7 @@ void spread(Model& model, TypeBindings& bindings) {
 /// If no port gives a type, a written value does.
 void take_from_values(Model& model, TypeBindings& bindings) {
   for (VariableModel& variable : model.variables) {
-    if (variable.type || variable.given == nullptr) continue;
+    if (variable.type || !variable.is_written()) continue;
     variable.type = type_of(variable.given->value);
     spread(model, bindings);  // before the next value: a known type wins over a value
   }
@@ -110,23 +110,25 @@ void report_clash(Model& model, const VariableModel& variable, const LinkedPort&
               "link it to another variable by alias, or insert a component that converts " + theirs + " to " + mine);
 }
 
-void compare(Model& model, const VariableModel& variable, PortRef ref, const TypeBindings& bindings) {
+/// Reports a port whose type is not that of its variable. Returns if there was a fault.
+bool compare(Model& model, const VariableModel& variable, PortRef ref, const TypeBindings& bindings) {
   const LinkedPort& port = model.port(ref);
-  if (!port.type || !variable.type || variable.type_from == std::nullopt) return;
+  if (!port.type || !variable.type || variable.type_from == std::nullopt) return false;
   const LinkedPort& first = model.port(*variable.type_from);
   const bool same_size = port.element_bytes == first.element_bytes;
   if (*port.type != *variable.type || (*port.type == CHIMERA_STRING && !same_size) ||
       (*port.type == CHIMERA_STRUCT && port.declared->type_name != first.declared->type_name)) {
     report_clash(model, variable, port, bindings);
-    return;
+    return true;
   }
-  if (*port.type != CHIMERA_STRUCT) return;
+  if (*port.type != CHIMERA_STRUCT) return false;
   const std::string differs = difference(model, *port.declared, *first.declared);
-  if (differs.empty()) return;
+  if (differs.empty()) return false;
   model.error("struct-clash", port.at,
               model.say(port) + " and " + settled_by(model, variable, variable.type_from) +
                   " mean different structs '" + port.declared->type_name + "': " + differs,
               port.declared->type_name, {}, {}, "build both components against one definition of the struct");
+  return true;
 }
 
 bool is_refused(const VariableModel* variable) {
@@ -165,9 +167,14 @@ void agree_on_types(Model& model) {
   spread(model, bindings);
   take_from_values(model, bindings);
   spread(model, bindings);
+  const bool may_miss_a_part = model.is_incomplete() || model.has_unmet;  // which would settle the rest
+  std::vector<PortRef> wrong;
   for (const VariableModel& variable : model.variables)
-    for_each_port_of(variable, [&](PortRef ref) { compare(model, variable, ref, bindings); });
-  if (model.is_incomplete() || model.has_unmet) return;  // the missing part would settle it
+    for_each_port_of(variable, [&](PortRef ref) {
+      if (compare(model, variable, ref, bindings) && !model.port(ref).is_producer()) wrong.push_back(ref);
+    });
+  for (const PortRef ref : wrong) model.unlink(ref);
+  if (may_miss_a_part) return;
   for_each_port(model, [&](PortRef, const LinkedPort& port) {
     if (!port.type) report_unsolved_type(model, port);
   });

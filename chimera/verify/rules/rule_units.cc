@@ -2,24 +2,41 @@
 // Rules on units: linked ports can be converted into each other, and unit variables are solved.
 #include <algorithm>
 #include <cstdio>
+#include <functional>
+#include <iterator>
+#include <tuple>
 
 #include "chimera/base/hosted/wording.h"
 #include "chimera/units/quantity.h"
 #include "chimera/verify/rules/rules.h"
+#include "chimera/verify/values.h"
 
 namespace chimera {
 namespace {
 
+using Numbers = std::vector<std::size_t>;  // of witnesses, ascending
+
+/// `by`: the witnesses that settled it.
 struct NamedUnit {
   Unit unit;
   std::string text;
+  Numbers by;
 };
 
-/// The bindings, and all unit expressions of the ports, each parsed once.
+/// A written value. It is the weakest witness of a unit: ports count before values, and many values before one.
+struct Witness {
+  std::optional<PortRef> port;  ///< a constant of a task; nullopt: the given value of `variable`
+  std::size_t variable = 0;     ///< in Model::variables
+  NamedUnit unit;               ///< as written
+  bool is_heard = true;         ///< false: it is the odd one out, and settles nothing
+};
+
+/// The bindings, the witnesses, and all unit expressions of the ports, each parsed once.
 struct UnitTable {
-  Bindings<NamedUnit> bindings;
-  std::map<std::string, UnitExpression, std::less<>> expressions;
   const UnitSystem& system;
+  Bindings<NamedUnit> bindings{};
+  std::map<std::string, UnitExpression, std::less<>> expressions{};
+  std::vector<Witness> witnesses{};
 
   const UnitExpression& expression(const std::string& unit) {
     const auto known = expressions.find(unit);
@@ -27,7 +44,19 @@ struct UnitTable {
     const Result<UnitExpression> parsed = system.parse_expression(unit);
     return expressions.emplace(unit, parsed ? *parsed : UnitExpression{}).first->second;  // the library has parsed it
   }
+  /// The unit with the words of its text.
+  UnitExpression worded(const NamedUnit& named) {
+    const UnitExpression& parsed = expression(named.text);
+    if (same(parsed.rest, named.unit)) return parsed;
+    return {.variables = {}, .rest = named.unit, .words = {UnitWord{named.text}}};
+  }
 };
+
+void add(Numbers& to, const Numbers& more) {
+  Numbers all;
+  std::ranges::set_union(to, more, std::back_inserter(all));
+  to = std::move(all);
+}
 
 SymbolKey key_of(const Model& model, UnitTable& table, const LinkedPort& port, char letter) {
   const std::size_t index = kUnitVariables.find(letter);
@@ -43,6 +72,7 @@ bool has_unit(const LinkedPort& port) { return port.declared->type != CHIMERA_ST
 void settle_unit(Model& model, VariableModel& variable, PortRef ref) {
   variable.unit = model.port(ref).unit;
   variable.unit_text = model.port(ref).unit_text;
+  variable.unit_by = model.port(ref).unit_by;
   variable.unit_from = ref;
 }
 
@@ -60,41 +90,36 @@ void start_with_concrete(Model& model, UnitTable& table) {
     });
 }
 
-/// The unit in the form that a person would write: the declared text with the variable replaced, if it stays one word.
-std::string written_unit(const std::string& declared, char letter, const NamedUnit& solved, const Unit& unit) {
-  if (declared.size() == 1) return solved.text;
-  const bool one_word = solved.text.find_first_of("./^ 0123456789") == std::string::npos;
-  const std::size_t at = declared.find(letter);
-  if (!one_word || declared.find(letter, at + 1) != std::string::npos) return text(unit);
-  return std::string(declared).replace(at, 1, solved.text);
-}
-
-/// Puts the bindings into the expression of the port; sets its unit if no variable is left open.
-UnitExpression substituted(const Model& model, UnitTable& table, LinkedPort& port) {
+/// Puts the bindings into the expression of the port; sets its unit if no variable is left open. `by`: of the bindings.
+UnitExpression substituted(const Model& model, UnitTable& table, LinkedPort& port, Numbers& by) {
   UnitExpression expression = table.expression(port.declared->unit);
-  const bool single = expression.unknowns() == 1;
   for (const char letter : kUnitVariables) {
     if (expression.variables[kUnitVariables.find(letter)] == 0) continue;
     const auto bound = table.bindings.find(key_of(model, table, port, letter));
     if (bound == table.bindings.end()) continue;
-    expression = substitute(expression, letter, bound->second.value.unit);
-    if (expression.is_concrete()) {
-      port.unit = expression.rest;
-      port.unit_text = single ? written_unit(port.declared->unit, letter, bound->second.value, expression.rest)
-                              : text(expression.rest);
-    }
+    const NamedUnit& value = bound->second.value;
+    expression = substitute(expression, letter, table.worded(value));
+    add(by, value.by);
+    if (!expression.is_concrete()) continue;
+    port.unit = expression.rest;
+    port.unit_text = port.declared->unit.size() == 1 ? value.text : text(expression);
+    port.unit_by = by;
   }
   return expression;
 }
 
-bool bind(const Model& model, UnitTable& table, PortRef ref, const LinkedPort& port, const UnitExpression& open,
-          const NamedUnit& known) {
-  const auto solved = solve(open, known.unit);
-  if (!solved) return false;
-  const bool alone = port.declared->unit.size() == 1;
-  table.bindings.try_emplace(key_of(model, table, port, solved->variable),
-                             Binding<NamedUnit>{{solved->unit, alone ? known.text : text(solved->unit)}, ref});
-  return true;
+/// Solves the only open variable of the port by `known`, and sets the unit of the port.
+void bind(const Model& model, UnitTable& table, PortRef ref, LinkedPort& port, NamedUnit known) {
+  Numbers by;
+  const UnitExpression open = substituted(model, table, port, by);
+  if (port.unit) return;
+  const auto solved = solve(open, table.worded(known));
+  if (!solved) return;
+  add(known.by, by);
+  if (port.declared->unit.size() != 1) known.text = text(solved->unit);
+  known.unit = solved->unit.rest;
+  table.bindings.try_emplace(key_of(model, table, port, solved->variable), Binding<NamedUnit>{std::move(known), ref});
+  substituted(model, table, port, by);
 }
 
 void spread(Model& model, UnitTable& table) {
@@ -103,10 +128,11 @@ void spread(Model& model, UnitTable& table) {
     for_each_port(model, [&](PortRef ref, LinkedPort& port) {
       if (port.unit || !has_unit(port)) return;
       VariableModel* variable = model.variable(port);
-      UnitExpression open = substituted(model, table, port);
-      if (!port.unit && variable != nullptr && variable->unit &&
-          bind(model, table, ref, port, open, {*variable->unit, variable->unit_text}))
-        substituted(model, table, port);
+      Numbers by;
+      if (variable != nullptr && variable->unit)
+        bind(model, table, ref, port, {*variable->unit, variable->unit_text, variable->unit_by});
+      else
+        substituted(model, table, port, by);
       if (!port.unit) return;
       moved = true;
       if (variable != nullptr && !variable->unit) settle_unit(model, *variable, ref);
@@ -114,34 +140,66 @@ void spread(Model& model, UnitTable& table) {
   }
 }
 
-/// The unit of the first number of a written value.
+/// Calls `act` for each number of a written value; texts in quotes and truth values are none.
+template <class Do>
+void for_each_number(const Node& node, Do act) {
+  for (const Node& item : node.items)
+    if (node.is_list()) for_each_number(item, act);
+  if (node.is_scalar() && !node.quoted && node.text != "true" && node.text != "false") act(node);
+}
+
+/// The unit that most numbers of a written value can be converted to.
 std::optional<NamedUnit> unit_of(const Model& model, const Node& node) {
-  if (node.is_list() && !node.items.empty()) return unit_of(model, node.items[0]);
-  if (!node.is_scalar() || node.quoted) return std::nullopt;
-  const auto quantity = parse_quantity(node.text, model.library.units());
-  if (!quantity) return std::nullopt;
-  return NamedUnit{quantity->unit, quantity->unit_text};
+  std::vector<std::pair<NamedUnit, std::size_t>> found;
+  for_each_number(node, [&](const Node& number) {
+    const auto quantity = parse_quantity(number.text, model.library.units());
+    if (!quantity) return;
+    const auto like = std::ranges::find_if(
+        found, [&](const auto& known) { return conversion(known.first.unit, quantity->unit).has_value(); });
+    if (like != found.end()) ++like->second;
+    else found.push_back({{quantity->unit, quantity->unit_text, {}}, 1});
+  });
+  if (found.empty()) return std::nullopt;
+  return std::ranges::max_element(found, {}, [](const auto& known) { return known.second; })->first;
+}
+
+void add_witness(const Model& model, UnitTable& table, Witness witness, const Node& written) {
+  auto unit = unit_of(model, written);
+  if (!unit) return;
+  unit->by = {table.witnesses.size()};
+  witness.unit = *std::move(unit);
+  table.witnesses.push_back(std::move(witness));
+}
+
+void find_witnesses(Model& model, UnitTable& table) {
+  for (std::size_t v = 0; v < model.variables.size(); ++v)
+    if (model.variables[v].is_written())
+      add_witness(model, table, {.port = std::nullopt, .variable = v, .unit = {}}, model.variables[v].given->value);
+  for_each_port(model, [&](PortRef ref, LinkedPort& port) {
+    if (has_unit(port) && port.own != nullptr && port.is(CHIMERA_IN_CONST))
+      add_witness(model, table, {.port = ref, .unit = {}}, *port.own);
+  });
 }
 
 void take_from_values(Model& model, UnitTable& table) {
-  for (VariableModel& variable : model.variables) {
-    if (variable.unit || variable.given == nullptr) continue;
-    if (const auto unit = unit_of(model, variable.given->value)) {
-      variable.unit = unit->unit;
-      variable.unit_text = unit->text;
-      spread(model, table);  // before the next value: a known unit wins over a value
-    }
+  for (const Witness& witness : table.witnesses) {
+    if (witness.port || !witness.is_heard) continue;
+    VariableModel& variable = model.variables[witness.variable];
+    if (variable.unit) continue;
+    variable.unit = witness.unit.unit;
+    variable.unit_text = witness.unit.text;
+    variable.unit_by = witness.unit.by;
+    spread(model, table);  // before the next value: a known unit wins over a value
   }
   // A value settles one unknown: "X/U" waits until another value has settled one of its two.
   for (bool moved = true; moved;) {
     moved = false;
-    for_each_port(model, [&](PortRef ref, LinkedPort& port) {
-      if (port.unit || !has_unit(port) || port.own == nullptr || !port.is(CHIMERA_IN_CONST)) return;
-      if (const auto unit = unit_of(model, *port.own))
-        bind(model, table, ref, port, substituted(model, table, port), *unit);
+    for (const Witness& witness : table.witnesses) {
+      if (!witness.port || !witness.is_heard || model.port(*witness.port).unit) continue;
+      bind(model, table, *witness.port, model.port(*witness.port), witness.unit);
       spread(model, table);
-      moved = moved || port.unit.has_value();
-    });
+      moved = moved || model.port(*witness.port).unit.has_value();
+    }
   }
 }
 
@@ -149,9 +207,87 @@ void take_from_values(Model& model, UnitTable& table) {
 void take_from_defaults(Model& model, UnitTable& table) {
   for_each_port(model, [&](PortRef ref, LinkedPort& port) {
     if (port.unit || !has_unit(port) || port.source != ConstSource::kDefault) return;
-    bind(model, table, ref, port, substituted(model, table, port), {Unit{}, "1"});
+    bind(model, table, ref, port, {Unit{}, "1", {}});
     spread(model, table);
   });
+}
+
+void settle_units(Model& model, UnitTable& table) {
+  table.bindings.clear();
+  for_each_port(model, [](PortRef, LinkedPort& port) { port.unit.reset(), port.unit_by.clear(); });
+  for (VariableModel& variable : model.variables) variable.unit.reset(), variable.unit_from.reset();
+  start_with_concrete(model, table);
+  spread(model, table);
+  take_from_values(model, table);
+  take_from_defaults(model, table);
+}
+
+/// True if the port cannot have the unit of its variable.
+bool clashes(const LinkedPort& port, const VariableModel& variable) {
+  return has_unit(port) && port.unit && variable.unit && !same(*port.unit, *variable.unit);
+}
+
+/// How well the units fit together.
+struct Fit {
+  std::size_t faults = 0;  ///< 2 for each link that clashes or port without a unit, 1 for each value that does not fit
+  std::size_t worded = 0;  ///< values that do not fit and have a unit; a forgotten unit is the likelier mistake
+  std::map<std::size_t, std::size_t> suspects{};  ///< witness -> faults that rest on it
+
+  bool operator<(const Fit& other) const { return std::tie(faults, worded) < std::tie(other.faults, other.worded); }
+};
+
+Fit fit_of(Model& model, const UnitTable& table) {
+  Fit fit;
+  const auto blame = [&](std::size_t weight, Numbers by, const Numbers& more) {
+    fit.faults += weight;
+    add(by, more);
+    for (const std::size_t number : by) ++fit.suspects[number];
+  };
+  for (const VariableModel& variable : model.variables)
+    for_each_port_of(variable, [&](PortRef ref) {
+      if (clashes(model.port(ref), variable)) blame(2, model.port(ref).unit_by, variable.unit_by);
+    });
+  for_each_port(model, [&](PortRef, const LinkedPort& port) { fit.faults += has_unit(port) && !port.unit ? 2 : 0; });
+  for (const Witness& witness : table.witnesses) {
+    const auto judge = [&](const auto& target) {
+      if (!target.unit || conversion(witness.unit.unit, *target.unit)) return;
+      blame(1, target.unit_by, {});
+      fit.worded += witness.unit.text == "1" ? 0 : 1;
+    };
+    if (witness.port) judge(model.port(*witness.port));
+    else judge(model.variables[witness.variable]);
+  }
+  return fit;
+}
+
+/// The suspects of most faults, most first; a bound for the time of a hostile description.
+Numbers ranked(const std::map<std::size_t, std::size_t>& suspects) {
+  constexpr std::size_t kMost = 32;
+  Numbers all;
+  for (const auto& [number, faults] : suspects) all.push_back(number);
+  std::ranges::stable_sort(all, std::greater{}, [&](std::size_t number) { return suspects.at(number); });
+  if (all.size() > kMost) all.resize(kMost);
+  return all;
+}
+
+/// Finds values that the others outvote: without them as witnesses fewer faults remain. Such a value is then reported
+/// alone, because it does not fit its port (rule_values.cc).
+void outvote(Model& model, UnitTable& table) {
+  for (Fit now = fit_of(model, table); !now.suspects.empty();) {
+    Witness* odd = nullptr;
+    Fit best = now;
+    for (const std::size_t number : ranked(now.suspects)) {
+      Witness& witness = table.witnesses[number];
+      witness.is_heard = false;
+      settle_units(model, table);
+      if (const Fit without = fit_of(model, table); without < best) best = without, odd = &witness;
+      witness.is_heard = true;
+    }
+    if (odd != nullptr) odd->is_heard = false;
+    settle_units(model, table);
+    if (odd == nullptr) return;
+    now = best;
+  }
 }
 
 /// A component of the library of the framework: y = factor x, for any two units of one dimension.
@@ -176,7 +312,7 @@ std::string converter(const Model& model, UnitTable& table, const Unit& from, co
 
 std::string remedy(const Model& model, UnitTable& table, const LinkedPort& port, const VariableModel& variable) {
   const bool into = !port.is_producer();
-  const NamedUnit mine{*port.unit, port.unit_text}, theirs{*variable.unit, variable.unit_text};
+  const NamedUnit mine{*port.unit, port.unit_text, {}}, theirs{*variable.unit, variable.unit_text, {}};
   const NamedUnit &from = into ? theirs : mine, &to = into ? mine : theirs;
   const auto factor = conversion(from.unit, to.unit);
   if (!factor) return "they measure different things: link it to another variable by alias";
@@ -211,10 +347,8 @@ void report_contradiction(Model& model, UnitTable& table, const LinkedPort& port
 }
 
 void compare(Model& model, UnitTable& table, const VariableModel& variable, const LinkedPort& port) {
-  if (!has_unit(port) || !variable.unit) return;
-  const UnitExpression& declared = table.expression(port.declared->unit);
-  if (!port.unit || same(*port.unit, *variable.unit)) return;
-  if (!declared.is_concrete()) {
+  if (!clashes(port, variable)) return;
+  if (!table.expression(port.declared->unit).is_concrete()) {
     report_contradiction(model, table, port, variable);
     return;
   }
@@ -222,6 +356,32 @@ void compare(Model& model, UnitTable& table, const VariableModel& variable, cons
               model.say(port) + " is in " + port.unit_text + "; " + settled_by(model, variable, variable.unit_from) +
                   " is in " + variable.unit_text,
               port.unit_text, variable.unit_text, {}, remedy(model, table, port, variable));
+}
+
+/// A value whose unit cannot be read settles nothing: then it is the cause. Returns if there is one.
+bool report_unread(Model& model, const Node& written, const std::string& what) {
+  bool found = false;
+  for_each_number(written, [&](const Node& number) {
+    const auto quantity = parse_quantity(number.text, model.library.units());
+    if (quantity || found) return;
+    found = true;
+    model.error("quantity-bad", number.at, what + ": " + std::string(quantity.error().message.view()), number.text,
+                "a quantity");
+  });
+  return found;
+}
+
+bool report_unread_values(Model& model) {
+  bool found = false;
+  const auto is_open = [&](PortRef ref) { return has_unit(model.port(ref)) && !model.port(ref).unit; };
+  for (const VariableModel& variable : model.variables)
+    if (variable.given != nullptr && std::ranges::any_of(variable.consumers, is_open))
+      found |= report_unread(model, variable.given->value, value_name(variable));
+  for_each_port(model, [&](PortRef ref, const LinkedPort& port) {
+    if (port.own != nullptr && port.is(CHIMERA_IN_CONST) && is_open(ref))
+      found |= report_unread(model, *port.own, value_name(model, port));
+  });
+  return found;
 }
 
 void report_unsolved_unit(Model& model, const LinkedPort& port) {
@@ -233,15 +393,13 @@ void report_unsolved_unit(Model& model, const LinkedPort& port) {
 }  // namespace
 
 void agree_on_units(Model& model) {
-  UnitTable table{{}, {}, model.library.units()};
-  start_with_concrete(model, table);
-  spread(model, table);
-  take_from_values(model, table);
-  spread(model, table);
-  take_from_defaults(model, table);
+  UnitTable table{model.library.units()};
+  find_witnesses(model, table);
+  settle_units(model, table);
+  outvote(model, table);
   for (const VariableModel& variable : model.variables)
     for_each_port_of(variable, [&](PortRef ref) { compare(model, table, variable, model.port(ref)); });
-  if (model.is_incomplete() || model.has_unmet) return;  // the missing part would settle it
+  if (model.is_incomplete() || model.has_unmet || report_unread_values(model)) return;  // it would settle the rest
   for_each_port(model, [&](PortRef, const LinkedPort& port) {
     if (!port.unit && has_unit(port)) report_unsolved_unit(model, port);
   });

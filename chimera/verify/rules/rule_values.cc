@@ -7,21 +7,17 @@ namespace chimera {
 namespace {
 
 void check_own(Model& model, LinkedPort& port) {
-  const char* key = port.is(CHIMERA_IN_CONST) ? "constant" : "initial value";
-  auto bytes = value_bytes(
-      model, *port.own,
-      {port, std::string(key) + " '" + port.declared->name + "' of task '" + model.tasks[port.task].name() + "'"});
+  auto bytes = value_bytes(model, *port.own, {port, value_name(model, port)});
   if (bytes) port.value = *std::move(bytes);
 }
 
 /// A given value must fit all its readers; the first reader that refuses it gives the fault.
 void check_given(Model& model, VariableModel& variable) {
-  const char* key = variable.is_constant ? "constant" : "operator variable";
   for (const PortRef ref : variable.consumers) {
     LinkedPort& port = model.port(ref);
-    const std::string what = std::string(key) + " '" + variable.name + "'";
     if (!is_solved(port)) continue;
-    auto bytes = value_bytes(model, variable.given->value, {port, what});
+    auto bytes = variable.is_written() ? value_bytes(model, variable.given->value, {port, value_name(variable)})
+                                       : declared_bytes(port);
     if (!bytes) return;
     if (variable.value.empty()) variable.value = *bytes;
     if (port.is(CHIMERA_IN_CONST)) port.value = *std::move(bytes);
@@ -82,7 +78,7 @@ void check_values(Model& model) {
     if (!is_solved(port)) return;
     if (port.own != nullptr)
       check_own(model, port);
-    else if (port.is(CHIMERA_OUT_VAR) || port.source == ConstSource::kDefault)
+    else if (port.is(CHIMERA_OUT_VAR) || (port.is(CHIMERA_IN_CONST) && port.source == ConstSource::kDefault))
       port.value = declared_bytes(port);
   });
   for (VariableModel& variable : model.variables)

@@ -25,6 +25,11 @@ void make_sets(Model& model);
 /// Makes Model::standbys of the standbys that name a known task.
 void pair_standbys(Model& model);
 
+// rule_components.cc, once the configurations are known
+/// A port that may be left out, without alias, joins the variable of its name, if each configuration with the task has
+/// a producer of that name, type and unit.
+void link_left_out(Model& model);
+
 // rule_links.cc
 /// Makes Model::variables; no name stands for a state variable and a constant.
 void collect_variables(Model& model);
@@ -32,7 +37,10 @@ void collect_variables(Model& model);
 std::vector<PortRef> producers_of(const Model& model, const VariableModel& variable, const SetModel& set);
 /// 1994 paper, equation 1: in each configuration no variable has two producers.
 void refuse_two_producers(Model& model);
-/// 1994 paper, equation 2: in each configuration every input has a producer.
+/// 1994 paper, equation 2: in each configuration every input has a producer. Makes Model::unmet; an input that no task
+/// produces for joins no other of its name.
+void find_unmet_inputs(Model& model);
+/// Reports them; called when units are known, because a suggestion has the unit of the input.
 void refuse_unmet_inputs(Model& model);
 
 // rule_constants.cc

@@ -7,11 +7,11 @@
 using namespace chimera;
 
 struct @TYPE@ControlComponent {
-  In<double>      speed{"speed", "rad/s"};
-  In<double>      wanted{"wanted", "rad/s"};
-  InConst<double> kp{"kp", "V.s/rad", range(0, 1e6)};
-  InConst<double> ki{"ki", "V/rad", initial = 0.0, range(0, 1e6)};
-  Out<double>     u{"u", "V", initial = 0.0, safety, range(-24, 24), doc = "kp e + ki times the integral of e"};
+  In<double>  speed{"speed", "rad/s"};
+  In<double>  wanted{"wanted", "rad/s"};
+  In<double>  kp{"kp", "V.s/rad", range(0, 1e6)};
+  In<double>  ki{"ki", "V/rad", initial = 0.0, range(0, 1e6)};  // 0 unless it is connected
+  Out<double> u{"u", "V", initial = 0.0, safety, range(-24, 24), doc = "kp e + ki times the integral of e"};
 
   void on() { integral_ = 0; }
   void cycle(Cycle c) {

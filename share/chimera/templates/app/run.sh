@@ -5,4 +5,4 @@ set -e
 cd "$(dirname "$0")"
 [ -d build ] || cmake -B build -Dchimera_DIR=@PACKAGE@
 cmake --build build
-CHIMERA_PATH=build/components${CHIMERA_PATH:+:$CHIMERA_PATH} exec @PROGRAM@ run @NAME@.yaml --for '5 s' "$@"
+exec @PROGRAM@ run @NAME@.yaml --for '5 s' --watch speed "$@"

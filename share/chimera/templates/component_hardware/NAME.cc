@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // @NAME@: drives a device on a serial line by lines of text. It sends "S 1.500" and receives "P 0.250". Replace these
-// lines by those of your device.
+// lines by those of your device. A device that has not answered since `on` is only told to stand still.
 #include <fcntl.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -27,8 +26,8 @@ struct @TYPE@Component {
   Resource        device{"device", doc = "serial device, such as /dev/ttyUSB0"};
 
   // Opens the device, so that a wrong path is refused before any motion. May wait.
-  void init() {
-    kill();
+  void init(Cycle c) {
+    close(c);
     file_ = ::open(device.c_str(), O_RDWR | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (file_ < 0) throw std::runtime_error(device.c_str() + std::string(": ") + std::strerror(errno) + remedy());
     termios mode{};
@@ -38,6 +37,7 @@ struct @TYPE@Component {
     mode.c_cflag |= CLOCAL | CREAD;
     mode.c_cc[VMIN] = 1;  // a read without bytes then fails with EAGAIN, and 0 means the end
     ::tcsetattr(file_, TCSANOW, &mode);
+    c.safe_frame(0, file_);
   }
   void on(Cycle c) {
     ::tcflush(file_, TCIFLUSH);  // drops bytes from before `on`
@@ -45,6 +45,8 @@ struct @TYPE@Component {
     heard_ = c.now();
     is_lost_ = false;
     *connected = *idled = false;
+    // The guard sends this if the process dies. The first end of line closes a line that the death cut.
+    c.safe_bytes(0, "\nS 0.000\n", 9);
   }
   // Makes two system calls, and none waits. After a loss `connected` falls in this cycle; the next one is a fault.
   Outcome cycle(Cycle c) {
@@ -52,7 +54,7 @@ struct @TYPE@Component {
     const bool is_there = receive(c.now());
     is_lost_ = !is_there || c.now() - heard_ > Nanoseconds{static_cast<std::int64_t>(*timeout * 1e9)};
     if (is_lost_) *connected = false;
-    const bool is_told = is_there && send(is_lost_ || c.illegal() ? 0 : *speed);
+    const bool is_told = is_there && send(!*connected || c.illegal() ? 0 : *speed);
     *idled = c.illegal() && (*idled || is_told);
     return ok();
   }
@@ -60,29 +62,35 @@ struct @TYPE@Component {
     send(0);
     *connected = false;
   }
-  bool clear() {
-    init();
+  bool clear(Cycle c) {
+    init(c);
     return true;
   }
-  void kill() {
+  void kill(Cycle c) { close(c); }
+  ~@TYPE@Component() {
+    if (file_ >= 0) ::close(file_);
+  }
+
+ private:
+  void close(Cycle c) {
+    c.safe_frame(0, -1);
     if (file_ >= 0) ::close(file_);
     file_ = -1;
   }
-  ~@TYPE@Component() { kill(); }
-
- private:
   static const char* remedy() {
     return errno == EACCES ? ": add the user to the device's group (dialout) and log in again"
                            : ": plug the device in, or name another under `resources`";
   }
-  // Sends no NaN, and cuts the speed at the limit.
+  // Sends no NaN, and cuts the speed at the limit. to_chars and from_chars use a decimal point in every locale.
   bool send(double value) {
     if (std::isnan(value)) return false;
-    char line[40];
-    const int size = std::snprintf(line, sizeof line, "S %.3f\n", std::fmin(std::fmax(value, -*limit), *limit));
-    const ssize_t put = ::write(file_, line, static_cast<std::size_t>(size));
+    char line[40] = "S ";
+    const double held = std::fmin(std::fmax(value, -*limit), *limit);
+    char* end = std::to_chars(line + 2, line + sizeof line - 1, held, std::chars_format::fixed, 3).ptr;
+    *end++ = '\n';
+    const ssize_t put = ::write(file_, line, static_cast<std::size_t>(end - line));
     if (put < 0 && errno != EAGAIN) errno_ = errno;
-    return put == size;
+    return put == end - line;
   }
   // Returns false if the device is gone. A cut line waits for the next cycle; a wrong line is skipped.
   bool receive(Nanoseconds now) {
@@ -106,9 +114,9 @@ struct @TYPE@Component {
   }
   void take(const char* line, Nanoseconds now) {
     if (line[0] != 'P' || line[1] != ' ') return;
-    char* end = nullptr;
-    const double value = std::strtod(line + 2, &end);
-    if (end == line + 2 || *end != '\0' || !std::isfinite(value)) return;
+    double value = 0;
+    const auto [end, error] = std::from_chars(line + 2, line + std::strlen(line), value);
+    if (error != std::errc() || *end != '\0' || !std::isfinite(value)) return;
     *position = value;
     *connected = true;
     heard_ = now;

@@ -75,7 +75,30 @@ TEST_F(@TYPE@, SendsSpeedAndReadsPosition) {
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(position(), 1.25);
   EXPECT_TRUE(rig.get<bool>("connected"));
-  EXPECT_EQ(heard(16), "S 0.500\nS 0.500\n");
+  EXPECT_EQ(heard(16), "S 0.000\nS 0.500\n");
+}
+
+TEST_F(@TYPE@, MovesNoDeviceThatDoesNotAnswer) {
+  start();
+  rig.set("speed", 1.0);
+  for (int restart = 0; restart < 3; ++restart) {
+    for (int i = 0; i < 11; ++i) ASSERT_TRUE(rig.cycle(milliseconds(10)));
+    EXPECT_FALSE(rig.cycle());
+    for (int i = 0; i < 11; ++i) EXPECT_EQ(heard(8), "S 0.000\n");
+    ASSERT_TRUE(rig.clear());
+    ASSERT_TRUE(rig.on());
+  }
+}
+
+TEST_F(@TYPE@, HandsOverASafeFrame) {
+  start();
+  const auto& safe = rig.safe_frame(0);
+  EXPECT_GE(safe.descriptor, 0);
+  EXPECT_EQ(std::string(safe.bytes, safe.bytes + safe.size), "\nS 0.000\n");
+  ASSERT_TRUE(rig.off());
+  EXPECT_EQ(rig.safe_frame(0).size, 0u);
+  ASSERT_TRUE(rig.kill());
+  EXPECT_LT(rig.safe_frame(0).descriptor, 0);
 }
 
 TEST_F(@TYPE@, SkipsNoise) {
@@ -87,6 +110,7 @@ TEST_F(@TYPE@, SkipsNoise) {
 
 TEST_F(@TYPE@, SendsNoNanAndCutsAtLimit) {
   start();
+  say("P 1\n");
   rig.set("speed", std::nan(""));
   ASSERT_TRUE(rig.cycle());
   EXPECT_EQ(heard(), "");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "library/mujoco/model_numbers.h"
+#include "library/model_text/model_numbers.h"
 
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>

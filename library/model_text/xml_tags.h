@@ -2,7 +2,10 @@
 // Reads the tags of an XML text one by one, to check attributes before a parser with less precise errors.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <iterator>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -33,16 +36,21 @@ class XmlTags {
   }
   /// Reads the next start or end tag. Returns false at the end.
   bool next_of_all(XmlTag& tag) {
-    for (;;) {
-      if (!skip_past("<")) return false;
+    while (skip_past("<")) {
       tag.begin = at() - 1;
-      if (rest_.starts_with("!--")) skip_past("-->");
-      else if (rest_.starts_with("![CDATA[")) skip_past("]]>");
-      else if (rest_.starts_with("!")) skip_past(">");
-      else if (rest_.starts_with("?")) skip_past("?>");
-      else return rest_.starts_with("/") ? read_end(tag) : read(tag);
+      const std::string_view end = rest_.starts_with("!--")        ? "-->"
+                                   : rest_.starts_with("![CDATA[") ? "]]>"
+                                   : rest_.starts_with("!")        ? ">"
+                                   : rest_.starts_with("?")        ? "?>"
+                                                                   : "";
+      if (end.empty()) return is_sound_ = rest_.starts_with("/") ? read_end(tag) : read(tag);
+      if (!(is_sound_ = skip_past(end))) return false;
     }
+    return false;
   }
+  /// False if the text ended at a syntax error, in line().
+  bool is_sound() const noexcept { return is_sound_; }
+  std::size_t line() const noexcept { return line_; }
 
  private:
   static constexpr std::string_view kSpace = " \t\r\n";
@@ -95,13 +103,35 @@ class XmlTags {
       drop(1);
     }
     tag.is_empty = rest_.starts_with('/');
-    const std::size_t close = rest_.find('>');
-    tag.end = at() + (close == std::string_view::npos ? rest_.size() : close + 1);
-    return !tag.element.empty();
+    const bool is_closed = rest_.starts_with(tag.is_empty ? "/>" : ">");
+    tag.end = at() + (tag.is_empty ? 2 : 1);
+    return is_closed && !tag.element.empty();
   }
 
   std::string_view text_, rest_;
   std::size_t line_ = 1;
+  bool is_sound_ = true;
 };
+
+/// The value of an attribute as it is written; a view without data if the tag has none of that name.
+inline std::string_view value_of(const XmlTag& tag, std::string_view attribute) {
+  for (const auto& [name, value] : tag.attributes)
+    if (name == attribute) return value;
+  return {};
+}
+
+/// `value` with the five predefined entities replaced.
+inline std::string plain(std::string_view value) {
+  constexpr std::pair<std::string_view, char> kEntities[] = {
+      {"&amp;", '&'}, {"&lt;", '<'}, {"&gt;", '>'}, {"&quot;", '"'}, {"&apos;", '\''}};
+  std::string text;
+  while (!value.empty()) {
+    const auto* entity = std::ranges::find_if(kEntities, [&](const auto& e) { return value.starts_with(e.first); });
+    const bool is_entity = entity != std::end(kEntities);
+    text += is_entity ? entity->second : value.front();
+    value.remove_prefix(is_entity ? entity->first.size() : 1);
+  }
+  return text;
+}
 
 }  // namespace chimera::library

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parses measures such as a maximum, a root mean square and a settling time, and computes them sample by sample.
-#include "chimera/cli/batch/measure.h"
+#include "chimera/cli/run/measure.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,6 @@
 
 #include "chimera/base/hosted/wording.h"
 #include "chimera/cli/files/blanks.h"
-#include "chimera/cli/run/probe_numbers.h"
 #include "chimera/text/nearest.h"
 #include "chimera/units/quantity.h"
 
@@ -105,6 +104,8 @@ Result<Measure> Measure::parse_expectation(const std::string& text, const Config
   return made;
 }
 
+bool Measure::is_end_of_variable() const { return kind_ == Kind::kEnd && element_ == variable_; }
+
 Result<void> Measure::bind(const Application& application) {
   auto probe = application.probe(variable_);
   if (!probe) return probe.error();
@@ -194,8 +195,10 @@ bool Measure::holds(std::string& said) const {
   Seen seen{true, {}, {}};
   for (const Number& number : numbers()) {
     if (said.size() < 200)
-      append_joined(said, ", ", number.name + " is " +
-                                    (number.value ? number_text(*number.value, number.unit) : "not a number"));
+      append_joined(said, ", ",
+                    number.name + " is " +
+                        (number.value ? bound_->value_text({*number.value}, number_text(*number.value, number.unit))
+                                      : "not a number"));
     seen.numbers.push_back(number.value.value_or(NAN));
   }
   std::string ignored;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Checks the numbers in the attributes of a model file.
-#include "library/mujoco/model_numbers.h"
+#include "library/model_text/model_numbers.h"
 
 #include <algorithm>
 #include <cctype>
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "chimera/base/hosted/ordinary_file.h"
-#include "library/mujoco/xml_tags.h"
+#include "library/model_text/xml_tags.h"
 
 namespace chimera::library {
 namespace {
@@ -27,7 +27,7 @@ struct Numbers {
   std::size_t count;
 };
 
-// MuJoCo and urdfdom know more attributes with numbers. These two lists cover robots.
+// MuJoCo knows more attributes with numbers. These two lists cover robots.
 constexpr Numbers kUrdf[] = {
     {"origin", "xyz", 3},        {"origin", "rpy", 3},         {"axis", "xyz", 3},          {"mass", "value", 1},
     {"inertia", "ixx", 1},       {"inertia", "ixy", 1},        {"inertia", "ixz", 1},       {"inertia", "iyy", 1},

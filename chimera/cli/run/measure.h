@@ -30,6 +30,9 @@ class Measure {
   static Result<Measure> parse_expectation(const std::string& text, const Configuration& configuration,
                                            const UnitSystem& units);
 
+  /// True if the value of a whole variable at the end counts, as of Expectation.
+  bool is_end_of_variable() const;
+
   /// Once the extents are known. Refuses an element that the variable does not have.
   Result<void> bind(const Application& application);
   /// The values at `at` since the start. Requires: bound; times grow.
