@@ -60,7 +60,7 @@ void end_tracing(std::span<const pid_t> held) {
     const auto signal = reinterpret_cast<void*>(static_cast<std::intptr_t>(found.si_status));  // NOLINT: a number
     const bool has_ended = found.si_code != CLD_TRAPPED && found.si_code != CLD_STOPPED;
     if (has_ended && is_among(held, found.si_pid)) return;  // its Process reaps it
-    if (has_ended ? ::waitpid(found.si_pid, nullptr, WNOHANG | __WALL) <= 0
+    if (has_ended ? ::waitpid(found.si_pid, nullptr, WNOHANG | __WALL) <= 0  // not reaped yet: keeps its number
                   : ::ptrace(PTRACE_DETACH, found.si_pid, nullptr, signal) != 0)
       return;
   }

@@ -86,7 +86,7 @@ TEST_F(RtpuEndTest, WaitsForNoDeadRtpuThoughNoKeeperShowsItsDeath) {
   rtpus->change();
   rtpus->run(milliseconds(5));
   EXPECT_FALSE(end_of(0).is_over()) << "that process lives";
-  ::kill(child, SIGKILL);
+  ::kill(child, SIGKILL);  // not reaped
   ASSERT_TRUE(await_that([child] { return has_process_ended(child); }));
   rtpus->run(milliseconds(5));
   EXPECT_TRUE(end_of(0).is_over());

@@ -19,7 +19,7 @@ struct CsvPlayerTest : ::testing::Test {
 
   RigAnswer read(const std::string& text, bool is_repeated = false, bool is_interpolated = false) {
     std::ofstream(path) << text;
-    rig.instances("out", 1);
+    rig.instances("out", 1), rig.instances("start", 0);
     rig.joined("out", "q", "rad", 0);
     rig.resource("file", path.c_str());
     rig.set("is_repeated", is_repeated);
@@ -104,7 +104,7 @@ TEST_F(CsvPlayerTest, PlaysAFileOfCsvLog) {
     ASSERT_TRUE(log.background());
     ASSERT_TRUE(log.kill());
   }
-  rig.instances("out", 1);
+  rig.instances("out", 1), rig.instances("start", 0);
   rig.joined("out", "q_ref", "rad", 0);
   rig.set("columns", Text<256>("q"));
   rig.resource("file", path.c_str());
