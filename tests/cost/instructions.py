@@ -48,8 +48,8 @@ def of_command(build):
         chain.write_text(f"subsystem: chain\nrtpus: {{u: {{cpu: 0}}}}\ntasks:\n{tasks}operator: {{v0: 1 V}}\n",
                          encoding="utf-8")
         environment = dict(os.environ, CHIMERA_PATH=str(build / "components"))
-        # Equally many characters, so that nothing but the jobs differs. Progress by the wall clock adds instructions, more
-        # of them on a busy machine: the least of some runs counts.
+        # Equally many characters, so that nothing but the jobs differs. Progress by the wall clock adds instructions,
+        # more of them on a busy machine: the least of some runs counts.
         def run(ms):
             words = [str(build / "bin" / "chimera"), "run", str(chain), "--virtual", "--for", f"{ms} ms"]
             return counted(words, environment)[0]
