@@ -41,6 +41,7 @@ class Ending(unittest.TestCase):
             system.process.kill()
             system.wait()
             self.judge(system)
+            self.assertRegex(system.said(), r"ran \d+\.\d+ s, ended because its keeper died\n")
 
     def test_an_rtpu_whose_off_hangs_is_ended_all_the_same(self):
         with System(CHAIN.replace("{label: b}", "{label: b, slow: 3600000000000 ns}")) as system:
