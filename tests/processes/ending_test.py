@@ -38,6 +38,7 @@ class Ending(unittest.TestCase):
 
     def test_when_the_keeper_is_killed_every_rtpu_ends_its_tasks(self):
         with System(CHAIN) as system:
+            await_that(lambda: "second: WARNING: not real time" in system.said(), "the printing process")
             system.process.kill()
             system.wait()
             self.judge(system)

@@ -78,7 +78,7 @@ void MeasureLine::finish(Nanoseconds end, bool is_whole, RunReport& report) {
   const Nanoseconds until = LinuxClock().now() + kLastRows;
   while (line_.is_connected() && LinuxClock().now() < until) poll(until);
   for (Measure& measure : measures_) {
-    RunReport::Judged judged{measure.text(), "the process that measures died: not known", false};
+    RunReport::Judged judged{measure.text(), is_whole ? "" : "the process that measures died: not known", false};
     if (is_whole) judged.holds = measure.holds(judged.said);
     if (refusals_.contains(measure.text())) judged.said = refusals_[measure.text()];
     if (is_whole && has_gap_) judged.said += "; samples are missing";
