@@ -54,7 +54,7 @@ struct PortRef {
 
 /// A unit in which the file writes a value.
 struct WrittenUnit {
-  std::string text;  ///< empty: the file writes none
+  std::string text;   ///< empty: the file writes none
   Conversion from{};  ///< from the unit of the variable
 };
 

@@ -50,8 +50,7 @@ void MeasureLine::poll(Nanoseconds instant) {
   has_gap_ = has_gap_ || whole_at(*heard, "lost") > 0;
   const Json& variables = (*heard)["variables"];
   for (const Json& row : (*heard)["rows"])
-    for (std::size_t v = 0; v < variables.size(); ++v)
-      add(variables[v].as_string(), row[v + 2], {row[0].as_int64()});
+    for (std::size_t v = 0; v < variables.size(); ++v) add(variables[v].as_string(), row[v + 2], {row[0].as_int64()});
 }
 
 void MeasureLine::add(const std::string& variable, const Json& value, Nanoseconds at) {
