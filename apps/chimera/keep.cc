@@ -78,9 +78,9 @@ std::vector<std::string> face_of(const KeepRequest& request, const cli::RunPlan&
   std::vector<std::string> words = {cli::program_path(), "attend", "--socket=" + socket,
                                     "--parent=" + std::to_string(::getpid())};
   words.insert(words.end(), request.face.begin(), request.face.end());
-  for (const cli::Expectation& expectation : plan.expectations)
-    words.push_back("--bound=" + exact(expectation.bound().value) + ":" + exact(expectation.bound().to_written.factor) +
-                    ":" + exact(expectation.bound().to_written.offset));
+  for (const cli::Bound& bound : plan.bounds)
+    words.push_back("--bound=" + exact(bound.value) + ":" + exact(bound.to_written.factor) + ":" +
+                    exact(bound.to_written.offset));
   return words;
 }
 
@@ -121,6 +121,9 @@ void say_to_members(const KeepRequest& request, const std::string& socket) {
 Result<int> keep(const KeepRequest& request, const cli::RunPlan& plan) {
   RunSettings settings;
   settings.priority = request.run.priority;
+  const bool for_others = request.observe_group || request.operate_group || request.configure_group;
+  const auto place = SocketPlace::open(socket_folder().c_str(), plan.configuration.subsystem(), for_others);
+  if (!place) return place.error();
   const auto claims = claim_cpus(plan, request.run.priority);
   if (!claims) return claims.error();
   const auto image = make_image(plan, settings);
@@ -129,9 +132,6 @@ Result<int> keep(const KeepRequest& request, const cli::RunPlan& plan) {
   if (!objects) return objects.error();
   const auto bundle = make_bundle(request, plan);
   if (!bundle) return bundle.error();
-  const bool for_others = request.observe_group || request.operate_group || request.configure_group;
-  const auto place = SocketPlace::open(socket_folder().c_str(), plan.configuration.subsystem(), for_others);
-  if (!place) return place.error();
   if (!request.run.json) say_to_members(request, place->path());
   const auto n_rtpus = static_cast<std::uint32_t>(plan.configuration.rtpus().size());
   Keeper keeper({.peers = {.rtpu_program = sibling("chimera-rtpu"),

@@ -63,10 +63,10 @@ const std::vector<Option>& printing_options() {
        .manual = "How often `--watch` prints (1 s). The default of a picture by `--svg` is the shortest period."},
       {.name = "--expect",
        .value = "COMPARISON",
-       .help = "what must hold at the end, such as 'error_now <= 2 mrad'; virtual time: also 'max |u| <= 1 V'; may be "
+       .help = "what must hold at the end, such as 'error_now <= 2 mrad', or of the run: 'max |u| <= 1 V'; may be "
                "repeated",
-       .manual = "What must hold at the end, such as 'error_now <= 2 mrad' or '|error| < 1 deg'. In virtual time also "
-                 "what cases and `sweep` know: 'max |u| <= 1 V', 'settling error <= 2 mrad within 0.5 s'. May be "
+       .manual = "What must hold at the end, such as 'error_now <= 2 mrad' or '|error| < 1 deg'; or of the whole run, "
+                 "as in cases and `sweep`: 'max |u| <= 1 V', 'settling error <= 2 mrad within 0.5 s'. May be "
                  "repeated.",
        .repeats = Repeats::kManyEach},
       {.name = "--trace",

@@ -89,7 +89,7 @@ inline constexpr std::int64_t kStalePeriods = 2;
 /// Parameters of the reaction `restart` of a task: TaskSpec::on_fault.
 struct RestartSpec {
   TaskId task;
-  std::uint32_t most = 1;           ///< restarts in each window of length `within`; at most kMostRestarts
+  std::uint32_t most = 1;           ///< restarts until the task runs for `within` without a fault; to kMostRestarts
   Nanoseconds within;               ///< above 0
   OnFault then = OnFault::kError;   ///< beyond them, or where it cannot be restarted; `switch` to on_fault_set
 };

@@ -23,6 +23,8 @@ std::string text_of(const std::byte* at, std::uint32_t bytes) {
   return {text, ::strnlen(text, bytes)};
 }
 
+bool is_float(std::uint32_t type) { return type == CHIMERA_FLOAT32 || type == CHIMERA_FLOAT64; }
+
 std::string plain(std::uint32_t type, const std::byte* at, std::uint32_t bytes, bool is_json) {
   if (type == CHIMERA_STRING) return is_json ? json_string(text_of(at, bytes)) : "\"" + text_of(at, bytes) + "\"";
   if (type == CHIMERA_BOOL) return read<std::uint8_t>(at) != 0 ? "true" : "false";
@@ -46,15 +48,18 @@ bool ValueRenderer::append_to(std::string& text, std::size_t values) {
     append_next(text);
   }
   if (!form_.is_scalar) text += "]";
-  if (!is_json_ && form_.type != CHIMERA_STRUCT) append_unit(text, form_.unit);
+  if (!is_json_ && form_.type != CHIMERA_STRUCT) append_unit(text, is_shown_otherwise() ? form_.shown : form_.unit);
   return false;
 }
+
+bool ValueRenderer::is_shown_otherwise() const { return !is_json_ && !form_.shown.empty() && is_float(form_.type); }
 
 void ValueRenderer::append_next(std::string& text) {
   const std::byte* at = bytes_.data() + std::size_t{element_} * form_.element_bytes;
   if (element_ > 0 && field_ == 0 && item_ == 0) text += between();
   if (form_.type != CHIMERA_STRUCT) {
-    text += plain(form_.type, at, form_.element_bytes, is_json_);
+    text += is_shown_otherwise() ? formatted("%.6g", number_at(form_.type, at) * form_.factor + form_.offset)
+                                 : plain(form_.type, at, form_.element_bytes, is_json_);
     ++element_;
   } else if (form_.fields.empty()) {
     text += "{}";

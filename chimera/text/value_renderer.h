@@ -31,6 +31,7 @@ class ValueRenderer {
   void append_next(std::string& text);
   void begin_field(std::string& text) const;
   void end_field(std::string& text);
+  bool is_shown_otherwise() const;
   const char* between() const noexcept { return is_json_ ? ", " : " "; }
 
   const ValueForm& form_;

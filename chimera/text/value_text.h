@@ -20,6 +20,8 @@ struct ValueForm {
   bool is_scalar = true;
   std::string unit = "1";
   std::vector<FieldDescriptor> fields;  ///< of a struct
+  std::string shown = {};               ///< unit of a text, for floats: value * factor + offset; empty: `unit`
+  double factor = 1, offset = 0;
 };
 
 /// "27.7778 m/s", "[0.1 0.2] rad", "{x: 1 m, y: 2 m}"; six significant digits.

@@ -34,6 +34,16 @@ TEST(ValueText, WritesEveryPlainType) {
   EXPECT_EQ(value_text(form(CHIMERA_STRING, 8), bytes_of("say hi\0")), "\"say hi\"");
 }
 
+TEST(ValueText, ShowsFloatsInTheUnitThatTheFileWrites) {
+  ValueForm speed = form(CHIMERA_FLOAT64, 8, "m/s");
+  speed.shown = "km/h", speed.factor = 3.6;
+  EXPECT_EQ(value_text(speed, bytes_of(100.0 / 3.6)), "100 km/h");
+  EXPECT_EQ(value_json(speed, bytes_of(0.5)), "0.5") << "programs read the unit of the variable";
+  ValueForm count = form(CHIMERA_INT32, 4, "m");
+  count.shown = "km", count.factor = 1e-3;
+  EXPECT_EQ(value_text(count, bytes_of(std::int32_t{7})), "7 m");
+}
+
 TEST(ValueText, LosesNoDigitOfALargeWholeNumber) {
   const std::int64_t least = INT64_MIN;
   EXPECT_EQ(value_text(form(CHIMERA_INT64, 8), bytes_of(least)), "-9223372036854775808");

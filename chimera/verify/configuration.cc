@@ -9,6 +9,7 @@
 
 #include "chimera/runtime/hosted/links.h"
 #include "chimera/runtime/hosted/task_orders.h"
+#include "chimera/units/quantity.h"
 #include "chimera/verify/model.h"
 #include "chimera/verify/values.h"
 
@@ -78,6 +79,16 @@ ConfiguredTask configured(const TaskModel& task) {
   return out;
 }
 
+/// The unit of the first number of the value that the file gives the variable.
+WrittenUnit written_unit(const Model& model, const VariableModel& variable, const LinkedPort& port) {
+  const Node* node = variable.is_written() ? &variable.given->value : port.own;
+  while (node != nullptr && node->is_list() && !node->items.empty()) node = node->items.data();
+  if (node == nullptr || !node->is_scalar() || node->quoted || !port.unit) return {};
+  const auto quantity = parse_quantity(node->text, model.library.units());
+  const auto from = quantity ? conversion(*port.unit, quantity->unit) : std::nullopt;
+  return from ? WrittenUnit{quantity->unit_text, *from} : WrittenUnit{};
+}
+
 ConfiguredVariable configured(const Model& model, const VariableModel& variable) {
   ConfiguredVariable out;
   out.name = variable.name;
@@ -97,6 +108,7 @@ ConfiguredVariable configured(const Model& model, const VariableModel& variable)
   out.type = like.type;
   out.unit = like.unit;
   out.shape = like.shape;
+  out.written = written_unit(model, variable, *port);
   return out;
 }
 

@@ -13,6 +13,7 @@
 
 #include "chimera/description/draft.h"
 #include "chimera/runtime/application_spec.h"
+#include "chimera/units/unit.h"
 
 namespace chimera {
 
@@ -51,12 +52,19 @@ struct PortRef {
   std::size_t port = 0;
 };
 
+/// A unit in which the file writes a value.
+struct WrittenUnit {
+  std::string text;   ///< empty: the file writes none
+  Conversion from{};  ///< from the unit of the variable
+};
+
 /// A state variable or constant and all its producers and consumers, over all tasks.
 struct ConfiguredVariable {
   std::string name;
   bool is_constant = false;
   bool is_given = false;  ///< by `operator` (a state variable) or `constants` of the file
   std::string type, unit, shape;
+  WrittenUnit written;  ///< of the first number of its given or initial value
   Place at;  ///< of the given value, otherwise of the first producer
   std::vector<PortRef> producers;
   std::vector<PortRef> consumers;

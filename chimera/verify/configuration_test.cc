@@ -257,6 +257,14 @@ TEST(Configuration, TakesTheOperatorForAProducer) {
   EXPECT_NEAR(value[2], 1.5707963267948966, 1e-15);
 }
 
+TEST(Configuration, KeepsTheUnitInWhichTheFileWritesAValue) {
+  const Configuration made = legal("subsystem: demo\ntasks: {sink: }\noperator: {x: [90 deg, 1 rad, 0 rad]}\n");
+  const ConfiguredVariable& x = made.variable(VariableId(0u));
+  EXPECT_EQ(x.unit, "rad");
+  EXPECT_EQ(x.written.text, "deg") << "of its first number";
+  EXPECT_NEAR(x.written.from(1.5707963267948966), 90, 1e-12);
+}
+
 TEST(Configuration, HasOneRtpuAndOneConfigurationByDefault) {
   const Configuration made = legal("subsystem: demo\ntasks: {sink: }\noperator: {x: 0 rad}\n");
   ASSERT_EQ(made.rtpus().size(), 1u);

@@ -3,6 +3,7 @@
 #include "library/kinematics/dh_dynamics.h"
 #include "library/kinematics/dh_ports.h"
 #include "library/signals/input.h"
+#include "library/signals/short_way.h"
 
 using namespace chimera;
 
@@ -19,6 +20,8 @@ struct ComputedTorque : library::DhPorts {
   InConst<library::LinkMass[]> links{"links", "1", "[ndof<=10]", doc = "Mass and drive of each link, base to tip."};
   InConst<double[]> tau_max{"tau_max", "N.m", "[ndof<=10]", range(0, 1e6), frame = "joint",
                             doc = "Largest torque of the drives."};
+  InConst<bool[]> is_continuous{"is_continuous", "1", "[ndof<=10]", initial = false,
+                                doc = "The joint turns without end: the error is the short way."};
   InConst<double> bandwidth{"bandwidth", "rad/s", initial = 20.0, range(0, 500),
                             doc = "Angular frequency at which an error decays; 0: no feedback."};
   InConst<double> damping_ratio{"damping_ratio", "1", initial = 1.0, range(0, 10), doc = "1: no overshoot."};
@@ -64,7 +67,8 @@ struct ComputedTorque : library::DhPorts {
     std::array<double, library::kMostJoints> wanted{}, torque{};
     const double w = *bandwidth;
     for (std::size_t i = 0; i < tau.size(); ++i) {
-      wanted[i] = qdd_ref[i] + 2 * *damping_ratio * w * (qd_ref[i] - qd[i]) + w * w * (q_ref[i] - q[i]);
+      const double error = library::short_way(q_ref[i] - q[i], is_continuous[i]);
+      wanted[i] = qdd_ref[i] + 2 * *damping_ratio * w * (qd_ref[i] - qd[i]) + w * w * error;
     }
     dynamics_.torque(q.span(), qd.span(), {wanted.data(), tau.size()}, torque);
     for (std::size_t i = 0; i < tau.size(); ++i) {

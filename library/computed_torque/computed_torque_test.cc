@@ -76,6 +76,21 @@ struct ComputedTorqueTest : ::testing::Test {
   }
 };
 
+TEST_F(ComputedTorqueTest, AContinuousJointTurnsTheShortWay) {
+  rig.set("is_continuous", true, 0);
+  ASSERT_TRUE(rig.init());
+  PumaVector from = kNominal, to = kNominal;
+  from[0] = 3.1, to[0] = -3.1;
+  give("q", from), give("q_ref", to);
+  ASSERT_TRUE(rig.on());
+  const PumaVector over_the_end = torque();
+  from[0] = 3.1 - 2 * M_PI;
+  give("q", from);
+  ASSERT_TRUE(rig.cycle());
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(over_the_end[i], torque()[i], 1e-9) << "joint " << i;
+  EXPECT_GT(std::abs(over_the_end[0]), 1) << "it moves";
+}
+
 TEST_F(ComputedTorqueTest, CarriesTheWeightAtRest) {
   ASSERT_TRUE(rig.init());
   ASSERT_TRUE(rig.on());

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "chimera/task/component.h"
 #include "library/joint_trajectory/braking.h"
 #include "library/joint_trajectory/quintic.h"
 #include "library/joint_trajectory/seven_segments.h"
+#include "library/signals/short_way.h"
 
 using namespace chimera;
 
@@ -120,7 +120,7 @@ struct JointTrajectory {
     return from;
   }
   double end(std::size_t i, double from) const {
-    return is_continuous[i] ? from + std::remainder(goal[i] - from, 2 * std::numbers::pi) : goal[i];
+    return is_continuous[i] ? from + library::short_way(goal[i] - from, true) : goal[i];
   }
   static void tell_if_beyond(Cycle c, std::size_t i, const Motion& from, const library::MotionLimits& limits) {
     const double speed = std::abs(from.velocity), acceleration = std::abs(from.acceleration);

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <numbers>
 #include <optional>
 
 #include "chimera/base/hosted/ordinary_file.h"
@@ -16,6 +15,7 @@
 #include "library/model_text/model_numbers.h"
 #include "library/mujoco/mujoco_guard.h"
 #include "library/mujoco/refusal.h"
+#include "library/signals/short_way.h"
 
 namespace chimera::library {
 namespace {
@@ -167,8 +167,7 @@ double SimulatedArm::acceleration(const Command& command, std::size_t i) const {
   const double w = drives_.bandwidth, most = drives_.acceleration_limit;
   double v = command.values[i];
   if (command.interface == ArmInterface::kPosition) {
-    double error = std::clamp(v, arm_.low[i], arm_.high[i]) - q_[i];
-    if (arm_.is_continuous[i]) error = std::remainder(error, 2 * std::numbers::pi);
+    const double error = library::short_way(std::clamp(v, arm_.low[i], arm_.high[i]) - q_[i], arm_.is_continuous[i]);
     const double top = std::min(drives_.speed_limit, arm_.speed_limit[i]);
     const double fastest = std::min(top, std::sqrt(most * std::abs(error)));
     v = std::clamp(0.5 * w * error, -fastest, fastest);

@@ -7,6 +7,7 @@
 #include "chimera/task/component.h"
 #include "library/pid/pid_axis.h"
 #include "library/signals/input.h"
+#include "library/signals/short_way.h"
 
 using namespace chimera;
 
@@ -86,10 +87,7 @@ struct PidJoint {
     if (library::is_ok(found)) found = library::judge(kd, "kd");
     return found;
   }
-  double error_of(std::size_t i) const {
-    const double e = q_ref[i] - q[i];
-    return is_continuous[i] ? e - 2 * math::kPi * math::floor(e / (2 * math::kPi) + 0.5) : e;
-  }
+  double error_of(std::size_t i) const { return library::short_way(q_ref[i] - q[i], is_continuous[i]); }
   library::PidGains gains(std::size_t i) const { return {kp[i], ki[i], kd[i]}; }
 
   library::PidAxis axis_[kMostJoints];

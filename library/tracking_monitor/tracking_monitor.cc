@@ -5,6 +5,7 @@
 
 #include "chimera/task/component.h"
 #include "library/signals/input.h"
+#include "library/signals/short_way.h"
 
 using namespace chimera;
 
@@ -20,6 +21,8 @@ struct TrackingMonitor {
   Out<double> moved{"moved", "rad", initial = 0.0,
                     doc = "Least way of all joints from their place at on, within the window."};
   InConst<std::int32_t> ndof{"ndof", "1", range(1, 10), doc = "Joints."};
+  InConst<bool[]> is_continuous{"is_continuous", "1", "[ndof<=10]", initial = false,
+                                doc = "The joint turns without end: errors and ways are the short way."};
   InConst<double> window{"window", "s", initial = 2.0, range(0, 3600), doc = "Time that counts for moved."};
 
   void on() {
@@ -35,8 +38,8 @@ struct TrackingMonitor {
     double error = 0;
     for (std::size_t i = 0; i < q.size(); ++i) {
       if (!std::isfinite(q[i]) || !std::isfinite(q_ref[i])) return library::unfit("a position is not finite", q, q_ref);
-      error = std::max(error, std::abs(q_ref[i] - q[i]));
-      if (elapsed_ <= *window + 1e-9) farthest_[i] = std::max(farthest_[i], std::abs(q[i] - from_[i]));
+      error = std::max(error, distance(i, q_ref[i], q[i]));
+      if (elapsed_ <= *window + 1e-9) farthest_[i] = std::max(farthest_[i], distance(i, q[i], from_[i]));
     }
     *error_now = error;
     *max_error = std::max(*max_error, error);
@@ -46,6 +49,10 @@ struct TrackingMonitor {
   bool error() { return true; }
 
  private:
+  double distance(std::size_t i, double to, double from) const {
+    return std::abs(library::short_way(to - from, is_continuous[i]));
+  }
+
   double from_[kMostJoints] = {};
   double farthest_[kMostJoints] = {};
   double elapsed_ = 0;

@@ -57,6 +57,16 @@ TEST_F(TrackingMonitorTest, MovedLooksAtItsWindowOnly) {
   EXPECT_NEAR(rig.get<double>("moved"), 0.5, 1e-12);
 }
 
+TEST_F(TrackingMonitorTest, AContinuousJointIsJudgedByTheShortWay) {
+  rig.set("ndof", std::int32_t{2});
+  rig.set("is_continuous", true, 0);
+  start();
+  place(1.0 + 2 * M_PI - 0.1, -1.3);
+  ASSERT_TRUE(rig.cycle());
+  EXPECT_NEAR(rig.get<double>("error_now"), 0.3, 1e-12) << "joint 0 is 0.1 rad away";
+  EXPECT_NEAR(rig.get<double>("moved"), 0.1, 1e-12);
+}
+
 TEST_F(TrackingMonitorTest, OnBeginsAnew) {
   start();
   place(2, -2);

@@ -383,13 +383,22 @@ TEST_P(RecoveryTest, MoreFaultsThanRestartsHaveTheReactionBehind) {
   EXPECT_TRUE(set_->flag().is_raised());
 }
 
-TEST_P(RecoveryTest, RestartsAreCountedWithinTheirTime) {
+TEST_P(RecoveryTest, AFaultWithinTheTimeOfTheLastRestartCountsOn) {
   standbys_ = {};
   restarts_ = {{kFirst, 2, milliseconds(5), OnFault::kFlag}};
   scene.cycle_of_first = [](Cycle c) -> Outcome { return c.count() == 2 ? fault("no current") : ok(); };
   go(milliseconds(60));
-  EXPECT_EQ(state(kFirst), chimera::State::kOn) << "a fault every 3 ms: two within 5 ms, never three";
-  EXPECT_GE(task(kFirst).profile.restarts, 18u);
+  EXPECT_EQ(state(kFirst), chimera::State::kError) << "a fault every 3 ms: it never ran 5 ms without one";
+  EXPECT_EQ(task(kFirst).profile.restarts, 2u);
+}
+
+TEST_P(RecoveryTest, RestartsCountAnewAfterTheirTimeWithoutAFault) {
+  standbys_ = {};
+  restarts_ = {{kFirst, 2, milliseconds(5), OnFault::kFlag}};
+  scene.cycle_of_first = [](Cycle c) -> Outcome { return c.count() == 6 ? fault("no current") : ok(); };
+  go(milliseconds(60));
+  EXPECT_EQ(state(kFirst), chimera::State::kOn) << "a fault every 7 ms";
+  EXPECT_GE(task(kFirst).profile.restarts, 7u);
 }
 
 TEST_P(RecoveryTest, AnOnThatFailsIsAnotherFault) {

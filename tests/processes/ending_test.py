@@ -38,9 +38,11 @@ class Ending(unittest.TestCase):
 
     def test_when_the_keeper_is_killed_every_rtpu_ends_its_tasks(self):
         with System(CHAIN) as system:
+            await_that(lambda: "second: WARNING: not real time" in system.said(), "the printing process")
             system.process.kill()
             system.wait()
             self.judge(system)
+            self.assertRegex(system.said(), r"ran \d+\.\d+ s, ended because its keeper died\n")
 
     def test_an_rtpu_whose_off_hangs_is_ended_all_the_same(self):
         with System(CHAIN.replace("{label: b}", "{label: b, slow: 3600000000000 ns}")) as system:

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Output and exit codes of `chimera run` when it runs an application in processes."""
+import contextlib
 import json
 import pathlib
 import re
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -123,6 +125,24 @@ class Run(unittest.TestCase):
                                     env=dict(system.environment, CHIMERA_TEST_MARK="none"))
             self.assertIn(f"a subsystem 'subject' runs already (process {system.process.pid}): end it", second.stderr)
             self.assertEqual(system.state("one"), "ON")
+
+    def test_a_second_run_is_refused_for_its_name_before_its_cpu(self):
+        with System(TWO) as system, socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as claim:
+            with contextlib.suppress(OSError):  # another subsystem has the CPU
+                claim.bind("\0chimera-cpu-0")
+            second = system.chimera("run", system.file, code=1,
+                                    env=dict(system.environment, CHIMERA_TEST_MARK="none"))
+            self.assertIn("a subsystem 'subject' runs already", second.stderr)
+
+    def test_measures_of_a_whole_run(self):
+        code, said = run(TWO, "--for", "1 s", "--timeline", "10 ms", "--expect", "max one_count >= 1",
+                         "--expect", "settling two_count >= 0 within 1 min", "--expect", "|one_count| >= 0",
+                         "--expect", "min two_count < 0")
+        self.assertEqual(code, 1, said)
+        self.assertRegex(said, r"\nholds: \|one_count\| >= 0 \(one_count is \d+\)\n"
+                               r"holds: max one_count >= 1 \(max one_count is \d+\)\n"
+                               r"holds: settling two_count >= 0 within 1 min \(it holds from [\d.e-]+ s on\)\n"
+                               r"FAILS: min two_count < 0 \(min two_count is \d+\)\n")
 
 
 if __name__ == "__main__":

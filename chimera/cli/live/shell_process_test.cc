@@ -410,7 +410,7 @@ TEST_F(ShellTest, TopFillsTheScreenFollowsItsSizeAndLeavesItAsItWas) {
   OnTerminal terminal([this] { return carry_out(surroundings(), read_call({"top"}), stdout, stderr); });
   serve();
   EXPECT_TRUE(terminal.shows("\x1b[?1049h"));
-  EXPECT_TRUE(terminal.shows("TASK         STATE    RATE    EXEC     MAX  BUDGET USED  JITTER MISSED  INPUT   "));
+  EXPECT_TRUE(terminal.shows("TASK         STATE     RATE    EXEC     MAX  BUDGET USED  JITTER MISSED INPUT   "));
   EXPECT_FALSE(terminal.is_sane()) << "keys come one by one";
   terminal.resize(100, 30);
   EXPECT_TRUE(terminal.shows("3.12 s   q_ref"));

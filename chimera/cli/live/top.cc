@@ -50,7 +50,8 @@ double load_of(const Json& task, const Json& before) {
 }
 
 std::string remarks_on(const Json& task) {
-  std::string text;
+  std::string text = text_of(task, "standby_for");
+  if (!text.empty()) text = "standby for " + text;
   constexpr std::pair<const char*, const char*> kSeldom[] = {
       {"demoted", "demoted"},   {"exhausted", "out of capacity"}, {"events_lost", "events lost"},
       {"partial", "partial"},   {"tolerated", "tolerated"},       {"preempted", "preempted"}};
@@ -131,11 +132,11 @@ bool is_left_out(std::size_t column, std::size_t width) {
 }
 
 std::string cells(const std::vector<std::string>& cell, std::size_t width) {
-  constexpr std::size_t kWidths[] = {0, 5, 7, 7, 7, 7, 4, 7, 6};
+  constexpr std::size_t kWidths[] = {0, 5, 8, 7, 7, 7, 4, 7, 6};
   std::string line = fitted(cell[0], name_width(width));
   for (std::size_t i = 1; i < 9; ++i)
     if (!is_left_out(i, width)) line += " " + fitted(cell[i], kWidths[i], i > 1);
-  return fitted(line + "  " + cell[9], width);
+  return fitted(line + " " + cell[9], width);
 }
 
 TopLine task_line(const Row& row, std::size_t width) {

@@ -33,11 +33,11 @@ TEST(Top, AScreenOf80By24ToTheLetter) {
       "|cpu 1 muf  servo serving, running pid.cycle                                     |\n"
       "|cpu 0 edf  spare DEAD, restarted 2 times, FLAG, 4 events lost; last end: signal~|\n"
       "|                                                                                |\n"
-      "|TASK         STATE    RATE    EXEC     MAX  BUDGET USED  JITTER MISSED  INPUT   |\n"
-      "|trajectory   ERROR  100 Hz 4.10 us 18.2 us       -    - 12.3 us      3  -       |\n"
-      "|pid          ON      1 kHz 12.1 us 30.2 us 40.0 us  76% 3.10 us      0  3.12 s  |\n"
-      "|arm          ON      1 kHz 98.7 us  149 us  150 us  99%       -     12  530 us  |\n"
-      "|pid_spare    none    1 kHz       -       -       -    -       -      0  never   |\n" +
+      "|TASK         STATE     RATE    EXEC     MAX  BUDGET USED  JITTER MISSED INPUT   |\n"
+      "|trajectory   ERROR   100 Hz 4.10 us 18.2 us       -    - 12.3 us      3 -       |\n"
+      "|pid          ON       1 kHz 12.1 us 30.2 us 40.0 us  76% 3.10 us      0 3.12 s  |\n"
+      "|arm          ON       1 kHz 98.7 us  149 us  150 us  99%       -     12 530 us  |\n"
+      "|pid_spare    none     1 kHz       -       -       -    -       -      0 never   |\n" +
       empty_lines(14) +
       "|q quit  h help  sort: o order  n name  e exec  b used  j jitter  m missed  a age|\n");
 }
@@ -79,14 +79,14 @@ Json later() {
 
 TEST(Top, RateAndExecutionTimeAreThoseSinceTheLastLook) {
   const std::vector<TopLine> lines = top_lines(later(), status(), {});
-  EXPECT_EQ(lines[6].text.substr(0, 34), "pid          ON     998 Hz 30.2 us") << lines[6].text;
-  EXPECT_EQ(lines[7].text.substr(19, 7), "      -") << "arm did not run";
+  EXPECT_EQ(lines[6].text.substr(0, 35), "pid          ON      998 Hz 30.2 us") << lines[6].text;
+  EXPECT_EQ(lines[7].text.substr(19, 8), "       -") << "arm did not run";
 }
 
 TEST(Top, ATaskThatWasMadeAnewStartsItsFiguresAnew) {
   Json json = later();
   json["tasks"][1]["incarnation"] = 2;
-  EXPECT_EQ(top_lines(json, status(), {})[6].text.substr(20, 6), " 1 kHz");
+  EXPECT_EQ(top_lines(json, status(), {})[6].text.substr(21, 6), " 1 kHz");
 }
 
 TEST(Top, AlarmsAreErrorsNewMissesTheFlagAndDeadRtpus) {
@@ -146,10 +146,10 @@ Json served(std::int64_t on, std::int64_t busy) {
 
 TEST(Top, ShowsTheCapacityOfAServerAndItsUseSinceTheLastPoll) {
   const Json first = served(1'000'000'000, 10'000'000);
-  EXPECT_EQ(top_lines(first, nullptr, {})[6].text.substr(43, 12), "2.00 ms   5%") << "of 200 ms since it is ON";
+  EXPECT_EQ(top_lines(first, nullptr, {})[6].text.substr(44, 12), "2.00 ms   5%") << "of 200 ms since it is ON";
   Json then = served(2'000'000'000, 110'000'000);
   then["now_ns"] = 756'000'000'000;
-  EXPECT_EQ(top_lines(then, first, {})[6].text.substr(43, 12), "2.00 ms  50%");
+  EXPECT_EQ(top_lines(then, first, {})[6].text.substr(44, 12), "2.00 ms  50%");
 }
 
 TEST(Top, AWideScreenShowsRareCounters) {
@@ -158,6 +158,19 @@ TEST(Top, AWideScreenShowsRareCounters) {
   json["tasks"][1]["preempted"] = 1'200'000;
   const std::vector<TopLine> lines = top_lines(json, nullptr, {.width = 130});
   EXPECT_NE(lines[6].text.find("q_ref  2 demoted, 1.20M preempted"), std::string::npos) << lines[6].text;
+}
+
+TEST(Top, AWideScreenMarksAStandby) {
+  Json json = status();
+  json["tasks"][3]["standby_for"] = "pid";
+  const std::vector<TopLine> lines = top_lines(json, nullptr, {.width = 130});
+  EXPECT_NE(lines[8].text.find("q_ref  standby for pid"), std::string::npos) << lines[8].text;
+}
+
+TEST(Top, ShowsARateOfThreeDigits) {
+  Json json = status();
+  json["tasks"][1]["rate_hz"] = 1950;
+  EXPECT_NE(top_lines(json, nullptr, {})[6].text.find(" 1.95 kHz "), std::string::npos);
 }
 
 TEST(Top, AWideScreenNamesTheOldestInput) {

@@ -86,8 +86,9 @@ Columns task_table(const Json& status) {
   heading.insert(heading.end(), {">faults", "oldest input"});
   Columns table(std::move(heading));
   for (const Json& task : status["tasks"]) {
+    const std::string primary = text_of(task, "standby_for");
     std::vector<std::string> row = {text_of(task, "task"),
-                                    text_of(task, "state"),
+                                    text_of(task, "state") + (primary.empty() ? "" : ", standby for " + primary),
                                     text_of(task, "rtpu"),
                                     rate_text(number_of(task, "rate_hz")),
                                     count_of(task, "cycles"),

@@ -41,6 +41,14 @@ TEST(StatusText, PrintsTheLoadOfAnRtpuAndItsLostRights) {
             "SCHED_FIFO 80");
 }
 
+TEST(StatusText, MarksAStandby) {
+  Json status = chimera::cli::status();
+  status["tasks"][3]["state"] = "OFF";
+  status["tasks"][3]["standby_for"] = "pid";
+  EXPECT_NE(status_text(status).find("\npid_spare   OFF, standby for pid  spare "), std::string::npos)
+      << status_text(status);
+}
+
 TEST(StatusText, SaysWhyAnRtpuIsNotRealTime) {
   Json status = chimera::cli::status();
   status["rtpus"][0]["not_real_time"] = "memory not locked";

@@ -145,7 +145,9 @@ Result<Probe> Application::probe(const std::string& variable) const {
       probe.readers.push_back(context_of(producer.task).table().reader_of(producer, half));
       probe.producers.push_back(&context_of(producer.task).tasks()[producer.task.index]);
     }
+  const WrittenUnit& written = (*found)->written;
   probe.form.unit = (*found)->unit;
+  probe.form.shown = written.text, probe.form.factor = written.from.factor, probe.form.offset = written.from.offset;
   probe.form.is_scalar = (*found)->shape.empty();
   const VariableView view = this->view(VariableId(index));
   probe.form.count = view.count;

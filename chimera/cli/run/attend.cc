@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <csignal>
-#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -14,9 +13,10 @@
 #include "chimera/base/hosted/wording.h"
 #include "chimera/cli/files/blanks.h"
 #include "chimera/cli/files/file_refusal.h"
+#include "chimera/cli/live/channel.h"
+#include "chimera/cli/print/not_ready.h"
 #include "chimera/cli/run/control_line.h"
-#include "chimera/cli/run/expectation.h"
-#include "chimera/cli/run/not_ready.h"
+#include "chimera/cli/run/measure_line.h"
 #include "chimera/cli/run/profile_report.h"
 #include "chimera/cli/run/record_line.h"
 #include "chimera/cli/run/run_report.h"
@@ -24,6 +24,7 @@
 #include "chimera/cli/run/script_text.h"
 #include "chimera/platform/clock.h"
 #include "chimera/platform/process.h"
+#include "chimera/platform/process_state.h"
 #include "chimera/platform/standard_streams.h"
 #include "chimera/text/json.h"
 #include "chimera/text/json_text.h"
@@ -40,39 +41,29 @@ constexpr Nanoseconds kLastOutput = seconds(1);  // half of the time that the ke
 constexpr Nanoseconds kFilingLimit = milliseconds(500);  // until the disk has the last receipts
 constexpr Nanoseconds kEndLimit = seconds(600);  // the keeper ends a process that takes too long: not judged here
 
-std::string limit_text(Nanoseconds time) { return formatted("%g s", to_seconds(time)); }
-
 Nanoseconds instant(const Json& json) { return json.is_number() ? Nanoseconds{json.as_int64()} : kNever; }
-
-void add_numbers(const Json& value, std::vector<double>& numbers) {
-  if (value.is_number())
-    numbers.push_back(value.as_double());
-  else if (value.is_bool())
-    numbers.push_back(value.as_bool() ? 1 : 0);
-  else if (value.is_null())
-    numbers.push_back(std::numeric_limits<double>::quiet_NaN());
-  else if (value.is_array())
-    for (const Json& element : value) add_numbers(element, numbers);
-}
 
 Seen seen_of(const Json& reading) {
   Seen seen;
   seen.is_written = truth_at(reading, "valid");
   seen.text = text_at(reading, "text");
-  if (seen.is_written) add_numbers(reading["value"], seen.numbers);
+  if (!seen.is_written) return seen;
+  for (const ChannelNumber& number : numbers_of(reading["value"], "")) seen.numbers.push_back(number.value);
   return seen;
 }
 
 /// Tasks in processes of their own. Context: setup.
 class RemoteTarget final : public RunTarget {
  public:
-  RemoteTarget(const AttendRequest& request, RecordSink* sink, std::FILE* out, std::FILE* err)
+  RemoteTarget(const AttendRequest& request, std::vector<Measure> measures, RecordSink* sink, std::FILE* out,
+               std::FILE* err)
       : request_(request),
         run_(request.run),
         sink_(sink),
         out_(out),
         err_(err),
         line_(request.socket),
+        measured_(request.socket, std::move(measures)),
         page_(request.page == nullptr ? own_page_ : *request.page),
         is_resumed_(page_.has_begun != 0) {}
 
@@ -111,6 +102,7 @@ class RemoteTarget final : public RunTarget {
   std::FILE* out_;
   std::FILE* err_;
   ControlLine line_;
+  MeasureLine measured_;
   mutable LinuxClock clock_;
   TaskNames names_;
   std::vector<TimedAct> acts_;
@@ -156,7 +148,7 @@ Result<void> RemoteTarget::start() {
     }
     if (clock_.now() >= until) {
       const std::string why =
-          "not ON after " + limit_text(run_.start_limit) + " (--start-limit): " + not_ready(*status);
+          formatted("not ON after %g s (--start-limit): ", to_seconds(run_.start_limit)) + not_ready(*status);
       return Error{ErrorCode::kRefused, std::string_view(why), {}};
     }
     clock_.wait_until(clock_.now() + kStartLook);
@@ -190,6 +182,7 @@ Result<void> RemoteTarget::know_tasks(const Json& status) {
   auto acts = parse_script(run_.at, names_.spec());
   if (!acts) return acts.error();
   acts_ = *std::move(acts);
+  if (const auto begun = measured_.begin(started_); !begun) return begun;
   if (sink_ == nullptr) return {};
   sink_->begin(names_.spec(), instant(status["origin_ns"]), kNever);
   records_.emplace(request_.socket, names_);
@@ -339,10 +332,11 @@ std::optional<RunEnd> RemoteTarget::advance(Nanoseconds until) {
     const Nanoseconds next = std::min({next_look_, act_at, end});
     ++page_.beats;
     while (clock_.now() < next && !stop_is_requested()) {
-      if (records_)
-        records_->poll(next, *sink_);
-      else
-        clock_.wait_until(next);
+      const bool measures = measured_.is_needed();
+      const Nanoseconds turn = records_ && measures ? std::min(next, clock_.now() + milliseconds(10)) : next;
+      if (records_) records_->poll(turn, *sink_);
+      if (measures) measured_.poll(turn);
+      if (!records_ && !measures) clock_.wait_until(next);
     }
     if (stop_is_requested()) return RunEnd::kStopped;
     if (next == act_at) act_next();
@@ -469,10 +463,12 @@ void RemoteTarget::finish(RunReport& report) {
   report.subsystem = names_.subsystem;
   report.executor = grants_;
   report.origin = started_;
-  report.stopped_by = stopped_by_;
+  const bool is_orphan = request_.keeper > 0 && parent_process_id() != request_.keeper;
+  report.stopped_by = is_orphan ? "its keeper died" : stopped_by_;
   report.refused = refused_;
   report.switches = switches_;
   if (status) add_receipts((*status)["origin_ns"], report);
+  measured_.finish(started_ + report.ran, !is_resumed_, report);
   if (records_) records_->finish(*sink_);
   judge_end(report, status ? *status : Json::object());
 }
@@ -489,10 +485,15 @@ bool RemoteTarget::is_output_complete(const RunReport& report) {
 
 int attend(const AttendRequest& request, RecordSink* sink, std::FILE* out, std::FILE* err) {
   std::vector<Expectation> expectations;
-  for (std::size_t i = 0; i < request.run.expect.size(); ++i)
-    if (auto expectation = Expectation::with_bound(request.run.expect[i], request.bounds[i]); expectation)
+  std::vector<Measure> measures;
+  for (std::size_t i = 0; i < request.run.expect.size(); ++i) {
+    const std::string& text = request.run.expect[i];
+    if (auto measure = Measure::with_bound(text, request.bounds[i]); measure && !measure->is_end_of_variable())
+      measures.push_back(*std::move(measure));
+    else if (auto expectation = Expectation::with_bound(text, request.bounds[i]); expectation)
       expectations.push_back(*std::move(expectation));
-  RemoteTarget target(request, sink, out, err);
+  }
+  RemoteTarget target(request, std::move(measures), sink, out, err);
   return RunSession(request.run, std::move(expectations), target, out, err).run();
 }
 

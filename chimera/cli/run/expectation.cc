@@ -52,6 +52,7 @@ Result<Expectation> Expectation::with_bound(const std::string& text, const Bound
   made.bound_ = bound;
   made.op_ = text.substr(at, at + 1 < text.size() && text[at + 1] == '=' ? 2 : 1);
   made.variable_ = trimmed(text.substr(0, at));
+  if (made.variable_.starts_with("end ")) made.variable_ = trimmed(made.variable_.substr(4));
   if (made.variable_.size() > 2 && made.variable_.front() == '|' && made.variable_.back() == '|') {
     made.magnitude_ = true;
     made.variable_ = trimmed(made.variable_.substr(1, made.variable_.size() - 2));
@@ -90,9 +91,11 @@ std::string Expectation::value_text(const std::vector<double>& values, const std
   const Conversion& to = bound_.to_written;
   const std::string quantity = quantity_of(text_, op_);
   const auto number = read_decimal(quantity);
-  if (!number || (to.factor == 1 && to.offset == 0)) return as_is;
+  const std::string unit = number ? trimmed(quantity.substr(number->length)) : "";
+  const bool is_alike = to.factor == 1 && to.offset == 0 && (unit.empty() || as_is.ends_with(" " + unit));
+  if (!number || is_alike) return as_is;
   const std::string list = join(values, " ", [&to](double value) { return formatted("%.6g", to(value)); });
-  return with_unit(values.size() == 1 ? list : "[" + list + "]", trimmed(quantity.substr(number->length)));
+  return with_unit(values.size() == 1 ? list : "[" + list + "]", unit.empty() ? "1" : unit);
 }
 
 bool Expectation::holds(const Seen& seen, std::string& said) const {

@@ -31,7 +31,7 @@ bool is_of(const std::string& number, const std::string& chosen) {
 
 }  // namespace
 
-Result<Measure> Measure::read(const std::string& text, const Configuration& configuration) {
+Result<Measure> Measure::read_words(const std::string& text) {
   Measure made;
   made.text_ = trimmed(text);
   std::string rest = made.text_;
@@ -57,17 +57,27 @@ Result<Measure> Measure::read(const std::string& text, const Configuration& conf
     const std::string unknown = no_such("measure", name.substr(0, name.find(' ')), words);
     return wrong(made.text_, unknown + (unknown.ends_with("?") ? " There are " : "; There are ") + join(words, ", "));
   }
-  const auto found = find_variable(configuration, made.variable_);
-  if (!found) return wrong(made.text_, found.error().message.c_str());
-  if ((*found)->type == "string") return wrong(made.text_, made.variable_ + " is not a number or a list of numbers");
   return made;
+}
+
+Result<Measure> Measure::read(const std::string& text, const Configuration& configuration) {
+  auto made = read_words(text);
+  if (!made) return made;
+  const auto found = find_variable(configuration, made->variable_);
+  if (!found) return wrong(made->text_, found.error().message.c_str());
+  if ((*found)->type == "string") return wrong(made->text_, made->variable_ + " is not a number or a list of numbers");
+  return made;
+}
+
+std::string Measure::compared() const {
+  const std::string bars = magnitude_ ? "|" : "";
+  return bars + variable_ + bars;
 }
 
 // Reads the bound in the unit of the variable. An element or a field has the bound of the whole variable.
 Result<void> Measure::read_bound(const std::string& comparison, const Configuration& configuration,
                                  const UnitSystem& units) {
-  const std::string bars = magnitude_ ? "|" : "";
-  auto bound = Expectation::read(bars + variable_ + bars + " " + comparison, configuration, units);
+  auto bound = Expectation::read(compared() + " " + comparison, configuration, units);
   if (!bound) return wrong(text_, bound.error().message.c_str());
   bound_ = *std::move(bound);
   return {};
@@ -85,22 +95,37 @@ Result<Measure> Measure::parse(const std::string& text, const Configuration& con
   return made;
 }
 
+// The comparison of an expectation, without `within DURATION`, which it keeps.
+Result<std::string> Measure::comparison() {
+  if (rest_.empty()) return wrong(text_, "write 'VARIABLE <= QUANTITY', with < <= > or >=");
+  const std::size_t within = rest_.find(" within ");
+  if ((within != std::string::npos) != (kind_ == Kind::kSettling))
+    return wrong(text_, "write 'settling VARIABLE <= QUANTITY within DURATION'");
+  if (within == std::string::npos) return rest_;
+  const auto limit = parse_duration(trimmed(rest_.substr(within + 8)));
+  if (!limit) return wrong(text_, limit.error().message.c_str());
+  within_ = *limit;
+  return trimmed(rest_.substr(0, within));
+}
+
 Result<Measure> Measure::parse_expectation(const std::string& text, const Configuration& configuration,
                                            const UnitSystem& units) {
   auto made = read(text, configuration);
   if (!made) return made;
-  if (made->rest_.empty()) return wrong(made->text_, "write 'VARIABLE <= QUANTITY', with < <= > or >=");
-  std::string comparison = made->rest_;
-  const std::size_t within = comparison.find(" within ");
-  if ((within != std::string::npos) != (made->kind_ == Kind::kSettling))
-    return wrong(made->text_, "write 'settling VARIABLE <= QUANTITY within DURATION'");
-  if (within != std::string::npos) {
-    const auto limit = parse_duration(trimmed(comparison.substr(within + 8)));
-    if (!limit) return wrong(made->text_, limit.error().message.c_str());
-    made->within_ = *limit;
-    comparison = trimmed(comparison.substr(0, within));
-  }
-  if (auto read = made->read_bound(comparison, configuration, units); !read) return read.error();
+  const auto comparison = made->comparison();
+  if (!comparison) return comparison.error();
+  if (auto read = made->read_bound(*comparison, configuration, units); !read) return read.error();
+  return made;
+}
+
+Result<Measure> Measure::with_bound(const std::string& text, const Bound& bound) {
+  auto made = read_words(text);
+  if (!made) return made;
+  const auto comparison = made->comparison();
+  if (!comparison) return comparison.error();
+  auto expectation = Expectation::with_bound(made->compared() + " " + *comparison, bound);
+  if (!expectation) return expectation.error();
+  made->bound_ = *std::move(expectation);
   return made;
 }
 
@@ -110,7 +135,11 @@ Result<void> Measure::bind(const Application& application) {
   auto probe = application.probe(variable_);
   if (!probe) return probe.error();
   probe_ = *std::move(probe);
-  const auto names = number_names(*probe_), units = number_units(*probe_);
+  return bind(number_names(*probe_), number_units(*probe_));
+}
+
+Result<void> Measure::bind(const std::vector<std::string>& names, const std::vector<std::string>& units) {
+  if (!chosen_.empty()) return {};
   for (std::size_t n = 0; n < names.size(); ++n) {
     if (!is_of(names[n], element_)) continue;
     chosen_.push_back(n);
@@ -125,8 +154,7 @@ Result<void> Measure::bind(const Application& application) {
   return {};
 }
 
-void Measure::add_sample(Nanoseconds at) {
-  const Seen seen = probe_->sample();
+void Measure::add_sample(const Seen& seen, Nanoseconds at) {
   if (!seen.is_written) return;
   Seen chosen{true, {}, {}};
   for (std::size_t i = 0; i < chosen_.size(); ++i) {

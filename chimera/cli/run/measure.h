@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures a variable over a whole run in virtual time: "max |error|", "rms tau[2]", "settling error <= 2 mrad".
+// Measures a variable over a whole run: "max |error|", "rms tau[2]", "settling error <= 2 mrad".
 #pragma once
 
 #include <cstdint>
@@ -30,19 +30,28 @@ class Measure {
   static Result<Measure> parse_expectation(const std::string& text, const Configuration& configuration,
                                            const UnitSystem& units);
 
+  /// One that parse_expectation() has accepted elsewhere, whose bound was `bound`. Refuses what is no comparison.
+  static Result<Measure> with_bound(const std::string& text, const Bound& bound);
+
   /// True if the value of a whole variable at the end counts, as of Expectation.
   bool is_end_of_variable() const;
 
   /// Once the extents are known. Refuses an element that the variable does not have.
   Result<void> bind(const Application& application);
-  /// The values at `at` since the start. Requires: bound; times grow.
-  void add_sample(Nanoseconds at);
+  /// Binds to the names and units of the numbers of the variable; only the first names count.
+  Result<void> bind(const std::vector<std::string>& names, const std::vector<std::string>& units);
+  /// The values at `at` since the start. Requires: bound to an application; times grow.
+  void add_sample(Nanoseconds at) { add_sample(probe_->sample(), at); }
+  /// Likewise of values from elsewhere.
+  void add_sample(const Seen& seen, Nanoseconds at);
   std::vector<Number> numbers() const;
   /// True if every number satisfies the expectation of parse_expectation(); `said` lists the numbers.
   bool holds(std::string& said) const;
 
   const std::string& text() const noexcept { return text_; }
   const std::string& variable() const noexcept { return variable_; }
+  /// Requires: an expectation.
+  const Bound& bound() const noexcept { return bound_->bound(); }
 
  private:
   /// The samples of one number, summed up.
@@ -51,7 +60,10 @@ class Measure {
     bool is_number = true;
   };
 
+  static Result<Measure> read_words(const std::string& text);
   static Result<Measure> read(const std::string& text, const Configuration& configuration);
+  Result<std::string> comparison();
+  std::string compared() const;
   Result<void> read_bound(const std::string& comparison, const Configuration& configuration, const UnitSystem& units);
   std::optional<double> value_of(const Sum& sum) const;
   std::string name_of(const std::string& number) const;

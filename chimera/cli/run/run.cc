@@ -95,6 +95,10 @@ class LocalTarget final : public RunTarget {
   void drain();
   void print_notes();
   std::vector<RtpuFate> fates();
+  Nanoseconds sample_every() const {
+    const Nanoseconds shortest = sample_distance({}, request_.duration, application_.spec());
+    return request_.virtual_time ? shortest : std::max(shortest, milliseconds(1));
+  }
 
   const RunRequest& request_;
   const RunPlan& plan_;
@@ -135,7 +139,7 @@ Result<void> LocalTarget::start() {
     for (const std::string& name : request_.watch) drawn_.push_back(*application_.probe(name));
   for (Measure& measure : measures_)
     if (auto bound = measure.bind(application_); !bound) return bound;
-  if (!measures_.empty()) next_sample_ = sample_distance({}, request_.duration, application_.spec());
+  if (!measures_.empty()) next_sample_ = sample_every();
   if (!request_.json) std::fprintf(out_, "%s\n", loop_->description().c_str());
   if (request_.virtual_time) print_notes();  // in real time the loop already runs: notes come at the end
   if (sink_ != nullptr) sink_->begin(application_.spec(), loop_->origin(), loop_->origin());
@@ -184,7 +188,7 @@ std::optional<RunEnd> LocalTarget::advance(Nanoseconds until) {
     at_ = next;
     if (next == next_sample_ || end) {
       for (Measure& measure : measures_) measure.add_sample(end ? std::min(loop_->now(), request_.duration) : at_);
-      if (!measures_.empty()) next_sample_ = at_ + sample_distance({}, request_.duration, application_.spec());
+      if (!measures_.empty()) next_sample_ = at_ + sample_every();
     }
     if (progress_.is_on() && !end) progress_.show(at_);
     if (!end && next != until) continue;

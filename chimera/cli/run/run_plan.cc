@@ -115,24 +115,20 @@ Result<void> judge_acts(const RunRequest& request, RunPlan& plan) {
   return {};
 }
 
-/// An expectation of the value at the end, or in virtual time of a measure of the whole run, as in a file of cases.
-Result<void> add_expectation(const std::string& text, const RunRequest& request, RunPlan& plan) {
+/// An expectation of the value at the end, or of a measure of the whole run, as in a file of cases.
+Result<void> add_expectation(const std::string& text, RunPlan& plan) {
   const auto& units = plan.library.units();
   auto measure = Measure::parse_expectation(text, plan.configuration, units);
   const bool has_words = trimmed(text.substr(0, text.find_first_of("<>"))).find_first_of(" [.") != std::string::npos;
   if (!has_words || (measure && measure->is_end_of_variable())) {
     auto expectation = Expectation::parse(text, plan.configuration, units);
     if (!expectation) return expectation.error();
+    plan.bounds.push_back(expectation->bound());
     plan.expectations.push_back(*std::move(expectation));
     return {};
   }
-  const std::string option = "--expect ";
-  if (!measure) return Error{ErrorCode::kBadInput, {option + measure.error().message.c_str()}, {}};
-  if (!request.virtual_time)
-    return Error{ErrorCode::kBadInput,
-                 {option + "'" + text + "': in real time a run judges the values of whole variables at its end; add "
-                  "--virtual, or name the variable alone"},
-                 {}};
+  if (!measure) return Error{ErrorCode::kBadInput, {std::string("--expect ") + measure.error().message.c_str()}, {}};
+  plan.bounds.push_back(measure->bound());
   plan.measures.push_back(*std::move(measure));
   return {};
 }
@@ -141,7 +137,7 @@ Result<void> judge_words(const RunRequest& request, RunPlan& plan) {
   for (const std::string& name : request.watch)
     if (auto found = find_variable(plan.configuration, name); !found) return found.error();
   for (const std::string& text : request.expect)
-    if (auto added = add_expectation(text, request, plan); !added) return added;
+    if (auto added = add_expectation(text, plan); !added) return added;
   if (auto known = judge_task_names(request, plan.configuration); !known) return known.error();
   return judge_acts(request, plan);
 }
@@ -226,7 +222,7 @@ std::optional<RunPlan> plan_run(const RunRequest& request, const Library& librar
     return std::nullopt;
   }
   if (!request.json) std::fputs(verdict_text(*verdict.configuration).c_str(), out);
-  RunPlan plan{library, std::move(reading.text), *std::move(verdict.configuration), {}, {}, {}, {}, {}};
+  RunPlan plan{library, std::move(reading.text), *std::move(verdict.configuration), {}, {}, {}, {}, {}, {}};
   if (const auto judged = judge_words(request, plan); !judged) {
     const int usage = refuse_run(request, judged.error(), out, err, kUsage);
     if (code != nullptr) *code = usage;

@@ -30,7 +30,8 @@ struct RunPlan {
   std::vector<Configuration> set;   ///< one for each act `set`, which has its value there
   std::deque<TaskLists> lists;      ///< one for each act `switch` that names tasks
   std::vector<Expectation> expectations;
-  std::vector<Measure> measures;    ///< expectations of the whole run; virtual time only
+  std::vector<Measure> measures;    ///< expectations of the whole run
+  std::vector<Bound> bounds;        ///< of RunRequest::expect
 };
 
 /// Prints the report and the verdict; nothing when the run is refused, which has been said then. `code`, where there is

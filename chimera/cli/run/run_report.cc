@@ -27,7 +27,8 @@ const char* word(RunEnd end) {
 std::string sentence(const RunReport& report) {
   switch (report.end) {
     case RunEnd::kTime: return "";
-    case RunEnd::kStopped: return ", ended by the operator";
+    case RunEnd::kStopped:
+      return ", ended " + (report.stopped_by.empty() ? "by the operator" : "because " + report.stopped_by);
     case RunEnd::kNothingLeft: return ", ended because no task was ON any more";
     case RunEnd::kTaskStopped:
       return ", ended by the reaction `stop` of " +

@@ -25,7 +25,7 @@ struct RunReport {
   };
 
   RunEnd end = RunEnd::kTime;
-  std::string stopped_by;              ///< the task whose reaction `stop` ended it, where that is known
+  std::string stopped_by;              ///< kTaskStopped: the task, where it is known; kStopped: why, if not by a person
   bool is_flag_up = false;             ///< the illegal-configuration flag at the end
   Nanoseconds ran;
   std::string subsystem;

@@ -204,6 +204,18 @@ TEST(Run, AValueSetAtATimeCountsFromTheNextJobOn) {
                 "t 0.030 s  y 6.28319 N.m\nt 0.040 s  y -2 N.m\n"), std::string::npos);
 }
 
+TEST(Run, ShowsAValueInTheUnitOfTheFile) {
+  const std::string gain = kGain;
+  RunRequest request = lasting(milliseconds(20));
+  request.watch = {"x"};
+  request.every = milliseconds(20);
+  request.expect = {"x <= 2 rad"};
+  const std::string text = std::string(gain).replace(gain.find("1 rad"), 5, "90 deg");
+  const Said said = said_by(request, text);
+  EXPECT_NE(said.out.find("t 0.020 s  x 90 deg\n"), std::string::npos) << said.out << said.err;
+  EXPECT_NE(said.out.find("holds: x <= 2 rad (x is 1.5708 rad)\n"), std::string::npos) << said.out;
+}
+
 TEST(Run, AValueThatCannotBeSetIsRefusedBeforeAnythingRuns) {
   const auto refusal = [](const char* act) {
     RunRequest request = lasting(milliseconds(10));

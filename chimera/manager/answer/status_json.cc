@@ -131,6 +131,7 @@ Json task_json(const ManagerState& state, TaskId task, Nanoseconds at) {
           {"state", state_name(state.state(task))},
           {"in_service", status.in_service},
           {"incarnation", status.incarnation},
+          {"standby_for", state.configuration ? or_null(state.configuration->tasks()[task.index].standby_for) : Json()},
           {"rate_hz", state.configuration ? state.configuration->tasks()[task.index].rate_hz : 0},
           {"period_ns", spec.period.count},
           {"budget_ns", spec.budget.count},

@@ -31,7 +31,9 @@ Readings::Form Readings::form_of(std::size_t variable, const Configuration& conf
   Form made;
   made.configured = &configuration.variable(VariableId(variable));
   CHIMERA_ASSERT(made.configured->name == v.name);  // the image and the configuration come from the same description
+  const WrittenUnit& written = made.configured->written;
   made.form.unit = made.configured->unit;
+  made.form.shown = written.text, made.form.factor = written.from.factor, made.form.offset = written.from.offset;
   made.form.is_scalar = made.configured->shape.empty();
   const bool is_operators = v.producers.empty();
   const PortOf& from = is_operators ? v.consumers[0] : v.producers[0];

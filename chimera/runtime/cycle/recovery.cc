@@ -40,13 +40,8 @@ void Recovery::prepare(SwitchPeers* peers) {
   restarts_ = set.setup_memory().take<Restart>(
       static_cast<std::size_t>(std::count_if(specs.begin(), specs.end(), is_mine)));
   std::size_t n = 0;
-  for (const RestartSpec& spec : specs) {
-    if (!is_mine(spec)) continue;
-    restarts_[n].spec = &spec;
-    restarts_[n].done = set.setup_memory().take<Nanoseconds>(spec.most);
-    std::fill(restarts_[n].done.begin(), restarts_[n].done.end(), Nanoseconds{INT64_MIN});
-    ++n;
-  }
+  for (const RestartSpec& spec : specs)
+    if (is_mine(spec)) restarts_[n++].spec = &spec;
 }
 
 // A task that may not be touched yet is checked again at the next cycle boundary.
@@ -219,10 +214,10 @@ void Recovery::answer(Restart& each, Task& task, Nanoseconds now) noexcept {
   TaskSet& set = parts_.set;
   const TaskId id = task.id;
   const bool is_replaced = set.standbys().is_replaced(id);
-  const bool is_too_often = each.done.front() > now - each.spec->within;
-  if (!is_too_often && (is_replaced || set.life().judge().would_be_legal({&id, 1}))) {
-    std::move(each.done.begin() + 1, each.done.end(), each.done.begin());
-    each.done.back() = now;
+  if (now - each.last >= each.spec->within) each.n = 0;
+  if (each.n < each.spec->most && (is_replaced || set.life().judge().would_be_legal({&id, 1}))) {
+    ++each.n;
+    each.last = now;
     count(task.profile.restarts);
     (void)parts_.signals.signal({&id, 1}, Signal::kClear, now);
     if (task.state == State::kOff && is_replaced) return note(task, "is cleared; it stays OFF beside its standby", {});

@@ -53,8 +53,9 @@ class Recovery {
   /// The reaction of one task.
   struct Restart {
     const RestartSpec* spec = nullptr;
-    std::span<Nanoseconds> done;  // instants of the last restarts, the oldest first
-    bool is_answered = false;     // the task is in ERROR, and stays there
+    std::uint32_t n = 0;       // restarts since the task last ran for `within` without a fault
+    Nanoseconds last;          // instant of the last one
+    bool is_answered = false;  // the task is in ERROR, and stays there
   };
 
   /// Takeover under way in one group.

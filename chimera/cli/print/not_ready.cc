@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Names the tasks and rtpus that a starting subsystem waits for.
-#include "chimera/cli/run/not_ready.h"
+#include "chimera/cli/print/not_ready.h"
 
 #include <vector>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/cli/run/not_ready.h"
+#include "chimera/cli/print/not_ready.h"
 #include "chimera/text/json.h"
 
 #include <gtest/gtest.h>
