@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Row 19: one cycle of each component that uses a line. A component that sends in its cycle is compared with the bare
 // system calls for its bytes, while the other end answers in this loop. A component that sends beside its cycles is
-// compared with the law of its cycle, and its exchange with that of the library it uses.
+// compared with the law of its cycle, and its exchange with that of libmodbus.
 // Components: serial_frame udp_frame modbus_io
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -20,8 +20,6 @@
 #include "library/frame/values.h"
 #ifdef CHIMERA_MODBUS
 #include <modbus/modbus.h>
-
-#include "library/modbus_io/modbus_line.h"
 #endif
 
 namespace chimera {
@@ -181,9 +179,11 @@ struct ModbusDevice {
 };
 
 void give_points(ArmRig& rig, const std::string& device) {
-  for (const char* port : {"input", "contact", "holding", "coil"}) rig.instances(port, 4);
+  for (const char* port : {"input", "contact", "holding", "coil", "holding_resolution"}) rig.instances(port, 4);
+  for (const char* port : {"input_resolution", "idle"}) rig.instances(port, 0);
   for (std::size_t i = 0; i < 4; ++i) rig.set("holding", 0.5, 0, i), rig.set("coil", false, 0, i);
-  rig.set("holding_resolution", 0.01), rig.set("timeout", 3600.0), rig.resource("device", device.c_str());
+  for (std::size_t i = 0; i < 4; ++i) rig.set("holding_resolution", 0.01, 0, i);
+  rig.set("timeout", 3600.0), rig.resource("device", device.c_str());
 }
 
 void scale_points(std::uint64_t n) {

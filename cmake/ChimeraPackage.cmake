@@ -35,7 +35,6 @@ install(DIRECTORY share/chimera DESTINATION share COMPONENT sdk PATTERN completi
 
 # The library without the test components. `product` is what `./dev install` and `./dev package` build.
 get_property(names GLOBAL PROPERTY chimera_component_names)
-get_property(absent GLOBAL PROPERTY chimera_components_without_library)
 list(FILTER names EXCLUDE REGEX "^t_")
 add_custom_target(product DEPENDS chimera chimera_pages chimera-describe chimera_base)
 foreach(name IN LISTS names)
@@ -53,8 +52,6 @@ foreach(name IN LISTS names)
 endforeach()
 # What this tree can build, for the message about what it has not built (chimera/catalogue/library.h).
 list(JOIN names "\n" buildable)
-list(APPEND buildable ${absent})
-list(JOIN buildable "\n" buildable)
 file(WRITE ${CMAKE_BINARY_DIR}/components/buildable.txt "${buildable}\n")
 
 # What people read, in the folders of the checkout, so that its links hold: share/chimera/{docs,examples,library}.

@@ -59,6 +59,7 @@ SEES_THE_SYSTEM = {
     "chimera/cli/run/under_way.cc": "memory shared with both of these",
     "library/csv_log/": "writes a file, whose loss it must tell",
     "library/device/": "reasons why a device cannot be opened",
+    "library/modbus_io/": "a serial line, a socket",
     "library/serial_frame/": "a serial line",
     "library/tball/": "an input device",
     "library/udp_frame/": "a socket",

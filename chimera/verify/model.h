@@ -3,6 +3,7 @@
 // inside verify(); pointers into draft and library are valid during that call.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -177,16 +178,16 @@ struct Model {
 
 // ---- what the three rules of agreement (types, units, shapes) share: the bindings of the symbols of a task ----
 
-/// A variable of a generic component: the task, and its symbol. If only one repeated port uses a symbol, each instance
-/// has its own, so that a logger can read signals of different kinds.
+/// A variable of a generic component: the task, and its symbol. If only repeated ports use a symbol, each number of an
+/// instance has its own: a logger can read signals of different kinds, and each register has its own scale.
 using SymbolKey = std::pair<std::size_t, std::string>;
 
 /// `uses(port, symbol)` returns if a declared port contains the symbol. Context: setup.
 template <class Uses>
 SymbolKey symbol_key(const TaskModel& task, const LinkedPort& port, const std::string& symbol, Uses uses) {
-  std::size_t users = 0;
-  for (const PortDescriptor& declared : task.component->ports) users += uses(declared, symbol) ? 1 : 0;
-  const bool apart = users == 1 && port.declared->repeated;
+  const bool apart = std::ranges::none_of(task.component->ports, [&](const PortDescriptor& declared) {
+    return uses(declared, symbol) && !declared.repeated;
+  });
   return {port.task, apart ? symbol + '#' + std::to_string(port.instance) : symbol};
 }
 

@@ -50,13 +50,14 @@ struct FrameDevice {
     number_bytes_ = number_bytes;
     gone_.set(device, "is gone");
     silent_.set(device, "is silent");
+    refused_.set(device, "sends no good frame");
   }
   std::size_t payload() const { return number_bytes_ + state.size() * width(form_); }
 
   void begin(Cycle c) {
     answers_.begin(c.now());
     lost_ = nullptr;
-    *connected = *idled = false;
+    *connected = *idled = has_refused_ = false;
     *age = 0;
   }
   /// Writes the payload of this cycle at to[2 + number_bytes] and returns its size; 0 if nothing is to be sent.
@@ -77,18 +78,24 @@ struct FrameDevice {
   void wait(Nanoseconds now) { answers_.wait(now); }
   /// For cycle, after sending. `is_idle_out`: a complete frame with the idle command went out in this cycle.
   void tell_idled(Cycle c, bool is_idle_out) { *idled = c.illegal() && (*idled || is_idle_out); }
+  /// Counts a refused frame: the device is not silent.
+  void refuse(Out<std::int64_t>& counter, std::int64_t frames = 1) {
+    *counter += frames;
+    has_refused_ = has_refused_ || frames > 0;
+  }
   /// Reads the values of a frame. Returns false, and changes nothing but `wrong`, if one is not finite.
   bool take_state(std::span<const std::uint8_t> frame, Nanoseconds now) {
     std::array<double, 16> values{};
     for (std::size_t i = 0; i < state.size(); ++i) {
       values[i] = get_value(frame.data() + number_bytes_ + i * width(form_), form_, *state_resolution);
       if (math::is_finite(values[i])) continue;
-      *wrong += 1;
+      refuse(wrong);
       return false;
     }
     for (std::size_t i = 0; i < state.size(); ++i) state[i] = values[i];
     *received += 1;
     *connected = true;
+    has_refused_ = false;
     answers_.take(now);
     return true;
   }
@@ -97,7 +104,7 @@ struct FrameDevice {
   bool is_lost(Cycle c, bool is_open) {
     *age = answers_.age(c.now());
     if (!is_open) lost_ = &gone_;
-    else if (*age > *timeout) lost_ = &silent_;
+    else if (*age > *timeout) lost_ = has_refused_ ? &refused_ : &silent_;
     if (lost_ != nullptr) *connected = false;
     return lost_ != nullptr;
   }
@@ -108,7 +115,8 @@ struct FrameDevice {
   Form form_ = Form::kFloat32;
   std::size_t number_bytes_ = 0;
   Answers answers_;
-  LostSentence gone_, silent_;
+  LostSentence gone_, silent_, refused_;
+  bool has_refused_ = false;  // since the last good frame
   const LostSentence* lost_ = nullptr;
 };
 

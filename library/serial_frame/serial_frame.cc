@@ -69,8 +69,8 @@ struct SerialFrame : FrameDevice {
     reader_.taken(static_cast<std::size_t>(got));
     const std::int64_t wrong_before = reader_.wrong();
     reader_.frames([this, now](std::span<const std::uint8_t> frame) { (void)take_state(frame, now); });
-    *wrong += reader_.wrong() - wrong_before;
-    *noise = reader_.noise();
+    refuse(wrong, reader_.wrong() - wrong_before);
+    refuse(noise, reader_.noise() - *noise);
     return true;
   }
   bool send(bool is_idle) {

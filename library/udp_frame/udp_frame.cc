@@ -40,9 +40,9 @@ struct UdpFrame : FrameDevice {
       wait(c.now());
     }
     for (int i = 0; old_ == 0 && i < kMostDatagrams; ++i) {
-      const std::size_t size = socket_.receive(bytes);
-      if (size == 0) break;
-      take(bytes, size, c.now());
+      const std::optional<std::size_t> size = socket_.receive(bytes);
+      if (!size) break;
+      take(bytes, *size, c.now());
     }
     tell_idled(c, send(must_idle(c, true)));
     if (sent_ % kAnewAfter == 0) put_safe_frame(c);
@@ -72,7 +72,7 @@ struct UdpFrame : FrameDevice {
   // Drops datagrams from before `on`. A full queue takes several cycles.
   void forget(int most) {
     std::uint8_t bytes[1];
-    for (int i = 0; old_ > 0 && i < most; ++i) old_ = socket_.receive(bytes) > 0 ? old_ - 1 : 0;
+    for (int i = 0; old_ > 0 && i < most; ++i) old_ = socket_.receive(bytes) ? old_ - 1 : 0;
   }
   void put_safe_frame(Cycle c) {
     std::uint8_t bytes[kLongestFrame];
@@ -82,13 +82,13 @@ struct UdpFrame : FrameDevice {
   }
   void take(const std::uint8_t* bytes, std::size_t size, Nanoseconds now) {
     if (size != payload() + kFrameOverhead || !is_frame({bytes, size}, payload())) {
-      *wrong += 1;
+      refuse(wrong);
       return;
     }
     const std::uint32_t number = get_bytes(bytes + 2, 4);
     const auto step = static_cast<std::int32_t>(number - number_);
     if (has_number_ && step <= 0) {
-      *old += 1;
+      refuse(old);
       return;
     }
     if (!take_state({bytes + 2, payload()}, now)) return;

@@ -2,7 +2,6 @@
 // Exchanges datagrams with one peer. No call waits.
 #pragma once
 
-#include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -10,10 +9,13 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "library/device/net_address.h"
 
 namespace chimera::library {
 
@@ -49,12 +51,17 @@ class UdpSocket {
   void close() noexcept {
     if (file_ >= 0) ::close(std::exchange(file_, -1));
   }
-  /// Returns the bytes of one datagram; 0: none waits. A network failure shows as silence. Context: cycle; one system
-  /// call that does not wait.
-  std::size_t receive(std::span<std::uint8_t> to) noexcept {
-    const ssize_t got = ::recv(file_, to.data(), to.size(), MSG_DONTWAIT | MSG_TRUNC);
-    error_ = got < 0 && errno != EAGAIN ? errno : error_;
-    return got > 0 ? static_cast<std::size_t>(got) : 0;
+  /// Returns the size of one datagram, which may be 0; nullopt: none waits. Context: cycle; one system call that does
+  /// not wait, one more if the network reports an error before.
+  std::optional<std::size_t> receive(std::span<std::uint8_t> to) noexcept {
+    ssize_t got = ::recv(file_, to.data(), to.size(), MSG_DONTWAIT | MSG_TRUNC);
+    if (got < 0 && errno != EAGAIN) {
+      error_ = errno;
+      got = ::recv(file_, to.data(), to.size(), MSG_DONTWAIT | MSG_TRUNC);
+    }
+    if (got < 0) return std::nullopt;
+    error_ = 0;
+    return static_cast<std::size_t>(got);
   }
   /// Returns false if the datagram was not sent. Context: cycle; one system call that does not wait.
   bool send(std::span<const std::uint8_t> from) noexcept {
@@ -64,22 +71,13 @@ class UdpSocket {
   }
   /// Below 0 if it is not open. Context: any; wait-free.
   int descriptor() const noexcept { return file_; }
-  /// Error number of the last failure (111: the peer has no such port open); 0: none.
+  /// Error number of the last failure after the last datagram (111: the peer has no such port open); 0: none.
   int error() const noexcept { return error_; }
 
  private:
   static sockaddr_in address_of(const std::string& peer) {
-    sockaddr_in made{};
-    made.sin_family = AF_INET;
-    const std::size_t colon = peer.rfind(':');
-    std::size_t used = 0;
-    int port = 0;
-    if (colon != std::string::npos && colon + 1 < peer.size() && peer.size() - colon <= 6 &&
-        peer.find_first_not_of("0123456789", colon + 1) == std::string::npos)
-      port = std::stoi(peer.substr(colon + 1), &used);
-    if (port < 1 || port > 65535 || ::inet_pton(AF_INET, peer.substr(0, colon).c_str(), &made.sin_addr) != 1)
-      throw std::runtime_error("\"" + peer + "\" is no address: \"192.168.0.7:5000\" is one");
-    made.sin_port = htons(static_cast<std::uint16_t>(port));
+    const sockaddr_in made = net_address(peer);
+    if (made.sin_port == 0) throw std::runtime_error("\"" + peer + "\" is no address: \"192.168.0.7:5000\" is one");
     return made;
   }
   [[noreturn]] void refuse(const std::string& what, const char* remedy) {

@@ -141,7 +141,6 @@ class Devices(unittest.TestCase):
             self.line.say(b"s")
             system.await_value("motion", [0, -1, 0, 0, 0, 0])
 
-    @unittest.skipUnless((BUILD / "components/modbus_io.so").exists(), "modbus_io is not built")
     def test_a_modbus_device_that_is_switched_off(self):
         partner = str(BUILD / "components/modbus_io.test.partner")
         device = subprocess.Popen([partner], stdout=subprocess.PIPE, text=True)

@@ -11,7 +11,7 @@ import time
 import tty
 import unittest
 
-from system import BUILD, RTPUS, System, await_that
+from system import RTPUS, System, await_that
 
 TEXT = RTPUS + """
 tasks:
@@ -206,7 +206,6 @@ class Frames(unittest.TestCase):
             self.drive.is_deaf = False
             await_that(self.drive.stands, "the safe frame")
 
-    @unittest.skipUnless((BUILD / "components/modbus_io.so").exists(), "modbus_io is not built")
     def test_the_safe_frame_of_a_modbus_device_has_its_own_connection(self):
         device = ModbusDevice()
         self.addCleanup(device.listening.close)

@@ -203,11 +203,23 @@ void take_from_values(Model& model, UnitTable& table) {
   }
 }
 
+/// True if a repeated constant with a default, which may have no number here, has the unit of the repeated port.
+bool has_default_beside(const Model& model, const LinkedPort& port) {
+  return port.declared->repeated &&
+         std::ranges::any_of(model.tasks[port.task].component->ports, [&](const PortDescriptor& declared) {
+           return declared.repeated && declared.kind == CHIMERA_IN_CONST && !declared.initial.empty() &&
+                  declared.unit == port.declared->unit;
+         });
+}
+
 /// A default is a plain number: if no other source settles its unit, it has none.
 void take_from_defaults(Model& model, UnitTable& table) {
   for_each_port(model, [&](PortRef ref, LinkedPort& port) {
-    if (port.unit || !has_unit(port) || port.source != ConstSource::kDefault) return;
+    const bool has_default = port.source == ConstSource::kDefault || has_default_beside(model, port);
+    if (port.unit || !has_unit(port) || !has_default) return;
     bind(model, table, ref, port, {Unit{}, "1", {}});
+    if (VariableModel* variable = model.variable(port); variable != nullptr && port.unit && !variable->unit)
+      settle_unit(model, *variable, ref);
     spread(model, table);
   });
 }
