@@ -170,8 +170,9 @@ TaskSpec task_spec(const Model& model, const TaskModel& task, const ConfiguredTa
   spec.user_priority = draft.user_priority ? draft.user_priority->value : 0;
   spec.max_consecutive = draft.max_consecutive ? draft.max_consecutive->value : 0;
   take_reactions(model, draft, spec);
-  if (draft.tolerate) spec.tolerated_misses = draft.tolerate->misses;
-  if (draft.tolerate) spec.tolerated_of = draft.tolerate->of;
+  if (draft.tolerate) spec.tolerated_misses = static_cast<std::uint16_t>(draft.tolerate->misses);
+  if (draft.tolerate) spec.tolerated_of = static_cast<std::uint16_t>(draft.tolerate->of);
+  spec.place = task.place;
   if (draft.stack_bytes) spec.stack_bytes = static_cast<std::uint32_t>(draft.stack_bytes->value);
   spec.aperiodic = configured.is_aperiodic;
   spec.is_hardware = configured.is_hardware;

@@ -76,6 +76,7 @@ struct TaskModel {
   Nanoseconds deadline, offset, budget, min_time;
   std::uint32_t criticality = 0;
   std::size_t rtpu = 0;
+  std::uint32_t place = 0;  ///< TaskSpec::place
   bool lacks_link = false;  ///< a name under its keys is no port, or a repeated port has no instances
 
   const std::string& name() const noexcept { return draft->name.text; }
