@@ -21,7 +21,6 @@ struct Configuration::Parts {
   std::vector<ConfiguredVariable> variables;
   std::vector<ConfiguredSet> sets;
   std::size_t start = 0;
-  std::vector<double> utilisation;
   // Storage behind spec(). Elements of a deque never move.
   std::deque<std::string> texts;
   std::deque<std::vector<std::byte>> values;
@@ -344,7 +343,6 @@ Configuration::Configuration(const Model& model) {
   auto parts = std::make_shared<Parts>();
   parts->draft = model.draft;
   parts->start = model.start;
-  parts->utilisation = model.utilisation;
   parts->init_order = model.init_order;
   for (const TaskModel& task : model.tasks) parts->tasks.push_back(configured(task));
   for (const VariableModel& variable : model.variables) parts->variables.push_back(configured(model, variable));
@@ -365,6 +363,5 @@ std::size_t Configuration::start() const noexcept { return parts_->start; }
 std::span<const RtpuSpec> Configuration::rtpus() const noexcept { return parts_->rtpus; }
 const Draft& Configuration::draft() const noexcept { return parts_->draft; }
 const ApplicationSpec& Configuration::spec() const noexcept { return parts_->spec; }
-std::span<const double> Configuration::utilisation() const noexcept { return parts_->utilisation; }
 
 }  // namespace chimera

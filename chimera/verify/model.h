@@ -146,7 +146,6 @@ struct Model {
   std::vector<StandbySpec> standbys;  ///< in the order of the tasks; the primary may break a rule on standbys
   std::vector<DraftRtpu> rtpus;  ///< the declared ones, or the default one
   std::vector<TaskId> init_order;
-  std::vector<double> utilisation;                       ///< per rtpu, start configuration
   std::map<std::string, WrittenLength> written_lengths;  ///< by constant
   Overload overload = Overload::kRefused;
   std::vector<UnmetInput> unmet;
