@@ -37,9 +37,9 @@ class ModeWriter {
     find_nodes();
     const std::size_t n = configuration_.sets().size();
     for (std::size_t from = 0; from < report_.nodes.size(); ++from) {
-      if (from >= n) report_.edges.push_back(takeover(from));
-      for (std::size_t to = 0; to < n; ++to)
-        if (from != to) report_.edges.push_back(change(from, to));
+      if (report_.nodes[from].standby.is_valid()) report_.edges.push_back(takeover(from));
+      for (std::size_t to = 0; to < report_.nodes.size(); ++to)
+        if (from != to) add_change(from, to);
     }
     for (std::size_t set = 0; set < n; ++set)
       if (set != configuration_.start() && !is_asked_for(set)) report_.by_operator.push_back(set);
@@ -64,6 +64,23 @@ class ModeWriter {
         report_.nodes.push_back(std::move(made));
       }
     }
+    const std::size_t n = report_.nodes.size();
+    for (const ModeWish& wish : wishes_)
+      for (std::size_t from = 0; wish.lists.are_there() && from < n; ++from) follow_lists(wish, from);
+  }
+
+  /// Adds the set that the lists lead to, if it is none of the nodes.
+  void follow_lists(const ModeWish& wish, std::size_t from) {
+    if (!has(from, wish.asker.task)) return;
+    const ApplicationSpec& spec = configuration_.spec();
+    const AskedSet asked = asked_set(spec, bits_of(report_.nodes[from].tasks), wish.lists);
+    const auto is_it = [&](const ModeNode& node) { return bits_of(node.tasks) == asked.tasks; };
+    if (!asked || std::ranges::any_of(report_.nodes, is_it)) return;
+    ModeNode made{.name = report_.nodes[from].name + " " + lists_text(wish.lists, spec),
+                  .set = report_.nodes[from].set, .primary = {}, .standby = {}, .tasks = {}};
+    for (const TaskId task : spec.on_order)
+      if (asked.tasks.has(task)) made.tasks.push_back(task);
+    report_.nodes.push_back(std::move(made));
   }
 
   void find_wishes(std::size_t task) {
@@ -132,16 +149,19 @@ class ModeWriter {
     return made;
   }
 
-  ModeEdge change(std::size_t from, std::size_t to) {
+  /// Only lists of a task lead to a node that is no configuration. Constants keep their producers there: asked_set().
+  void add_change(std::size_t from, std::size_t to) {
+    const bool is_set = to < configuration_.sets().size();
     ModeEdge made;
     made.from = from;
     made.to = to;
     for (const ModeWish& wish : wishes_)
       if (has(from, wish.asker.task) && leads_to(wish, from, to)) made.askers.push_back(wish.asker);
+    if (!is_set && made.askers.empty()) return;
     judge_deadlines(made);
-    find_constants(made);
+    if (is_set) find_constants(made);
     find_resources(made);
-    return made;
+    report_.edges.push_back(std::move(made));
   }
 
   bool leads_to(const ModeWish& wish, std::size_t from, std::size_t to) const {

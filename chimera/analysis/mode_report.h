@@ -39,11 +39,12 @@ struct ModeResource {
   std::size_t before = 0, after = 0;  ///< task that has it, in Configuration::tasks()
 };
 
-/// Tasks that may be ON together: a configuration, or one with a standby in the place of its primary.
+/// Tasks that may be ON together: a configuration, one with a standby in the place of its primary, or another set that
+/// lists of a task lead to.
 struct ModeNode {
-  std::string name;           ///< "run", "run with spare for main"
+  std::string name;           ///< "run", "run with spare for main", "run --on spare"
   std::size_t set = 0;        ///< in Configuration::sets()
-  TaskId primary, standby;    ///< invalid: it is the configuration itself
+  TaskId primary, standby;    ///< invalid: no takeover leads to it
   std::vector<TaskId> tasks;
 };
 
@@ -69,8 +70,8 @@ struct ModeEdge {
 };
 
 struct ModeReport {
-  std::vector<ModeNode> nodes;           ///< the configurations in order, then those with a standby
-  std::vector<ModeEdge> edges;           ///< from each configuration to each other; then each takeover and what follows
+  std::vector<ModeNode> nodes;           ///< the configurations in order, those with a standby, sets of lists
+  std::vector<ModeEdge> edges;           ///< from each node to each configuration, and to what its tasks lead
   std::vector<std::size_t> by_operator;  ///< configurations that are not the start and that only an operator asks for
   std::vector<std::string> warnings;
 

@@ -31,6 +31,14 @@ PortDescriptor device(std::string name) {
   return out;
 }
 
+PortDescriptor question(std::string name) {
+  PortDescriptor out = port(std::move(name), CHIMERA_IN_CONST);
+  out.type = CHIMERA_STRING;
+  out.element_size = 64;
+  out.names_configuration = true;
+  return out;
+}
+
 Descriptor component(std::string name, std::vector<PortDescriptor> ports) {
   Descriptor made;
   made.name = std::move(name);
@@ -50,6 +58,7 @@ const Library& library() {
        component("sized_tool", {whole("n", CHIMERA_OUT_CONST), port("u", CHIMERA_OUT_VAR, "[n<=4]")}),
        component("sized_user", {port("u", CHIMERA_IN_VAR, "[m<=4]")}),
        component("source", {port("y", CHIMERA_OUT_VAR)}),
+       component("asker", {question("when")}),
        component("device", {device("tty"), port("y", CHIMERA_OUT_VAR)}),
        component("sink", {port("y", CHIMERA_IN_VAR)})},
       our_units());
@@ -103,6 +112,23 @@ TEST(ModeReport, ConstantOfAnotherTaskMayMakeASwitchSlow) {
   EXPECT_FALSE(there.breaks_promise());
   EXPECT_TRUE(report.is_accepted());
   EXPECT_TRUE(report.warnings.empty());
+}
+
+TEST(ModeReport, ListsInAConstantLeadToASetThatIsNoConfiguration) {
+  const Configuration made = verified(
+      "tasks:\n"
+      "  main: {component: source}\n"
+      "  other: {component: source, alias: {y: z}}\n"
+      "  watcher: {component: asker, constants: {when: \"--on other\"}}\n"
+      "configurations: {run: [main, watcher], main_alone: [main]}\n"
+      "start: run\n");
+  const ModeReport report = mode_report(made, library());
+  const ModeEdge& there = edge(report, "run", "run --on other");
+  ASSERT_EQ(there.askers.size(), 1u);
+  EXPECT_EQ(asker_text(made, there.askers[0]), "constant when of watcher");
+  EXPECT_EQ(there.way(), ModeWay::kFast);
+  EXPECT_EQ(there.cpus.size(), 1u) << "its deadlines are judged";
+  EXPECT_EQ(report.nodes.size(), 3u);
 }
 
 TEST(ModeReport, NamesConstantsAndTakeoversAsJson) {

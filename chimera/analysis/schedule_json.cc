@@ -26,15 +26,21 @@ class Pages {
   explicit Pages(const Configuration& configuration) : configuration_(configuration) {}
 
   Json set(const SetSchedule& set) const {
-    Json cpus = Json::array(), paths = Json::array();
+    Json cpus = Json::array(), links = Json::array(), paths = Json::array();
     for (const CpuSchedule& cpu : set.cpus) cpus.push_back(this->cpu(cpu));
+    for (const TaskLink& link : set.links)
+      links.push_back({{"from", name(link.from.index)},
+                       {"to", name(link.to.index)},
+                       {"periods", link.periods()},
+                       {"late", link.late}});
     for (const PathAge& path : set.paths) {
       Json tasks = Json::array();
       for (const std::size_t task : path.tasks) tasks.push_back(name(task));
       paths.push_back({{"tasks", std::move(tasks)}, {"age_ns", nanoseconds(path.age)}});
     }
     return {{"name", set.name},        {"start", set.is_start},     {"fits", set.fits()},
-            {"cpus", std::move(cpus)}, {"paths", std::move(paths)}, {"more_paths", set.has_more_paths}};
+            {"cpus", std::move(cpus)}, {"links", std::move(links)}, {"paths", std::move(paths)},
+            {"more_paths", set.has_more_paths}};
   }
 
  private:

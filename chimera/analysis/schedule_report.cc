@@ -108,6 +108,7 @@ class ReportWriter {
                  .criticality = spec.criticality,
                  .user_priority = spec.user_priority,
                  .rtpu = options_.one_rtpu ? 0 : spec.rtpu.index,
+                 .place = spec.place,
                  .server = {}};
     made.source = spec.budget.count > 0 ? TimeSource::kBudget : TimeSource::kNone;
     const RecordedTask* seen = options_.profile == nullptr ? nullptr : options_.profile->find(spec.name);
@@ -135,10 +136,10 @@ class ReportWriter {
   }
 
   SetSchedule set(const std::string& name, const std::vector<TaskId>& tasks, bool is_start) {
-    SetSchedule made{.name = name, .is_start = is_start, .cpus = {}, .paths = {}};
+    SetSchedule made{.name = name, .is_start = is_start, .cpus = {}, .links = {}, .paths = {}};
     SetWorks works{.tasks = {}, .works = {}, .uses = uses(), .outside = {}, .may_preempt = !options_.one_rtpu};
     for (const TaskId id : tasks) works.tasks.push_back(id.index);
-    std::sort(works.tasks.begin(), works.tasks.end());  // ties go by the order of the description
+    std::sort(works.tasks.begin(), works.tasks.end());
     works.outside = outside(works.tasks);
     std::vector<ScheduleRow> rows;
     rows.reserve(works.tasks.size());
@@ -153,6 +154,7 @@ class ReportWriter {
     cpus.erase(std::unique(cpus.begin(), cpus.end()), cpus.end());
     std::vector<WorkVerdict> verdicts(rows.size());
     for (const std::uint32_t cpu : cpus) made.cpus.push_back(judge(works, rows, cpu, verdicts));
+    made.links = links_among(configuration_.spec(), tasks);
     find_paths(configuration_, works, verdicts, made);
     return made;
   }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "chimera/analysis/link_age.h"
 #include "chimera/analysis/recorded_profile.h"
 #include "chimera/analysis/transfer_cost.h"
 #include "chimera/description/report.h"
@@ -72,6 +73,7 @@ struct SetSchedule {
   std::string name;
   bool is_start = false;
   std::vector<CpuSchedule> cpus;
+  std::vector<TaskLink> links;
   std::vector<PathAge> paths;  ///< oldest first
   bool has_more_paths = false;
 

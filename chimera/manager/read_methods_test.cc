@@ -51,6 +51,14 @@ TEST_F(ReadMethodsTest, AnUnknownVariableIsRefusedWithTheNearest) {
   EXPECT_EQ(why.message, got.message);
 }
 
+TEST_F(ReadMethodsTest, WhySaysWhichLinksAreAPeriodLate) {
+  std::string late;
+  const Json result = *ask(MethodId::kWhy, {{"variable", "tau"}})->result;
+  for (const Json& link : result["chain"])
+    late += link["variable"].as_string() + ": " + link["late"].as_string() + "\n";
+  EXPECT_EQ(late, "tau: \ny: 'law' runs on another rtpu; rtpu: servo of 'law' makes it 0\nkp: \nx: \n");
+}
+
 TEST_F(ReadMethodsTest, EventsBeginWhereTheyAreAskedForAndEndAtTheLimit) {
   for (const char* text : {"one", "two", "three"}) state().tell("command", TaskId{}, RtpuId{}, text, seconds(1));
   const auto texts = [&](const Json& parameters) {

@@ -25,7 +25,7 @@ bool goes_before(std::span<const ProcessorUse> uses, const RankedWork& a, const 
   const Nanoseconds ka = key_of(a.work, policy), kb = key_of(b.work, policy);
   if (ka != kb) return ka < kb;
   if (a.work.user_priority != b.work.user_priority) return a.work.user_priority > b.work.user_priority;
-  return a.task < b.task;
+  return a.tie < b.tie;
 }
 
 /// Walks once over the tasks of a CPU.
@@ -113,8 +113,8 @@ class Analysis {
     return a.work.offset != b.work.offset || a.work.server || b.work.server;
   }
 
-  /// Equals that are released together run in the order of the description. If one of them may be late, if
-  /// their offsets differ, or if one is a server, each may find another running. Then all of them get the bound of
+  /// Equals that are released together run in the order of their ties. If one of them may be late, if their offsets
+  /// differ, or if one is a server, each may find another running. Then all of them get the bound of
   /// their busy period.
   void judge_equals(std::uint32_t begin, std::uint32_t end, bool preemptive) noexcept {
     bool in_order = true;

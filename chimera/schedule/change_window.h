@@ -24,11 +24,12 @@ struct MovingWork {
   RankedWork ranked;
   TransitionPart part = TransitionPart::kStays;
   std::uint32_t partner = 0;  ///< the task that replaces it like for like; otherwise its own index
+  std::uint64_t partner_tie = 0;
   bool is_chosen = false;     ///< counts in the sums below
   bool is_judged = false;
 
-  std::uint32_t first_task() const noexcept { return ranked.task < partner ? ranked.task : partner; }
-  std::uint32_t last_task() const noexcept { return ranked.task < partner ? partner : ranked.task; }
+  std::uint64_t first_tie() const noexcept { return ranked.tie < partner_tie ? ranked.tie : partner_tie; }
+  std::uint64_t last_tie() const noexcept { return ranked.tie < partner_tie ? partner_tie : ranked.tie; }
   bool is_on_grid_of(const MovingWork& other) const noexcept {
     const Work &a = ranked.work, &b = other.ranked.work;
     return a.period == b.period && a.offset == b.offset && !a.server && !b.server;

@@ -16,8 +16,8 @@ bool goes_always_before(const Work& a, std::uint32_t a_index, const Work& b, std
   const Nanoseconds kb = use.policy == Policy::kRm ? b.period : b.deadline;
   if (ka != kb) return ka < kb;
   if (a.user_priority != b.user_priority) return a.user_priority > b.user_priority;
-  // On a tie, jobs released together run in the order of the description; otherwise the running job stays.
-  return a.period == b.period && a.offset == b.offset && a_index < b_index;
+  // On a tie, jobs released together run in the order of their ties; otherwise the running job stays.
+  return a.period == b.period && a.offset == b.offset && tie_of(a.place, a_index) < tie_of(b.place, b_index);
 }
 
 Nanoseconds worst_data_age(std::span<const ChainLink> chain) noexcept {

@@ -24,7 +24,7 @@ struct ChainLink {
 };
 
 /// True if `a` runs first at each instant at which jobs of both wait and `a` was released no later. `a_index` and
-/// `b_index` are their places in the description. Only for tasks of one rtpu. Context: setup; pure.
+/// `b_index` are their places in the set. Only for tasks of one rtpu. Context: setup; pure.
 bool goes_always_before(const Work& a, std::uint32_t a_index, const Work& b, std::uint32_t b_index,
                         const ProcessorUse& use) noexcept;
 

@@ -39,8 +39,12 @@ TEST(DataAge, KnowsTheTaskThatAlwaysGoesFirst) {
     const ProcessorUse use{.policy = policy};
     EXPECT_TRUE(goes_always_before(a, 5, b, 4, use));
     EXPECT_FALSE(goes_always_before(b, 4, a, 5, use));
-    EXPECT_TRUE(goes_always_before(a, 4, a, 5, use));  // the order of the description
+    EXPECT_TRUE(goes_always_before(a, 4, a, 5, use)) << "equals without a place";
     EXPECT_FALSE(goes_always_before(a, 5, a, 4, use));
+    Work behind = a;
+    behind.place = 1;
+    EXPECT_FALSE(goes_always_before(behind, 4, a, 5, use)) << "its place is behind";
+    EXPECT_TRUE(goes_always_before(a, 5, behind, 4, use));
     EXPECT_FALSE(goes_always_before(a, 4, work(10, 1, 1), 5, use));
   }
   EXPECT_FALSE(goes_always_before(a, 0, b, 1, {.policy = Policy::kLlf}));

@@ -23,6 +23,7 @@ struct RankedWork {
   std::uint32_t band = 0;   ///< of its rtpu on this CPU; 0 runs first
   Nanoseconds jitter;       ///< release jitter
   Nanoseconds early;        ///< deferrable server: capacity that can be due as early as it can be used
+  std::uint64_t tie = 0;    ///< tie_of()
 };
 
 /// Searches end here (11 days); no longer interval matters.

@@ -58,4 +58,10 @@ constexpr bool is_more_urgent(Policy policy, const Urgency& a, const Urgency& b)
   return a.user_priority > b.user_priority;
 }
 
+/// The lower one of two equals that are released together runs first: by TaskSpec::place, then by the index of the
+/// task. Context: any; wait-free.
+constexpr std::uint64_t tie_of(std::uint32_t place, std::uint32_t index) noexcept {
+  return std::uint64_t{place} << 32 | index;
+}
+
 }  // namespace chimera

@@ -32,7 +32,7 @@ constexpr std::uint32_t band_of(std::span<const ProcessorUse> uses, std::uint32_
 /// works[task] in the form of the analysis. Context: setup; pure.
 constexpr RankedWork ranked_work(std::span<const Work> works, std::span<const ProcessorUse> uses,
                                  std::uint32_t task) noexcept {
-  RankedWork made{works[task], task, band_of(uses, works[task].rtpu), {}, {}};
+  RankedWork made{works[task], task, band_of(uses, works[task].rtpu), {}, {}, tie_of(works[task].place, task)};
   Work& w = made.work;
   w.time = std::min(w.time, w.period);  // a longer time does not fit anyway, and sums must not overflow
   if (w.server != ServerKind::kDeferrable) return made;

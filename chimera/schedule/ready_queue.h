@@ -53,7 +53,7 @@ struct QueueStorage {
 class ReadyQueue {
  public:
   /// All tasks start inactive (OFF); TaskId = index in `tasks`. Requires: period > 0, every span of `storage` as long
-  /// as `tasks`. Context: setup.
+  /// as `tasks`, which outlives this. Context: setup.
   ReadyQueue(Policy policy, std::span<const TaskSpec> tasks, const QueueStorage& storage) noexcept;
   /// Sets the origin of the grid; 0 by default. Requires: no task has joined yet. Context: setup.
   void set_origin(Nanoseconds origin) noexcept;
@@ -85,7 +85,7 @@ class ReadyQueue {
   bool is_empty() const noexcept { return runs_.is_empty() && loose_.is_empty(); }
   /// The urgency of the job that pop() would return. Requires: not empty. Context: cycle; O(1).
   Urgency top_urgency() const noexcept;
-  /// Removes and returns the most urgent job; ties: user priority, then order of the tasks. Requires: not empty.
+  /// Removes and returns the most urgent job; ties: user priority, then tie_of(). Requires: not empty.
   /// Context: cycle; O(1) while one class is ready, otherwise O(log classes).
   Job pop() noexcept {
     const std::uint32_t others = (runs_.size() - 1) | n_beside_;  // one branch for both

@@ -9,7 +9,7 @@
 namespace chimera {
 
 TaskClasses::TaskClasses(Policy policy, std::span<const TaskSpec> tasks, const Storage& storage) noexcept
-    : policy_(policy), storage_(storage) {
+    : policy_(policy), tasks_(tasks), storage_(storage) {
   const std::size_t n = tasks.size();
   CHIMERA_ASSERT(storage.members.size() >= n && storage.classes.size() >= n && storage.class_of.size() >= n);
   std::uint32_t filled = 0, n_classes = 0;
@@ -102,7 +102,7 @@ bool TaskClasses::goes_before(const Urgency& a, std::uint32_t a_task, const Urge
                               std::uint32_t b_task) const noexcept {
   if (is_more_urgent(policy_, a, b)) return true;
   if (is_more_urgent(policy_, b, a)) return false;
-  return a_task < b_task;
+  return tie_of(tasks_[a_task].place, a_task) < tie_of(tasks_[b_task].place, b_task);
 }
 
 bool TaskClasses::run_goes_before(std::uint32_t a, std::uint32_t b) const noexcept {

@@ -57,7 +57,7 @@ class TaskClasses {
     std::span<std::uint32_t> class_of;
   };
 
-  /// All tasks start inactive (OFF). Requires: period > 0. Context: setup.
+  /// All tasks start inactive (OFF). `tasks` outlives this. Requires: period > 0. Context: setup.
   TaskClasses(Policy policy, std::span<const TaskSpec> tasks, const Storage& storage) noexcept;
   /// Sets the origin of the grid; 0 by default. Requires: no task has joined yet. Context: setup.
   void set_origin(Nanoseconds origin) noexcept { origin_ = origin; }
@@ -91,7 +91,7 @@ class TaskClasses {
   /// The urgency of the job at the cursor.
   Urgency urgency(std::uint32_t index) const noexcept;
   std::uint32_t task_at_cursor(std::uint32_t index) const noexcept;
-  /// Compares by the policy; ties: user priority, then order of the tasks.
+  /// Compares by the policy; ties: user priority, then tie_of().
   bool goes_before(const Urgency& a, std::uint32_t a_task, const Urgency& b, std::uint32_t b_task) const noexcept;
   /// Compares the jobs at the cursors of two classes.
   bool run_goes_before(std::uint32_t a, std::uint32_t b) const noexcept;
@@ -100,6 +100,7 @@ class TaskClasses {
   Nanoseconds grid_at_or_after(const TaskClass& c, Nanoseconds now) const noexcept;
 
   Policy policy_;
+  std::span<const TaskSpec> tasks_;
   Storage storage_;
   Nanoseconds origin_;
 };

@@ -56,6 +56,14 @@ TEST_F(TaskClassesTest, KeepTheirActiveMembersInTheOrderOfUrgency) {
   EXPECT_EQ(classes[0].cursor, classes[0].active) << "no run is under way";
 }
 
+TEST_F(TaskClassesTest, KeepEqualsInTheOrderOfTheirPlaces) {
+  tasks[0].place = 2;
+  tasks[2].place = 3;
+  tasks[4].place = 1;
+  for (const std::uint32_t task : {0u, 4u, 2u}) classes.activate(task, {});
+  EXPECT_EQ(active(0), "CEA") << "user priority first, then the place";
+}
+
 TEST_F(TaskClassesTest, ReleaseOnTheGridFromTheirOrigin) {
   classes.set_origin(milliseconds(100));
   classes.activate(3, milliseconds(113));

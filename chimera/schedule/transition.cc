@@ -71,7 +71,7 @@ class TransitionAttempt {
     return standing(a, b) == Precedence::kEqual;
   }
 
-  /// True if a job of `a` may run before a waiting job of `b`. Equals run in the order of the description if they are
+  /// True if a job of `a` may run before a waiting job of `b`. Equals run in the order of their ties if they are
   /// released together, or in an executive. With `mixed`, the running job stays. Staying tasks of one grid, under one
   /// name or two, meet only tasks of their own set.
   bool may_go_before(const MovingWork& a, const MovingWork& b, bool mixed) const noexcept {
@@ -79,7 +79,7 @@ class TransitionAttempt {
     if (how != Precedence::kEqual) return how == Precedence::kBefore;
     const bool stay = a.part == TransitionPart::kStays && b.part == TransitionPart::kStays && a.is_on_grid_of(b);
     if (mixed) return true;
-    return stay ? a.ranked.task < b.ranked.task || a.partner < b.partner : a.first_task() < b.last_task();
+    return stay ? a.ranked.tie < b.ranked.tie || a.partner_tie < b.partner_tie : a.first_tie() < b.last_tie();
   }
 
   /// The longest job that may run when the window of `w` begins, without the jobs that run before `w`. It began before
@@ -301,7 +301,8 @@ std::span<MovingWork> moving_works(std::span<const Work> works, std::span<const 
     if (parts[i] == TransitionPart::kAbsent || uses[works[i].rtpu].cpu != cpu) continue;
     CHIMERA_ASSERT(n < room.size());
     // A server counts as if events came all the time: this bounds its work before and after the change.
-    room[n++] = {ranked_work(works, uses, i), works[i].server ? TransitionPart::kStays : parts[i], i};
+    const RankedWork ranked = ranked_work(works, uses, i);
+    room[n++] = {ranked, works[i].server ? TransitionPart::kStays : parts[i], i, ranked.tie};
   }
   const auto moving = room.first(n);
   std::sort(moving.begin(), moving.end(), [](const MovingWork& a, const MovingWork& b) {
@@ -348,6 +349,7 @@ std::span<MovingWork> pair_up(std::span<MovingWork> works) noexcept {
     Work& work = leaving->ranked.work;
     work.time = std::max(work.time, arriving->ranked.work.time);
     leaving->partner = arriving->ranked.task;
+    leaving->partner_tie = arriving->ranked.tie;
     leaving->part = TransitionPart::kStays;
     std::rotate(arriving, arriving + 1, left.data() + n);
     --n;

@@ -27,6 +27,7 @@ struct Work {
   std::uint32_t criticality = 0;
   std::uint32_t user_priority = 0;
   std::uint32_t rtpu = 0;  ///< index of its ProcessorUse
+  std::uint32_t place = 0;  ///< TaskSpec::place
   std::optional<ServerKind> server;
 };
 

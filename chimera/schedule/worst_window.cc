@@ -107,7 +107,7 @@ class Window {
       return tasks_[a].has_started;
     if (is_more_urgent(ua.policy, urgency(a), urgency(b))) return true;
     if (is_more_urgent(ua.policy, urgency(b), urgency(a))) return false;
-    return b != running && (a == running || a < b);
+    return b != running && (a == running || tie_of(works_[a].place, a) < tie_of(works_[b].place, b));
   }
   Urgency urgency(std::uint32_t i) const noexcept {
     const Work& w = works_[i];

@@ -67,6 +67,16 @@ TEST_F(OnTransactionTest, SendsNothingOfAnIllegalSet) {
   EXPECT_FALSE(transaction.is_under_way());
 }
 
+TEST_F(OnTransactionTest, SendsNothingOfASetThatTakesTooMuchOfACpu) {
+  set_budget(kArm, microseconds(500));
+  set_budget(kPid, microseconds(440));
+  set_budget(kTraj, microseconds(440));
+  are_on({kArm, kTraj});
+  begin({kPid});
+  EXPECT_EQ(advance(), "answer 7 no: the budgets would take 0.940 of CPU 0; expected at most 0.93; turn other tasks of "
+                       "that CPU OFF\n");
+}
+
 TEST_F(OnTransactionTest, AFailureTurnsOffItsTasksInReverse) {
   begin({kPid, kTraj, kArm});
   (void)advance();

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "chimera/base/hosted/wording.h"
+#include "chimera/runtime/hosted/together.h"
 #include "chimera/subsystem/remedy.h"
 
 namespace chimera::subsystem {
@@ -92,8 +93,16 @@ SignalRefusal SubsystemState::judge_on(std::span<const TaskId> tasks) const {
   std::vector<bool> on(spec.tasks.size());
   for (std::size_t t = 0; t < on.size(); ++t) on[t] = may_be_on(TaskId(t));
   for (TaskId task : tasks) on[task.index] = true;
-  if (variables.is_legal(on)) return {};
-  return {RefusalKind::kSet, variables.fault(on, spec.tasks), variables.remedy(on, spec.tasks)};
+  if (!variables.is_legal(on))
+    return {RefusalKind::kSet, variables.fault(on, spec.tasks), variables.remedy(on, spec.tasks)};
+  std::vector<TaskId> set;
+  for (const TaskId task : spec.on_order)
+    if (observed.state(task) == State::kOn || pending.is_possible(task, Signal::kOn) ||
+        std::ranges::count(tasks, task) > 0)
+      set.push_back(task);
+  if (const auto excess = excess_of(spec, set))
+    return {RefusalKind::kSet, excess_text(spec, *excess), "turn other tasks of that CPU OFF"};
+  return {};
 }
 
 TaskId SubsystemState::find_rival(TaskId task) const {

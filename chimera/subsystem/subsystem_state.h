@@ -103,7 +103,8 @@ struct SubsystemState {
   /// "hand has the resource '/dev/tool' of gripper, which is ON", "type `chimera switch assembly`".
   SignalRefusal rivalry(TaskId task, TaskId rival) const;
 
-  /// Reason why the present ON tasks and `tasks` together are not a legal set; kNone if they are.
+  /// Reason why the present ON tasks and `tasks` together are not a legal set or take too much of a CPU; otherwise
+  /// kNone.
   SignalRefusal judge_on(std::span<const TaskId> tasks) const;
   /// Refusal of a signal for `tasks`, because `task` is in the wrong state: "pi is in state ERROR, where on is not
   /// legal", "type `chimera clear pi`, then `chimera on pi`".

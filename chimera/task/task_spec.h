@@ -77,8 +77,9 @@ struct TaskSpec {
   OnMiss on_overrun = OnMiss::kContinue;
   OnFault on_fault = OnFault::kError;
   std::uint32_t max_consecutive = 0;  ///< misses in a row after which the task goes to ERROR; 0 = no limit
-  std::uint32_t tolerated_misses = 0;  ///< of the last `tolerated_of` cycles, this number may miss without a reaction
-  std::uint32_t tolerated_of = 0;      ///< 0: none; at most 64
+  std::uint16_t tolerated_misses = 0;  ///< of the last `tolerated_of` cycles, this number may miss without a reaction
+  std::uint16_t tolerated_of = 0;      ///< 0: none; at most 64
+  std::uint32_t place = 0;             ///< of two equals released together the lower one runs first, then the index
   std::uint32_t stack_bytes = 0;       ///< of the task's thread, where it has one; 0: the default
   bool aperiodic = false;             ///< the component has a sync method
   bool is_hardware = false;           ///< has a resource port: first to go ON, last to go OFF

@@ -22,7 +22,6 @@ struct Configuration::Parts {
   std::vector<ConfiguredVariable> variables;
   std::vector<ConfiguredSet> sets;
   std::size_t start = 0;
-  std::vector<double> utilisation;
   // Storage behind spec(). Elements of a deque never move.
   std::deque<std::string> texts;
   std::deque<std::vector<std::byte>> values;
@@ -182,8 +181,9 @@ TaskSpec task_spec(const Model& model, const TaskModel& task, const ConfiguredTa
   spec.user_priority = draft.user_priority ? draft.user_priority->value : 0;
   spec.max_consecutive = draft.max_consecutive ? draft.max_consecutive->value : 0;
   take_reactions(model, draft, spec);
-  if (draft.tolerate) spec.tolerated_misses = draft.tolerate->misses;
-  if (draft.tolerate) spec.tolerated_of = draft.tolerate->of;
+  if (draft.tolerate) spec.tolerated_misses = static_cast<std::uint16_t>(draft.tolerate->misses);
+  if (draft.tolerate) spec.tolerated_of = static_cast<std::uint16_t>(draft.tolerate->of);
+  spec.place = task.place;
   if (draft.stack_bytes) spec.stack_bytes = static_cast<std::uint32_t>(draft.stack_bytes->value);
   spec.aperiodic = configured.is_aperiodic;
   spec.is_hardware = configured.is_hardware;
@@ -355,7 +355,6 @@ Configuration::Configuration(const Model& model) {
   auto parts = std::make_shared<Parts>();
   parts->draft = model.draft;
   parts->start = model.start;
-  parts->utilisation = model.utilisation;
   parts->init_order = model.init_order;
   for (const TaskModel& task : model.tasks) parts->tasks.push_back(configured(task));
   for (const VariableModel& variable : model.variables) parts->variables.push_back(configured(model, variable));
@@ -376,6 +375,5 @@ std::size_t Configuration::start() const noexcept { return parts_->start; }
 std::span<const RtpuSpec> Configuration::rtpus() const noexcept { return parts_->rtpus; }
 const Draft& Configuration::draft() const noexcept { return parts_->draft; }
 const ApplicationSpec& Configuration::spec() const noexcept { return parts_->spec; }
-std::span<const double> Configuration::utilisation() const noexcept { return parts_->utilisation; }
 
 }  // namespace chimera

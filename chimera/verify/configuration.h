@@ -98,8 +98,6 @@ class Configuration {
   const Draft& draft() const noexcept;
   /// The application for the runtime. Its spans live as long as any copy of this Configuration.
   const ApplicationSpec& spec() const noexcept;
-  /// The utilisation of each CPU in the start configuration by declared budgets; 0 without a declared budget.
-  std::span<const double> utilisation() const noexcept;  // one per rtpu
 
   /// Requires: a model without faults; only verify() calls it.
   explicit Configuration(const Model& model);

@@ -110,7 +110,6 @@ TEST(Configuration, HandsTheTimesDown) {
   const TaskSpec& source = made.spec().tasks[2];
   EXPECT_EQ(source.period, Nanoseconds{333'333'333});
   EXPECT_EQ(source.deadline, source.period);
-  EXPECT_NEAR(made.utilisation()[0], 0.04, 1e-12);
 }
 
 TEST(Configuration, SolvesGenericPorts) {
@@ -162,6 +161,44 @@ TEST(Configuration, CutsALoopAtTheFirstByNameOtherwise) {
       "  two: {component: loop, alias: {a: b, b: a}}\n"
       "  three: {component: loop, alias: {a: a, b: c}}\n");
   EXPECT_EQ(names(made, made.spec().start), (Names{"three", "one", "two"}));
+}
+
+/// The tasks in the order of TaskSpec::place.
+Names cycles(std::string_view text) {
+  const Configuration made = legal(text);
+  Names order(made.tasks().size());
+  for (std::size_t t = 0; t < order.size(); ++t) order.at(made.spec().tasks[t].place) = made.tasks()[t].name;
+  return order;
+}
+
+TEST(Configuration, CyclesFollowTheDataAndCutALoopAtAnInitialOfTheDescription) {
+  const auto ring = [](const std::string& initial, const std::string& more) {
+    return cycles("subsystem: ring\ntasks:\n"
+                  "  end: {component: loop, alias: {a: c, b: d}}\n"
+                  "  one: {component: loop, alias: {a: c, b: a}}\n"
+                  "  two: {component: loop, alias: {a: a, b: b}" + initial + "}\n"
+                  "  three: {component: loop, alias: {a: b, b: c}}\n" + more);
+  };
+  EXPECT_EQ(ring("", ""), (Names{"one", "two", "three", "end"})) << "cut where the text goes backward";
+  EXPECT_EQ(ring(", initial: {b: 5}", ""), (Names{"three", "end", "one", "two"}));
+  EXPECT_EQ(ring("", "  four: {component: loop, alias: {a: c, b: e}, initial: {b: 5}}\n"),
+            (Names{"one", "two", "three", "end", "four"})) << "a value outside of the loop cuts nothing";
+}
+
+TEST(Configuration, CyclesFollowTheStartWhereConfigurationsContradictEachOther) {
+  const std::string text =
+      "subsystem: s\ntasks:\n"
+      "  m: {component: loop, alias: {a: t, b: p}}\n"
+      "  n: {component: loop, alias: {a: p, b: s}}\n"
+      "  r: {component: loop, alias: {a: s, b: t}}\n"
+      "  p0: {component: loop, alias: {a: z, b: p}}\n"
+      "  s0: {component: loop, alias: {a: z, b: s}}\n"
+      "  t0: {component: loop, alias: {a: z, b: t}}\n"
+      "operator: {z: 0}\n"
+      "configurations: {mn: [m, n, t0], nr: [n, r, p0], rm: [r, m, s0]}\nstart: ";
+  EXPECT_EQ(cycles(text + "mn\n"), (Names{"p0", "s0", "t0", "m", "n", "r"})) << "not r before m";
+  EXPECT_EQ(cycles(text + "nr\n"), (Names{"p0", "s0", "t0", "m", "n", "r"})) << "then the first in the text";
+  EXPECT_EQ(cycles(text + "rm\n"), (Names{"p0", "s0", "r", "t0", "m", "n"})) << "not n before r";
 }
 
 constexpr const char* kRobot = R"(

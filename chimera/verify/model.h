@@ -77,6 +77,7 @@ struct TaskModel {
   Nanoseconds deadline, offset, budget, min_time;
   std::uint32_t criticality = 0;
   std::size_t rtpu = 0;
+  std::uint32_t place = 0;  ///< TaskSpec::place
   bool lacks_link = false;  ///< a name under its keys is no port, or a repeated port has no instances
 
   const std::string& name() const noexcept { return draft->name.text; }
@@ -146,7 +147,6 @@ struct Model {
   std::vector<StandbySpec> standbys;  ///< in the order of the tasks; the primary may break a rule on standbys
   std::vector<DraftRtpu> rtpus;  ///< the declared ones, or the default one
   std::vector<TaskId> init_order;
-  std::vector<double> utilisation;                       ///< per rtpu, start configuration
   std::map<std::string, WrittenLength> written_lengths;  ///< by constant
   Overload overload = Overload::kRefused;
   std::vector<UnmetInput> unmet;

@@ -2,7 +2,7 @@
 // Refuses, by name, all parts of a description that `check` accepts but the executors do not support yet.
 #include <algorithm>
 
-#include "chimera/schedule/utilisation.h"
+#include "chimera/runtime/hosted/together.h"
 #include "chimera/verify/verify.h"
 
 namespace chimera {
@@ -15,6 +15,8 @@ class Refusals {
 
   Report take() {
     for (std::size_t i = 0; i < configuration_.rtpus().size(); ++i) rtpu(i);
+    for (const ConfiguredSet& set : configuration_.sets())
+      if (!is_virtual()) load(set);
     for (const DraftTask& task : configuration_.draft().tasks) judge(task);
     report_.sort();
     return std::move(report_);
@@ -42,18 +44,24 @@ class Refusals {
     if (!is_virtual() && spec.policy == Policy::kLlf)
       refuse(configuration_.draft().rtpus[index].policy.at, "policy llf in real time",
              "use muf-laxity, or run --virtual");
-    if (!is_virtual() && is_beyond(configuration_.utilisation()[index]))
-      refuse(configuration_.tasks()[0].at, "budgets above 0.93 of a CPU in real time", "run --virtual");
-    if (executor_ == Executor::kOneProcess) one_loop(index);
   }
 
-  // In one process all tasks run in one loop on the CPU of the first rtpu.
-  void one_loop(std::size_t index) {
-    double sum = 0;
-    for (const double utilisation : configuration_.utilisation()) sum += utilisation;
-    if (index == 0 && configuration_.rtpus().size() > 1 && is_beyond(sum))
-      refuse(configuration_.tasks()[0].at, "budgets of all rtpus together above 0.93 of one CPU in one process",
-             "run without --isolation none");
+  // A switch or a takeover may lead to each configuration. In one process all tasks run on the CPU of the first rtpu.
+  void load(const ConfiguredSet& set) {
+    const ApplicationSpec& spec = configuration_.spec();
+    std::string what = "budgets above 0.93 of a CPU in real time";
+    const char* remedy = "run --virtual";
+    auto excess = excess_of(spec, set.order);
+    if (!excess && executor_ == Executor::kOneProcess) {
+      excess = excess_of(spec, set.order, kMaxUtilisation, true);
+      what = "budgets of all rtpus together above 0.93 of one CPU in one process";
+      remedy = "run without --isolation none";
+    }
+    if (!excess) return;
+    const bool is_start = &set == &configuration_.sets()[configuration_.start()];
+    if (!is_start || excess->together.is_takeover())
+      what += ", in configuration '" + set.name + "'" + takeover_text(spec, excess->together);
+    refuse(is_start ? configuration_.tasks()[0].at : set.at, what, remedy);
   }
 
   void reaction(const std::optional<DraftReaction>& reaction, const char* key, const DraftTask& task,

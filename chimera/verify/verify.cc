@@ -41,6 +41,7 @@ void judge_values(Model& model) {
 void judge_order(Model& model) {
   order_constants(model);
   order_sets(model);
+  order_cycles(model);
   check_times(model);
   limit_utilisation(model);
   check_bands(model);

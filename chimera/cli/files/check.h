@@ -25,7 +25,7 @@ struct CheckOptions {
 /// refused. Context: setup; may block.
 CommandResult check(const CheckOptions& options, const Workplace& workplace);
 
-/// The lines that a legal description earns: tasks, order, load.
-std::string verdict_text(const Configuration& configuration);
+/// The lines that a legal description earns: tasks, order, load; `with_cycles`: also orders that a policy makes.
+std::string verdict_text(const Configuration& configuration, bool with_cycles = false);
 
 }  // namespace chimera::cli

@@ -32,6 +32,21 @@ TEST(Check, PrintsTheLoadOfStatedBudgets) {
       << output.out << output.err;
 }
 
+TEST(Check, PrintsTheGreatestLoadThatASwitchMayLeadTo) {
+  const std::string rivals =
+      "subsystem: s\nrtpus: {main: {}, spare: {cpu: 1}}\ntasks:\n"
+      "  a: {component: t_counter, budget: 250 us}\n"
+      "  b: {component: t_counter, budget: 700 us}\n"
+      "  c: {component: t_counter, budget: 100 us, rtpu: spare}\n"
+      "configurations: {light: [a], heavy: [b], other: [c]}\n";
+  const CommandResult output = checked(rivals);
+  EXPECT_NE(output.out.find("rtpu main on cpu 0: budgets take 0.250 of at most 0.93, 0.700 in configuration 'heavy'\n"
+                            "  rtpu spare on cpu 1: budgets take 0.000 of at most 0.93, 0.100 in configuration "
+                            "'other'\n"),
+            std::string::npos)
+      << output.out << output.err;
+}
+
 TEST(Check, CountsTheFaultsOnStandardError) {
   const CommandResult output = checked("subsystem: small\ntasks:\n  counter: {component: t_countr}\n");
   EXPECT_EQ(output.code, kRefused);

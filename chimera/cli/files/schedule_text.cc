@@ -90,6 +90,18 @@ class ScheduleLines {
     return text;
   }
 
+  std::string links(const SetSchedule& set) const {
+    if (set.links.empty()) return "";
+    std::string in_time, late;
+    for (const TaskLink& link : set.links) {
+      const std::string pair = name(link.from.index) + " -> " + name(link.to.index);
+      if (link.periods() == 0) append_joined(in_time, ", ", pair);
+      else late += "  1: " + pair + ": " + link.late + "\n";
+    }
+    if (!in_time.empty()) in_time = "  0: " + in_time + "\n";
+    return "links, by how many periods what is read is late:\n" + in_time + late;
+  }
+
   std::string path(const PathAge& path) const {
     return join(path.tasks, " -> ", [this](std::size_t task) { return name(task); }) + ": " +
            (path.age == kNever ? "no bound, a task on it is not guaranteed" : time_text(path.age));
@@ -224,7 +236,7 @@ std::string schedule_text(const Configuration& configuration, const ScheduleRepo
     text += configuration.subsystem() + ": configuration '" + set.name + "'" + (set.is_start ? " (start)" : "") +
             lines.dispatch(report) + "\n";
     for (const CpuSchedule& cpu : set.cpus) text += lines.cpu(cpu);
-    text += paths_text(lines, set);
+    text += lines.links(set) + paths_text(lines, set);
   }
   return text;
 }

@@ -196,14 +196,15 @@ std::string why_text(const Json& answer, std::size_t height) {
   // 4 or 5 lines of head, an empty one, the heading of the table, an empty one, the verdict.
   const std::size_t taken = text_of(chain[0], "timing").empty() ? 9 : 10;
   const std::size_t room = height > taken + 1 ? height - taken : 1;
-  Columns table({"ancestor", "verdict", "producer", "state", ">age", ">period", "value"});
+  Columns table({"ancestor", "verdict", "producer", "state", ">age", ">period", ">late", "value"});
   for (std::size_t i = 0; i < std::min(room, links.size()); ++i) {
     const Json& link = *links[i];
     const std::int64_t period = whole_of(link, "period_ns");
     table.add({std::string(static_cast<std::size_t>(std::clamp<std::int64_t>(whole_of(link, "depth"), 1, 9) - 1), ' ') +
                    text_of(link, "variable"),
                text_of(link, "verdict"), producer_of(link), text_of(link, "state"), age_of(link),
-               period > 0 ? duration_text(period) : "-", fitted(text_of(link, "value"), 24)});
+               period > 0 ? duration_text(period) : "-", text_of(link, "late").empty() ? "0" : "1",
+               fitted(text_of(link, "value"), 24)});
   }
   std::string text = why_head(chain[0]);
   if (!table.empty()) text += "\n" + table.text();

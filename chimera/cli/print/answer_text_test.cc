@@ -70,18 +70,19 @@ Json link(int depth, const std::string& variable, const std::string& verdict) {
 }
 
 TEST(AnswerText, WhyPrintsProducerAgeInputsAndTheFirstTrouble) {
-  const Json answer = {{"variable", "tau"},
-                       {"chain", {link(0, "tau", "ok"), link(1, "q", "ok"), link(2, "q_ref", "stale")}},
-                       {"verdict", "tau depends on q_ref: stale"}};
+  Json answer = {{"variable", "tau"},
+                 {"chain", {link(0, "tau", "ok"), link(1, "q", "ok"), link(2, "q_ref", "stale")}},
+                 {"verdict", "tau depends on q_ref: stale"}};
+  answer["chain"][2]["late"] = "a loop is cut here";
   EXPECT_EQ(why_text(answer, 24),
             "tau = 1 rad\n"
             "  produced by  t_tau (c) on servo, ON\n"
             "  published    412 us ago, every 1.00 ms\n"
             "  from         q, q_ref\n"
             "\n"
-            "ancestor  verdict  producer     state     age   period  value\n"
-            " q_ref    stale    t_q_ref (c)  ON     412 us  1.00 ms  1 rad\n"
-            "q         ok       t_q (c)      ON     412 us  1.00 ms  1 rad\n"
+            "ancestor  verdict  producer     state     age   period  late  value\n"
+            " q_ref    stale    t_q_ref (c)  ON     412 us  1.00 ms     1  1 rad\n"
+            "q         ok       t_q (c)      ON     412 us  1.00 ms     0  1 rad\n"
             "\n"
             "tau depends on q_ref: stale\n");
 }

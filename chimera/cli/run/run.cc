@@ -110,7 +110,7 @@ class LocalTarget final : public RunTarget {
   std::unique_ptr<TapRing> ring_;
   std::optional<Tap> tap_;
   TapReader reader_;
-  AskedSets asked_{application_.spec()};
+  AskedSets asked_{application_.spec(), request_.one_process && !request_.virtual_time};
   std::unique_ptr<RunLoop> loop_;
   Nanoseconds at_;  // to which it has come, since the start
   std::map<std::string, Probe> probes_;

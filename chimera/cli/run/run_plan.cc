@@ -13,6 +13,7 @@
 #include "chimera/cli/run/script_text.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/platform/standard_streams.h"
+#include "chimera/runtime/hosted/together.h"
 #include "chimera/schedule/utilisation.h"
 #include "chimera/text/nearest.h"
 #include "chimera/verify/setting.h"
@@ -157,18 +158,18 @@ Nanoseconds sample_distance(Nanoseconds every, Nanoseconds duration, const Appli
 
 Result<void> admit_below(const Configuration& configuration, double share) {
   const double limit = share - (kUsualRealtimeShare - kMaxUtilisation);
-  const auto rtpus = configuration.rtpus();
-  for (const RtpuSpec& rtpu : rtpus) {
-    double load = 0;
-    for (std::size_t r = 0; r < rtpus.size(); ++r)
-      if (rtpus[r].cpu == rtpu.cpu) load += configuration.utilisation()[r];
-    if (!is_beyond(load, limit)) continue;
-    char text[300];
+  for (const ConfiguredSet& set : configuration.sets()) {
+    const auto excess = excess_of(configuration.spec(), set.order, limit);
+    if (!excess) continue;
+    const bool is_start = &set == &configuration.sets()[configuration.start()];
+    const std::string of = is_start ? "" : " of configuration '" + set.name + "'";
+    char text[400];
     std::snprintf(text, sizeof text,
-                  "the budgets take %.3f of the processor; of the %.2f that the kernel leaves to real-time threads at "
-                  "most %.2f can be promised: set kernel.sched_rt_runtime_us to 950000, sched_rt_period_us to 1000000",
-                  load, share, limit < 0 ? 0.0 : limit);
-    return Error{ErrorCode::kRefused, {text}, {"cpu " + std::to_string(rtpu.cpu)}};
+                  "the budgets%s take %.3f of the processor; of the %.2f that the kernel leaves to real-time threads "
+                  "at most %.2f can be promised: set kernel.sched_rt_runtime_us to 950000, sched_rt_period_us to "
+                  "1000000",
+                  of.c_str(), excess->load, share, limit < 0 ? 0.0 : limit);
+    return Error{ErrorCode::kRefused, {text}, {"cpu " + std::to_string(excess->cpu)}};
   }
   return {};
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chimera/analysis/link_age.h"
 #include "chimera/base/hosted/wording.h"
 #include "chimera/catalogue/descriptor_value.h"
 #include "chimera/manager/answer/status_json.h"
@@ -78,6 +79,7 @@ std::string timing_text(const Profile& p) {
 void add_producer(const ManagerState& state, TaskId task, VariableFacts& facts) {
   const TaskSpec& spec = state.spec().tasks[task.index];
   const RtpuRecord& rtpu = state.rtpus[spec.rtpu.index];
+  facts.task = task;
   facts.producer = spec.name;
   facts.component = spec.component;
   facts.rtpu = state.name(spec.rtpu);
@@ -130,7 +132,18 @@ VariableFacts facts_of(const ManagerState& state, VariableId variable, Nanosecon
   return facts;
 }
 
-Json link_json(const WhyLink& link) {
+/// Why the task by which the variable came into the chain reads it a period late; empty: it does not.
+std::string late_of(const ManagerState& state, std::span<const WhyLink> chain, const WhyLink& link) {
+  const auto reads_it = [&](const WhyLink& each) {
+    return std::ranges::count(each.facts.inputs, link.facts.variable) > 0;
+  };
+  const auto reader = std::ranges::find_if(chain, reads_it);
+  if (link.depth == 0 || reader == chain.end() || !link.facts.task.is_valid()) return {};
+  if (reader->facts.task == link.facts.task) return {};
+  return late_text(state.spec(), link.facts.task, reader->facts.task);
+}
+
+Json link_json(const WhyLink& link, const std::string& late) {
   const VariableFacts& f = link.facts;
   return {{"depth", link.depth},
           {"variable", f.variable},
@@ -145,6 +158,7 @@ Json link_json(const WhyLink& link) {
           {"value", f.value},
           {"verdict", trouble_name(link.trouble)},
           {"timing", f.timing},
+          {"late", late},
           {"inputs", f.inputs}};
 }
 
@@ -197,7 +211,7 @@ Json why_json(const ManagerState& state, VariableId variable, Nanoseconds at) {
     return facts_of(state, *state.readings->find(name), at);
   });
   Json chain = Json::array();
-  for (const WhyLink& link : answer.chain) chain.push_back(link_json(link));
+  for (const WhyLink& link : answer.chain) chain.push_back(link_json(link, late_of(state, answer.chain, link)));
   return {{"variable", answer.chain[0].facts.variable}, {"chain", std::move(chain)}, {"verdict", answer.verdict}};
 }
 

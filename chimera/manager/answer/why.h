@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "chimera/base/ids.h"
 #include "chimera/base/time.h"
 #include "chimera/task/state_machine.h"
 
@@ -25,6 +26,7 @@ struct VariableFacts {
   std::string variable;
   std::string producer;              ///< a task, "operator", or "" if no task that could produce it was created
   std::string component, rtpu;       ///< of the producer; "" for the operator
+  TaskId task;                       ///< the producer; invalid: no task
   State state = State::kNotCreated;  ///< of the producer; ON for the operator
   bool is_rtpu_dead = false;
   std::string last_words;            ///< of the producer's fault or of its rtpu's death; may be empty

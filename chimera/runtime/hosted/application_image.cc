@@ -43,7 +43,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31474d49'4d494843;  // "CHIMIMG1" in memory
-constexpr std::uint32_t kVersion = 9;
+constexpr std::uint32_t kVersion = 10;
 
 struct Header {
   std::uint64_t magic = kMagic;
@@ -170,6 +170,7 @@ void task_fields(Archive& archive, Task& task, std::vector<PortSpec>& ports, std
   archive.number(task.max_consecutive);
   archive.number(task.tolerated_misses);
   archive.number(task.tolerated_of);
+  archive.number(task.place);
   archive.number(task.stack_bytes);
   archive.choice(task.aperiodic, true);
   archive.choice(task.is_hardware, true);

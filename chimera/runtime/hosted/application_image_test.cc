@@ -45,7 +45,7 @@ struct Sample {
     tasks[0] = {.name = "pid", .component = "pid_joint", .period = Nanoseconds{10}, .offset = Nanoseconds{1},
                 .deadline = Nanoseconds{9}, .budget = Nanoseconds{4}, .min_time = Nanoseconds{2}, .criticality = 2,
                 .user_priority = 7, .on_miss = OnMiss::kHold, .on_overrun = OnMiss::kSwitch,
-                .on_fault = OnFault::kSwitch, .max_consecutive = 5, .aperiodic = true, .is_hardware = true,
+                .on_fault = OnFault::kSwitch, .max_consecutive = 5, .place = 3, .aperiodic = true, .is_hardware = true,
                 .rtpu = RtpuId{1u}, .on_overrun_set = 1, .on_fault_set = 0, .ports = ports,
                 .server = ServerSpec{ServerKind::kSporadic, Nanoseconds{3}, Nanoseconds{10}}};
     tasks[1] = {.name = "plain", .component = "gain", .period = Nanoseconds{20}, .offset = {},
@@ -161,8 +161,8 @@ TEST(ApplicationImage, StrangersAreRefusedByName) {
   bytes[0] = std::byte{'X'};
   EXPECT_EQ(refusal(bytes), "not an application image");
   bytes = good;
-  bytes[kVersionAt] = std::byte{10};
-  EXPECT_EQ(refusal(bytes), "image version 10, this program reads 9");
+  bytes[kVersionAt] = std::byte{11};
+  EXPECT_EQ(refusal(bytes), "image version 11, this program reads 10");
   bytes = good;
   bytes.pop_back();
   EXPECT_EQ(refusal(bytes), "the image says it has " + std::to_string(good.size()) + " bytes, here are " +

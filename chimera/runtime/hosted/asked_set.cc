@@ -2,7 +2,6 @@
 // Works out which tasks are ON when some are asked for and others are not wanted, and judges that set.
 #include "chimera/runtime/hosted/asked_set.h"
 
-#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -12,7 +11,6 @@
 #include "chimera/runtime/hosted/variables.h"
 #include "chimera/runtime/plan/rivals.h"
 #include "chimera/runtime/plan/switch_plan.h"
-#include "chimera/schedule/utilisation.h"
 
 namespace chimera {
 namespace {
@@ -32,9 +30,9 @@ std::vector<TaskId> ids_of(const std::vector<bool>& flags) {
 
 class SetMaker {
  public:
-  SetMaker(const ApplicationSpec& spec, const TaskBits& on, const TaskLists& lists)
+  SetMaker(const ApplicationSpec& spec, const TaskBits& on, const TaskLists& lists, bool on_one_cpu)
       : spec_(spec), variables_(spec), on_(flags_of(on, spec)), was_on_(on_), lists_(lists),
-        plus_(ids_of(flags_of(lists.plus, spec))) {
+        plus_(ids_of(flags_of(lists.plus, spec))), on_one_cpu_(on_one_cpu) {
     rivals_.prepare(spec, memory_);
   }
 
@@ -146,22 +144,8 @@ class SetMaker {
   }
 
   void judge_load() {
-    for (const RtpuSpec& one : spec_.rtpus)
-      for (const Together& together : all_together(spec_.standbys, ids_of(on_))) {
-        double sum = 0;
-        for (const TaskId task : together.tasks) {
-          const TaskSpec& each = spec_.tasks[task.index];
-          if (spec_.rtpus[each.rtpu.index].cpu == one.cpu) sum += load_of(each);
-        }
-        if (!is_beyond(sum)) continue;
-        char taken[80];
-        std::snprintf(taken, sizeof taken, " would take %.3f of CPU %u; expected at most %.2f", sum, one.cpu,
-                      kMaxUtilisation);
-        const std::string of = together.is_takeover()
-                                   ? " with " + name(together.standby) + " for " + name(together.primary)
-                                   : "";
-        return refuse("the budgets" + of + taken, "turn other tasks of that CPU OFF");
-      }
+    const auto excess = excess_of(spec_, ids_of(on_), kMaxUtilisation, on_one_cpu_);
+    if (excess) refuse(excess_text(spec_, *excess), "turn other tasks of that CPU OFF");
   }
 
   const ApplicationSpec& spec_;
@@ -172,13 +156,14 @@ class SetMaker {
   const std::vector<bool> was_on_;
   const TaskLists& lists_;
   const std::vector<TaskId> plus_;
+  const bool on_one_cpu_;
   AskedSet asked_;
 };
 
 }  // namespace
 
-AskedSet asked_set(const ApplicationSpec& spec, const TaskBits& on, const TaskLists& lists) {
-  return SetMaker(spec, on, lists).make();
+AskedSet asked_set(const ApplicationSpec& spec, const TaskBits& on, const TaskLists& lists, bool on_one_cpu) {
+  return SetMaker(spec, on, lists, on_one_cpu).make();
 }
 
 std::string lists_text(const TaskLists& lists, const ApplicationSpec& spec) {

@@ -23,8 +23,8 @@ struct AskedSet {
 
 /// From the tasks that are ON: all of `lists.plus`, none of `lists.minus`. Refuses what breaks an equation, has a loop
 /// of data without an initial value, takes more of a CPU than check allows, or needs a choice (named). Requires: the
-/// lists name tasks of the spec. Context: setup.
-AskedSet asked_set(const ApplicationSpec& spec, const TaskBits& on, const TaskLists& lists);
+/// lists name tasks of the spec. `on_one_cpu`: all rtpus share the CPU of the first. Context: setup.
+AskedSet asked_set(const ApplicationSpec& spec, const TaskBits& on, const TaskLists& lists, bool on_one_cpu = false);
 
 /// "--on a b --off c", in the order of the spec. Context: setup.
 std::string lists_text(const TaskLists& lists, const ApplicationSpec& spec);

@@ -162,6 +162,20 @@ TEST_F(AskedSetTest, CountsTheLoadOfHotStandbysAndOfTakeovers) {
                            "turn other tasks of that CPU OFF");
 }
 
+TEST_F(AskedSetTest, CountsTheLoadOfAllRtpusWhereTheyShareACpu) {
+  app.tasks[kSensor.index].budget = microseconds(500);
+  app.tasks[kSpare.index].budget = microseconds(440);
+  app.tasks[kSpare.index].rtpu = RtpuId{1u};
+  make();
+  const RtpuSpec rtpus[] = {{.name = "main", .cpu = 0}, {.name = "second", .cpu = 1}};
+  app.spec.rtpus = rtpus;
+  const TaskBits on = bits_of(are_on);
+  const TaskLists lists{bits_of(std::vector{kSpare}), {}};
+  EXPECT_TRUE(asked_set(app.spec, on, lists));
+  EXPECT_EQ(asked_set(app.spec, on, lists, true).why,
+            "the budgets would take 0.940 of CPU 0; expected at most 0.93");
+}
+
 TEST_F(AskedSetTest, AcceptsAConfigurationThatVerificationAccepted) {
   app.tasks[kSensor.index].budget = microseconds(990);
   make();

@@ -7,7 +7,7 @@
 namespace chimera {
 
 bool AskedSets::find(const SwitchRequest& request, const TaskBits& on, Nanoseconds now, TaskBits& target) {
-  const AskedSet asked = asked_set(spec_, on, request.lists);
+  const AskedSet asked = asked_set(spec_, on, request.lists, on_one_cpu_);
   target = asked.tasks;
   if (!asked && refused_.size() < kKept) refused_.push_back({now, request, asked.text()});
   return static_cast<bool>(asked);

@@ -20,8 +20,10 @@ struct RefusedLists {
 /// Gives the same results as the manager (hosted/asked_set.h).
 class AskedSets final : public AskedTasks {
  public:
-  /// The spec outlives this. Context: setup.
-  explicit AskedSets(const ApplicationSpec& spec) : spec_(spec) { refused_.reserve(kKept); }
+  /// The spec outlives this. `on_one_cpu`: as in asked_set(). Context: setup.
+  explicit AskedSets(const ApplicationSpec& spec, bool on_one_cpu = false) : spec_(spec), on_one_cpu_(on_one_cpu) {
+    refused_.reserve(kKept);
+  }
 
   bool find(const SwitchRequest& request, const TaskBits& on, Nanoseconds now, TaskBits& target) override;
   /// The first kKept, in order of time. Context: setup, between runs.
@@ -31,6 +33,7 @@ class AskedSets final : public AskedTasks {
 
  private:
   const ApplicationSpec& spec_;
+  const bool on_one_cpu_;
   std::vector<RefusedLists> refused_;
 };
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "chimera/base/hosted/wording.h"
+
 namespace chimera {
 namespace {
 
@@ -28,6 +30,31 @@ std::vector<Together> all_together(std::span<const StandbySpec> standbys, std::s
   }
   for (Together& each : all) add_hot(standbys, each.tasks);
   return all;
+}
+
+std::optional<Excess> excess_of(const ApplicationSpec& spec, std::span<const TaskId> set, double limit,
+                                bool on_one_cpu) {
+  const std::vector<Together> all = all_together(spec.standbys, set);
+  for (const RtpuSpec& rtpu : spec.rtpus)
+    for (const Together& together : all) {
+      double load = 0;
+      for (const TaskId task : together.tasks) {
+        const TaskSpec& each = spec.tasks[task.index];
+        if (on_one_cpu || spec.rtpus[each.rtpu.index].cpu == rtpu.cpu) load += load_of(each);
+      }
+      if (is_beyond(load, limit)) return Excess{rtpu.cpu, load, together};
+    }
+  return std::nullopt;
+}
+
+std::string takeover_text(const ApplicationSpec& spec, const Together& together) {
+  const auto name = [&](TaskId task) { return in_quotes(spec.tasks[task.index].name); };
+  return together.is_takeover() ? " with " + name(together.standby) + " for " + name(together.primary) : "";
+}
+
+std::string excess_text(const ApplicationSpec& spec, const Excess& excess) {
+  return "the budgets" + takeover_text(spec, excess.together) + formatted(" would take %.3f of CPU ", excess.load) +
+         std::to_string(excess.cpu) + formatted("; expected at most %.2f", kMaxUtilisation);
 }
 
 }  // namespace chimera

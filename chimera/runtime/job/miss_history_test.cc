@@ -6,7 +6,7 @@
 namespace chimera {
 namespace {
 
-TaskSpec tolerating(std::uint32_t misses, std::uint32_t of) {
+TaskSpec tolerating(std::uint16_t misses, std::uint16_t of) {
   TaskSpec spec;
   spec.tolerated_misses = misses;
   spec.tolerated_of = of;

@@ -14,7 +14,7 @@ bool must_keep(const TaskSpec& task) noexcept {
 Work work_of(const TaskSpec& task) noexcept {
   Work work{.period = task.period, .deadline = task.deadline, .offset = task.offset, .time = task.budget,
             .criticality = task.criticality, .user_priority = task.user_priority,
-            .rtpu = task.rtpu.is_valid() ? task.rtpu.index : 0,
+            .rtpu = task.rtpu.is_valid() ? task.rtpu.index : 0, .place = task.place,
             .server = {}};
   if (!task.server) return work;
   work.server = task.server->kind;

@@ -13,23 +13,27 @@ constexpr std::int32_t kStep = 4;  // most levels that are left free beside a ne
 
 }  // namespace
 
-LabelList::LabelList(Policy policy, std::size_t capacity, std::int32_t base, std::int32_t ceiling)
-    : policy_(policy), base_(base), ceiling_(ceiling) {
+LabelList::LabelList(Policy policy, std::size_t capacity, std::int32_t base, std::int32_t ceiling,
+                     std::span<const TaskSpec> tasks)
+    : policy_(policy), base_(base), ceiling_(ceiling), tasks_(tasks) {
   CHIMERA_ASSERT(ceiling - base >= 2);
   jobs_.reserve(capacity + 1);
   changes_.reserve(3 * capacity + 4);  // every job may move twice in one rekey
 }
 
-// A full tie keeps the job that runs; among the others the order of the tasks decides.
+// A full tie keeps the job that runs; among the others tie_of() decides.
 bool LabelList::goes_before(const LabelledJob& a, const LabelledJob& b) const noexcept {
   if (is_more_urgent(policy_, a.urgency, b.urgency)) return true;
   if (is_more_urgent(policy_, b.urgency, a.urgency)) return false;
   if (a.task == running_ || b.task == running_) return a.task == running_;
-  return a.task.index < b.task.index;
+  const auto tie = [this](TaskId task) {
+    return tie_of(tasks_.empty() ? 0 : tasks_[task.index].place, task.index);
+  };
+  return tie(a.task) < tie(b.task);
 }
 
 // The place above all jobs that it goes before. A job that ran once stands above its equals, so equals need not be in
-// the order of tasks. The place is then between a job that it goes before and one that it does not.
+// the order of their ties. The place is then between a job that it goes before and one that it does not.
 std::size_t LabelList::place_of(const LabelledJob& job) const noexcept {
   const auto goes_before_it = [&](const LabelledJob& other) { return goes_before(job, other); };
   return static_cast<std::size_t>(std::partition_point(jobs_.begin(), jobs_.end(), goes_before_it) - jobs_.begin());

@@ -16,6 +16,7 @@
 
 #include "chimera/base/ids.h"
 #include "chimera/schedule/policy.h"
+#include "chimera/task/task_spec.h"
 
 namespace chimera {
 
@@ -39,7 +40,9 @@ class LabelList {
   static constexpr std::size_t kFewMoves = 4;
 
   /// Jobs of at most `capacity` tasks, at levels base (parked) and base+1 .. ceiling-1. Requires: ceiling - base >= 2.
-  LabelList(Policy policy, std::size_t capacity, std::int32_t base, std::int32_t ceiling);
+  /// `tasks` outlives this and has their places; empty: all are 0.
+  LabelList(Policy policy, std::size_t capacity, std::int32_t base, std::int32_t ceiling,
+            std::span<const TaskSpec> tasks = {});
 
   /// Adds a job. Returns the changes, the new job's own level last. Requires: no job of this task is in the list.
   std::span<const LevelChange> insert(const LabelledJob& job) noexcept;
@@ -47,7 +50,7 @@ class LabelList {
   std::span<const LevelChange> remove(TaskId task) noexcept;
   /// The urgency of a job changed: moves it to its new place. No effect for a task without a job.
   std::span<const LevelChange> rekey(TaskId task, const Urgency& urgency) noexcept;
-  /// This task's job has the processor (invalid: no job has): at equal urgency it goes on.
+  /// This task's job has begun and has the processor (invalid: no job has): at equal urgency it goes on.
   void dispatch(TaskId task) noexcept { running_ = task; }
 
   std::size_t size() const noexcept { return jobs_.size(); }
@@ -74,6 +77,7 @@ class LabelList {
   std::vector<LabelledJob> jobs_;      // capacity reserved once
   std::vector<LevelChange> changes_;   // capacity reserved once
   std::size_t n_parked_ = 0;
+  std::span<const TaskSpec> tasks_;
   TaskId running_;
 };
 

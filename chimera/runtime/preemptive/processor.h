@@ -28,7 +28,6 @@ class Processor {
   /// Context: cycle; outside the section, by a thread at the ceiling; waits only without real-time levels.
   void enter() noexcept {
     section_.enter();
-    ready_.prefer(on_processor_);
     if (place_.checks) check();
   }
   void leave() noexcept {

@@ -18,7 +18,7 @@ Nanoseconds rounded(Nanoseconds t, Nanoseconds quantum) noexcept {
 ReadyJobs::ReadyJobs(TaskSet& set, const ProcessorPlace& place, Policy policy)
     : place_(place), has_levels_(place.ceiling > 0 && may_be_realtime(place.ceiling)),
       labels_(policy, set.tasks().size(), place.ceiling > 0 ? place.base : 0,
-              place.ceiling > 0 ? place.ceiling : kUnusedCeiling),
+              place.ceiling > 0 ? place.ceiling : kUnusedCeiling, set.spec().tasks),
       of_task_(set.tasks().size()) {
   for (Task& task : set.tasks())
     if (set.is_mine(task.id)) of_task_[task.id.index] = &threads_.emplace_back(task);
@@ -28,11 +28,19 @@ int ReadyJobs::insert(JobThread& job, Nanoseconds deadline, Nanoseconds remainin
   LabelledJob ready;
   ready.task = job.id;
   ready.urgency = urgency_of(job, deadline, remaining);
+  prefer_begun();
   return apply(labels_.insert(ready), own);
 }
 
 void ReadyJobs::rekey(JobThread& job, Nanoseconds remaining) noexcept {
+  prefer_begun();
   (void)apply(labels_.rekey(job.id, urgency_of(job, deadline_of(job), remaining)), nullptr);
+}
+
+// Threads that wake at one instant come one after the other: the first has not begun when the others come.
+void ReadyJobs::prefer_begun() noexcept {
+  const JobThread* const top = most_urgent();
+  labels_.dispatch(top != nullptr && !top->phase.is_ready() ? top->id : TaskId());
 }
 
 int ReadyJobs::apply(std::span<const LevelChange> changes, const JobThread* own) noexcept {

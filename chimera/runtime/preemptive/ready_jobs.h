@@ -27,14 +27,13 @@ class ReadyJobs {
   const JobThread* of(TaskId task) const noexcept { return of_task_[task.index]; }
 
   /// The job of the task, or another method of it, is ready and due at `deadline`. Returns the level to which the
-  /// thread of `own` (null: none) lowers itself. The levels of all other threads are changed here.
+  /// thread of `own` (null: none) lowers itself. The levels of all other threads are changed here. At equal urgency the
+  /// most urgent job goes on if it has begun; otherwise tie_of() decides.
   int insert(JobThread& job, Nanoseconds deadline, Nanoseconds remaining, const JobThread* own) noexcept;
   /// No effect on a job that is not ready.
   void remove(JobThread& job) noexcept { (void)apply(labels_.remove(job.id), nullptr); }
   /// The urgency of the job changed. No effect on a job that is not ready.
   void rekey(JobThread& job, Nanoseconds remaining) noexcept;
-  /// At equal urgency this job, which has the processor, goes on. Null: no job has the processor.
-  void prefer(const JobThread* job) noexcept { labels_.dispatch(job == nullptr ? TaskId() : job->id); }
   /// Returns the deadline of the job, or that of its server.
   static Nanoseconds deadline_of(const JobThread& job) noexcept {
     return job.sporadic ? job.sporadic->job().deadline() : job.job.deadline;
@@ -66,6 +65,7 @@ class ReadyJobs {
   std::size_t count_wrong() const noexcept;
 
  private:
+  void prefer_begun() noexcept;
   int apply(std::span<const LevelChange> changes, const JobThread* own) noexcept;
   Urgency urgency_of(const JobThread& job, Nanoseconds deadline, Nanoseconds remaining) const noexcept;
 

@@ -32,6 +32,18 @@ TEST_F(ReadyJobsTest, KeepsJobsInOrderOfUrgency) {
   EXPECT_EQ(ready().size(), 1u) << "it was not there";
 }
 
+TEST_F(ReadyJobsTest, KeepsEqualsInTheirOrderUntilOneHasBegun) {
+  add("producer", milliseconds(10));
+  add("reader", milliseconds(10));
+  make();
+  JobThread &reader = release(1, at(0)), &producer = release(0, at(0));
+  EXPECT_EQ(ready().most_urgent(), &producer) << "its thread came later, and the other one has not begun";
+  ready().remove(producer);
+  ASSERT_TRUE(reader.phase.try_begin());
+  (void)ready().insert(producer, ReadyJobs::deadline_of(producer), {}, &producer);
+  EXPECT_EQ(ready().most_urgent(), &reader) << "a job that has begun goes on";
+}
+
 TEST_F(ReadyJobsTest, ReturnsTheLevelOfTheInsertedJob) {
   make_two();
   JobThread &slow = job(1), &fast = job(0);

@@ -86,6 +86,7 @@ inline void compare_tasks(SpecDifference& d, const TaskSpec& a, const TaskSpec& 
   d.compare(a.max_consecutive, b.max_consecutive, "max_consecutive");
   d.compare(a.tolerated_misses, b.tolerated_misses, "tolerated_misses");
   d.compare(a.tolerated_of, b.tolerated_of, "tolerated_of");
+  d.compare(a.place, b.place, "place");
   d.compare(a.stack_bytes, b.stack_bytes, "stack_bytes");
   d.compare(a.aperiodic, b.aperiodic, "aperiodic");
   d.compare(a.is_hardware, b.is_hardware, "is_hardware");

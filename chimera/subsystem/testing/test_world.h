@@ -83,6 +83,7 @@ class TestWorld {
     for (TaskId task : {kArm, kTraj, kPid, kReserve}) report(task, State::kOff);
     for (TaskId task : {kArm, kTraj, kPid}) report(task, State::kOn);
   }
+  void set_budget(TaskId task, Nanoseconds budget) { tasks_[task.index].budget = budget; }
   /// From now on pid and reserve open the same device; nothing has begun.
   void make_rivals() {
     for (const TaskId task : {kPid, kReserve}) {

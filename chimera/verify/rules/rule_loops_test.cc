@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the order of a configuration with a direct statement of the rule, on random graphs with loops.
+// Compares the orders of tasks with direct statements of the rules, on random graphs with loops.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -90,15 +90,19 @@ std::string described(const Graph& graph) {
   return text;
 }
 
+std::vector<Graph::Arc> arcs_of(const Graph& graph) {
+  std::vector<Graph::Arc> arcs;
+  for (std::size_t v = 0; v < graph.names.size(); ++v)
+    for (std::size_t t = 0; t < graph.inputs.size(); ++t)
+      for (const std::size_t input : graph.inputs[t])
+        if (input == v) arcs.push_back({graph.producer[v], t, v});
+  return arcs;
+}
+
 /// The rule as docs/formats/description.md states it, without stored state between steps.
 class Plain {
  public:
-  explicit Plain(const Graph& graph) : graph_(graph), placed_(graph.inputs.size(), false) {
-    for (std::size_t v = 0; v < graph.names.size(); ++v)
-      for (std::size_t t = 0; t < graph.inputs.size(); ++t)
-        for (const std::size_t input : graph.inputs[t])
-          if (input == v) arcs_.push_back({graph.producer[v], t, v});
-  }
+  explicit Plain(const Graph& graph) : graph_(graph), arcs_(arcs_of(graph)), placed_(graph.inputs.size(), false) {}
   std::vector<std::string> order() {
     std::vector<std::string> names;
     while (names.size() < placed_.size()) {
@@ -210,6 +214,32 @@ TEST(RuleLoops, NamesEachLoopWithoutInitialValueOnce) {
     told += expected;
   }
   EXPECT_GT(told, 60u);
+}
+
+TEST(RuleCycles, RunsAReaderFirstOnlyWhereItCutsALoop) {
+  std::mt19937 random(20261128);
+  std::size_t cuts = 0;
+  for (int round = 0; round < 300; ++round) {
+    const Graph graph = random_graph(random, false);
+    const std::string text = described(graph);
+    const Verdict verdict = verify(read_description(text, "random"), components(graph));
+    ASSERT_TRUE(verdict.configuration) << text << verdict.report.text();
+    const std::span<const TaskSpec> tasks = verdict.configuration->spec().tasks;
+    const std::vector<Graph::Arc> arcs = arcs_of(graph);
+    const auto is_forward = [&](const Graph::Arc& arc) { return tasks[arc.from].place < tasks[arc.to].place; };
+    const auto is_given = [&](const Graph::Arc& arc) { return graph.initial[arc.variable] == Initial::kByDescription; };
+    for (const Graph::Arc& arc : arcs) {
+      if (arc.from == arc.to || is_forward(arc)) continue;
+      ++cuts;
+      std::vector<bool> is_behind(tasks.size());  // the reader, by links that run forward
+      is_behind[arc.to] = true;
+      for (std::size_t step = 0; step < tasks.size(); ++step)
+        for (const Graph::Arc& each : arcs)
+          if (is_behind[each.from] && is_forward(each) && (is_given(arc) || !is_given(each))) is_behind[each.to] = true;
+      ASSERT_TRUE(is_behind[arc.from]) << graph.names[arc.variable] << " is read too early\n" << text;
+    }
+  }
+  EXPECT_GT(cuts, 300u);
 }
 
 }  // namespace

@@ -210,10 +210,6 @@ void limit_utilisation(Model& model) {
       for (const Together& together : all_together(model.standbys, set.tasks))
         if (!limit(model, set, together, model.rtpus[i].cpu.value)) break;
     }
-  model.utilisation.assign(model.rtpus.size(), 0);
-  const std::vector<Together> of_start = all_together(model.standbys, model.sets[model.start].tasks);
-  for (const TaskId id : of_start[0].tasks)
-    model.utilisation[model.tasks[id.index].rtpu] += load(model.tasks[id.index]);
 }
 
 }  // namespace chimera

@@ -81,6 +81,11 @@ void check_order_of_constants(Model& model);
 /// Every loop of a configuration has an initial value. Makes SetModel::order.
 void order_sets(Model& model);
 
+// rule_cycles.cc
+/// Makes TaskModel::place: producers before readers, in one order for all configurations. Links within the start
+/// configuration count first, then those within the others, then the rest. A standby counts with its primary.
+void order_cycles(Model& model);
+
 // rule_timing.cc
 /// "1.5 ms": a duration in the largest unit that gives a number of at least 1.
 std::string say(Nanoseconds t);
