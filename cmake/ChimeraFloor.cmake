@@ -96,7 +96,7 @@ endif()
 function(_chimera_test_properties name label)
   # The leak check of g++ 12 follows thread-local memory of objects that were unloaded, and crashes now and then.
   set(environment ASAN_OPTIONS=intercept_tls_get_addr=0 GTEST_OUTPUT=xml:${CMAKE_BINARY_DIR}/results/${name}.xml
-    CHIMERA_BUILD=${CMAKE_BINARY_DIR} CHIMERA_SOURCE=${CMAKE_SOURCE_DIR})
+    CHIMERA_BUILD=${CMAKE_BINARY_DIR} CHIMERA_SOURCE=${CMAKE_SOURCE_DIR} XDG_STATE_HOME=${CMAKE_BINARY_DIR}/state)
   set_tests_properties(${name} PROPERTIES LABELS "${label}" TIMEOUT 900 SKIP_RETURN_CODE 77
     ENVIRONMENT "${environment}")
   if(label STREQUAL "realtime")

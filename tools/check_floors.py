@@ -53,7 +53,7 @@ SYSTEM = re.compile(r"^(aio|dirent|dlfcn|execinfo|fcntl|ftw|glob|grp|ifaddrs|lib
 SEES_THE_SYSTEM = {
     "chimera/platform/": "the floor for it",
     "chimera/base/hosted/ordinary_file.h": "components read files too, and they see chimera/base only",
-    "chimera/cli/run/outlet.cc": "a stream that never waits for its reader",
+    "chimera/cli/print/outlet.cc": "a stream that never waits for its reader",
     "chimera/cli/run/own_process.cc": "forks, waits and passes signals on: one piece of code with its limits of time",
     "chimera/cli/batch/side_by_side.cc": "the same of many children",
     "chimera/cli/run/under_way.cc": "memory shared with both of these",

@@ -15,9 +15,10 @@
 #include "chimera/analysis/recorded_profile.h"
 #include "chimera/cli/files/file_refusal.h"
 #include "chimera/cli/run/attend.h"
-#include "chimera/cli/run/outlet.h"
+#include "chimera/cli/print/outlet.h"
 #include "chimera/cli/run/own_process.h"
 #include "chimera/cli/run/run_plan.h"
+#include "chimera/platform/file.h"
 #include "chimera/platform/process.h"
 #include "chimera/platform/shared_memory.h"
 #include "chimera/platform/standard_streams.h"
@@ -72,7 +73,10 @@ const std::vector<Option>& printing_options() {
       {.name = "--trace",
        .value = "FILE",
        .help = "write a Chrome trace to this file (ui.perfetto.dev opens it)",
-       .manual = "Writes a Chrome trace, which ui.perfetto.dev opens.",
+       .kind = WordKind::kFile},
+      {.name = "--log",
+       .value = "FILE",
+       .help = "real time: add every event to this file as it comes, a line with date and user",
        .kind = WordKind::kFile},
       {.name = "--profile",
        .value = "FILE",
@@ -179,6 +183,7 @@ struct AskedRun {
     run.watch = call.values("--watch");
     run.expect = call.values("--expect");
     run.profile = call.value("--profile");
+    run.log = call.value("--log");
     run.strict = call.has("--strict");
     run.json = call.json;
     if (call.has("--seed")) read_number(call, "--seed", run.seed.emplace());
@@ -212,6 +217,8 @@ bool AskedRun::read(const Call& call) {
   if (run.virtual_time && run.duration == kNever) wrong = "--virtual needs --for: virtual time has no end of its own";
   if (!call.value("--start-limit").empty() && (run.virtual_time || run.one_process))
     wrong = "--start-limit belongs to real time with a process for each rtpu";
+  if (!run.log.empty() && (run.virtual_time || run.one_process))
+    wrong = "--log belongs to real time with a process for each rtpu";
   if (!call.value("--timeline").empty() && run.duration == kNever) wrong = "--timeline needs --for";
   if (!call.value("--timeline").empty() && run.json) wrong = "--timeline and --json exclude each other";
   if (wrong != nullptr) std::fprintf(stderr, "%s\n", wrong);
@@ -238,6 +245,12 @@ int print_refusal(const Error& error) {
   return kRefused;
 }
 
+/// The open file of --log; -1 without one.
+Result<OwnedDescriptor> log_of(const cli::RunRequest& run) {
+  if (run.log.empty()) return OwnedDescriptor();
+  return open_to_append(run.log);
+}
+
 /// Runs `body` with what writes the trace and the timeline; with null when neither is wanted.
 template <class Body>
 int with_records(const Call& call, const AskedRun& asked, std::FILE* out, Body body) {
@@ -260,6 +273,7 @@ int run(const Call& call, const cli::Workplace& workplace) {
       !read_group(call, "--configure-group", kept.configure_group))
     return kUsage;
   if (!may_save(asked.run.profile) || !may_save(asked.run.svg)) return kRefused;
+  if (const auto log = log_of(asked.run); !log) return print_refusal(log.error());
   if (!asked.run.virtual_time && !asked.run.one_process) {
     kept.run = asked.run;
     kept.face = words_for_attend(call);
@@ -308,11 +322,15 @@ int attend(const Call& call, const cli::Workplace&) {
   const auto page = SharedPages::open(kFacePageDescriptor, sizeof(FacePage));
   if (!page) return print_refusal(page.error());
   auto& done = *reinterpret_cast<FacePage*>(page->bytes().data());
+  auto log_file = log_of(asked.run);
+  if (!log_file) return print_refusal(log_file.error());
+  cli::RunLog log(asked.run.log, *std::move(log_file));
   cli::Outlet outlet(STDOUT_FILENO);
   if (outlet.stream() == nullptr) return print_refusal({ErrorCode::kSystem, {"no memory to print"}, {}});
   const int code = with_records(call, asked, outlet.stream(), [&](cli::RecordSink* sink) {
-    return cli::attend({call.value("--socket"), asked.run, bounds, parent, &done, &outlet}, sink, outlet.stream(),
-                       stderr);
+    return cli::attend({call.value("--socket"), asked.run, bounds, parent, &done,
+                        asked.run.log.empty() ? nullptr : &log, &outlet},
+                       sink, outlet.stream(), stderr);
   });
   outlet.finish(kLastLines);  // of --timeline
   if (const int why = outlet.why_lost(); why != 0 && done.lost_output == 0)

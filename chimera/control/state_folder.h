@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The folder in which files are kept between two calls and two runs: the history of the shell, the record of `save`,
-// the receipts of each subsystem.
+// receipts and events of each subsystem.
 #pragma once
 
 #include <string>

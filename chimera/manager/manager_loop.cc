@@ -113,7 +113,11 @@ Result<bool> ManagerLoop::take_inventory(std::uint32_t incarnation, std::int32_t
   if (!bell) return bell.error();
   bell_ = *std::move(bell);
   steps_ = std::make_unique<StepRunner>(*state_, *rtpu_links_, mapped_->channel);
-  auto receipts = ReceiptArchive::start(*state_, control::state_folder_of(std::string(state_->spec().name)));
+  const std::string folder = control::state_folder_of(std::string(state_->spec().name));
+  auto events = EventArchive::start(*state_, folder);
+  if (!events) return events.error();
+  events_ = *std::move(events);
+  auto receipts = ReceiptArchive::start(*state_, folder);
   if (!receipts) return receipts.error();
   receipts_ = *std::move(receipts);
   switches_ = std::make_unique<SwitchCoordinator>(*state_, *receipts_);
@@ -127,13 +131,10 @@ Result<bool> ManagerLoop::take_inventory(std::uint32_t incarnation, std::int32_t
   return true;
 }
 
-/// Logs the first event of every manager. The events of its predecessors are lost, and only their numbers go on.
+/// Logs the first event of every manager.
 void ManagerLoop::say_hello() {
-  const std::uint64_t gone = state_->log.last();
   std::string text = "manager started";
-  if (state_->own.incarnation() > 1)
-    text += " again, incarnation " + std::to_string(state_->own.incarnation()) +
-            (gone == 0 ? "" : "; events 1 to " + std::to_string(gone) + " are lost");
+  if (state_->own.incarnation() > 1) text += " again, incarnation " + std::to_string(state_->own.incarnation());
   state_->tell("manager-started", TaskId{}, RtpuId{}, text, now());
 }
 
@@ -216,7 +217,7 @@ void ManagerLoop::look_at_keeper() {
   guard_watch_.look(*state_, now());
   if (is_ending_ || !state_->is_ending()) return;
   is_ending_ = true;
-  receipts_->try_again(now());  // before the run client asks which ones are not filed
+  receipts_->filing().try_again(now());  // before the run client asks which ones are not filed
   state_->tell("ending", TaskId{}, RtpuId{}, "the subsystem is ending", now());
 }
 
@@ -241,7 +242,8 @@ void ManagerLoop::end_rtpu(RtpuId rtpu) {
 
 Nanoseconds ManagerLoop::next_due() const noexcept {
   Nanoseconds due = std::min(
-      {steps_->next_due(), receipts_->next_due(), drill_->next_due(), counters_due_, watch_->due()});
+      {steps_->next_due(), receipts_->next_due(), events_->filing().next_due(), drill_->next_due(), counters_due_,
+       watch_->due()});
   if (is_ready_) due = std::min(due, switches_->next_due());
   if (!is_ready_ || !rtpu_links_->all_up()) due = std::min(due, now() + kLookEvery);
   return due;
@@ -250,7 +252,7 @@ Nanoseconds ManagerLoop::next_due() const noexcept {
 /// Ignores negative descriptors.
 void ManagerLoop::wait(Nanoseconds until, int also, int or_else) {
   const int descriptors[] = {mapped_->channel.descriptor(), bell_->descriptor(), receipts_->descriptor(), also,
-                             or_else};
+                             or_else, events_->filing().descriptor()};
   await_readable(descriptors, std::min(until - now(), seconds(1)));
 }
 
@@ -274,13 +276,14 @@ bool ManagerLoop::step(Nanoseconds at_most, int also, int or_else) {
     takeovers_->look(now());
   }
   receipts_->look(now());
+  events_->look(now());
   drill_->look(now());
   return !is_finished_;
 }
 
 void ManagerLoop::finish() {
-  constexpr Nanoseconds kLimit = milliseconds(800);
-  receipts_->flush(kLimit);
+  const Nanoseconds until = now() + milliseconds(800);
+  for (Filing* const filing : filings()) filing->flush(until - now());
 }
 
 }  // namespace chimera::manager

@@ -3,11 +3,13 @@
 // it is killed at any moment, its successor continues from the segments.
 #pragma once
 
+#include <array>
 #include <memory>
 
 #include "chimera/manager/act/drill.h"
 #include "chimera/manager/act/rtpu_links.h"
 #include "chimera/manager/act/step_runner.h"
+#include "chimera/manager/answer/event_archive.h"
 #include "chimera/manager/state/manager_state.h"
 #include "chimera/manager/switch/receipt_archive.h"
 #include "chimera/manager/switch/switch_coordinator.h"
@@ -57,8 +59,8 @@ class ManagerLoop {
                  Switched switched);
   /// Rings doorbells, as RtpuLinks::ring.
   RtpuId ring(std::span<const TaskId> tasks);
-  /// Call it after step() returned false. Files the receipts that are left; may block for most of the second that the
-  /// keeper waits.
+  /// Call it after step() returned false. Files the remaining receipts and events; may block for most of the second
+  /// that the keeper waits.
   void finish();
   /// Has the keeper end the whole run. The next step() sends the request, after the client got its answer.
   void end(std::int32_t code);
@@ -73,6 +75,8 @@ class ManagerLoop {
   Drill& drill() noexcept { return *drill_; }
   /// True if the step function has the whole inventory. Clients are served from then on.
   bool is_ready() const noexcept { return is_ready_; }
+  /// The files of receipts and of events.
+  std::array<Filing*, 2> filings() const noexcept { return {&receipts_->filing(), &events_->filing()}; }
 
  private:
   struct Mapped;
@@ -94,6 +98,7 @@ class ManagerLoop {
   std::unique_ptr<ManagerState> state_;
   std::unique_ptr<RtpuLinks> rtpu_links_;
   std::unique_ptr<StepRunner> steps_;
+  std::unique_ptr<EventArchive> events_;
   std::unique_ptr<ReceiptArchive> receipts_;
   std::unique_ptr<SwitchCoordinator> switches_;
   std::unique_ptr<SwitchWishes> wishes_;

@@ -17,9 +17,12 @@ Result<int> run(const Inherited& inherited, std::uint32_t incarnation, std::int3
   if (!started) return started.error();
   if (*started == nullptr) return 0;
   ManagerLoop& loop = **started;
-  // Connections wait in the backlog until the inventory is complete, so that no command meets an incomplete state.
-  while (!loop.is_ready())
-    if (!loop.step()) return 0;
+  // Connections wait in the backlog until the inventory is complete and the events of before are read, so that no
+  // command meets an incomplete state.
+  const Nanoseconds until = now() + ReceiptArchive::kDiskLimit;
+  const auto reads = [&] { return now() < until && !std::ranges::all_of(loop.filings(), &Filing::has_read); };
+  while (!loop.is_ready() || reads())
+    if (!loop.step(now() + milliseconds(10))) return 0;
   const Bundle& bundle = loop.state().bundle;
   std::error_code error;
   Questions questions(

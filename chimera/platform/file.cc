@@ -108,6 +108,17 @@ Result<void> replace_file(const std::string& path, const FileState& known, std::
                  : Message("changed just now").error(ErrorCode::kRefused, path);
 }
 
+Result<OwnedDescriptor> open_to_append(const std::string& path) {
+  OwnedDescriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0666));
+  struct stat status {};
+  if (file.fd < 0 || ::fstat(file.fd, &status) != 0) return refusal("cannot be opened", errno, path);
+  if (!S_ISREG(status.st_mode)) return Message("is no ordinary file").error(ErrorCode::kRefused, path);
+  if (whole_bytes(file.fd, static_cast<std::uint64_t>(status.st_size)) == static_cast<std::uint64_t>(status.st_size))
+    return file;
+  if (::write(file.fd, "\n", 1) != 1) return refusal("cannot be written", errno, path);
+  return file;
+}
+
 bool make_private_folder(const std::string& path) {
   struct stat state {};
   return ::mkdir(path.c_str(), 0700) == 0 || (::stat(path.c_str(), &state) == 0 && S_ISDIR(state.st_mode));

@@ -47,6 +47,10 @@ std::optional<FileState> state_of_file(const std::string& path);
 /// with the path in `where`, if the file is not in the state `known` or cannot be written. Context: setup; may block.
 Result<void> replace_file(const std::string& path, const FileState& known, std::string_view text);
 
+/// Opens an ordinary file to add lines at its end; makes it if there is none. Ends its last line if that is cut.
+/// Refuses, with the path in `where`: "cannot be opened: REASON", "is no ordinary file". Context: setup; may block.
+Result<OwnedDescriptor> open_to_append(const std::string& path);
+
 /// Makes a folder that only this user may enter; true if there is a folder. Context: setup; may block.
 bool make_private_folder(const std::string& path);
 

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Events over real processes: a pipe rings a task behind a server, which rings a task of another rtpu, which rings a
-task of the first one. Each event is counted and answered by one job."""
+task of the first one. Each event is counted and answered by one job. Events in the other sense, what happened, outlive
+the manager and the subsystem."""
+import json
 import os
 import pathlib
 import tempfile
 import unittest
 
-from system import System, await_that
+from system import CHAIN, System, await_that
 
 IN_C = """
 subsystem: subject
@@ -53,6 +55,32 @@ class Events(unittest.TestCase):
                     self.assertEqual((seen["events"], seen["events_lost"], seen["faults"]), (8, 0, 0), task)
                 refused = system.chimera("run", system.file, "--virtual", "--for", "1 s", code=1).stderr
                 self.assertIn("from a descriptor, in virtual time: run cannot do this yet", refused)
+
+    def test_outlive_the_manager_and_the_subsystem(self):
+        with System(CHAIN, ("--log", "run.log")) as system:
+            for i in range(6):
+                manager, since = system.pids()["manager"], system.next_event()
+                system.call("flag", up=i % 2 == 0)
+                system.kill(manager)  # at once: the disk may not have the event yet
+                system.await_event(since, "manager-started", f"incarnation {i + 2}")
+                raised = system.await_event(since, "flag", "the operator")
+                self.assertRegex(raised["by"], "^configure:.")
+            told = system.events()
+            self.assertEqual([e["number"] for e in told], list(range(1, len(told) + 1)))
+            self.assertIn(f", by {raised['by']}\n", system.chimera("events").stdout)
+            log = system.place / "run.log"
+            await_that(lambda: "incarnation 7" in log.read_text(), lambda: log.read_text())
+            logged = [int(line.split()[0]) for line in log.read_text().splitlines()]
+            self.assertEqual(logged, list(range(1, len(logged) + 1)))
+            system.chimera("end", "--subsystem", "subject")
+            system.wait()
+            filed = json.loads(system.chimera("events", "--json").stdout)["events"]
+            self.assertEqual(filed[:len(told)], told)
+            self.assertIn("ending", [e["kind"] for e in filed])
+            of_all_runs = json.loads(system.chimera("events", "--since", "1 h", "--json").stdout)["events"]
+            self.assertEqual(of_all_runs, filed)
+            folder = system.chimera("run", system.file, "--log", system.place, code=1).stderr
+            self.assertEqual(folder, f"{system.place}: error: cannot be opened: Is a directory\n")
 
 
 if __name__ == "__main__":

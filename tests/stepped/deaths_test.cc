@@ -5,6 +5,7 @@
 #include <csignal>
 
 #include "chimera/base/testing/await.h"
+#include "chimera/manager/answer/status_json.h"
 #include "chimera/platform/process.h"
 #include "tests/stepped/stepped_subsystem.h"
 
@@ -139,19 +140,25 @@ TEST_F(Deaths, AnRtpuThatDiesAtAnyStepOfASignalComesBack) {
   }
 }
 
-/// The manager dies at each step of a command. Its successor numbers the events on, and no task loses a cycle.
+/// The manager dies at each step of a command. Its successor has all events of before, with their authors, and numbers
+/// the events on. No task loses a cycle.
 TEST_F(Deaths, TheManagerMayDieAtAnyStepOfACommand) {
+  bool has_author = false;
   for (int steps = 0; steps < 20; ++steps) {
     SteppedSubsystem system(kTwoRtpus);
     ASSERT_TRUE(system.until_started());
     (void)system.ask("signal", {{"signal", "off"}, {"tasks", Json::array({"victim"})}});
     system.run(microseconds(100) * steps);
+    const std::string before = events_json(system.manager().state(), 1, 1000)["events"].dump();
     const std::uint64_t last = system.manager().state().log.last();
     system.kill_manager();
     system.run(milliseconds(20));
     system.start_manager();
     ASSERT_TRUE(system.until([&] { return system.manager().is_ready(); })) << steps;
-    EXPECT_EQ(system.manager().state().log.first(), last + 1) << steps;
+    const ManagerState& state = system.manager().state();
+    EXPECT_EQ(events_json(state, 1, last)["events"].dump(), before) << steps;
+    has_author = has_author || before.find("\"by\":\"configure:") != before.npos;
+    EXPECT_EQ(state.log.at(last + 1).kind, "manager-started") << steps;
     system.run(milliseconds(50));
     const State is = system.state("victim");
     EXPECT_TRUE(is == State::kOn || is == State::kOff) << steps;
@@ -160,6 +167,7 @@ TEST_F(Deaths, TheManagerMayDieAtAnyStepOfACommand) {
     expect_steady(system);
     EXPECT_EQ(system.profile("beside").dropped, 0u) << steps;
   }
+  EXPECT_TRUE(has_author);
 }
 
 TEST_F(Deaths, AStoppedGuardIsReportedWithinTwoSecondsAndAgainWhenItRuns) {

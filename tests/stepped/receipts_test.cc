@@ -57,6 +57,35 @@ TEST(SteppedReceipts, DoneAbortedAndRefusedSwitchesAreFiledAlike) {
   EXPECT_EQ(system.result("receipts", {{"last", 2}})["receipts"].size(), 2u);
 }
 
+TEST(SteppedEvents, EachEventOfAPersonNamesThePerson) {
+  SteppedSubsystem system(kReceipts);
+  ASSERT_TRUE(system.until_started());
+  const std::uint64_t last = system.manager().state().log.last();
+  system.set("given", 0.5);
+  for (const char* const word : {"off", "reinit", "on", "off", "kill", "spawn", "clear", "on"})
+    (void)system.call("signal", {{"signal", word}, {"tasks", Json::array({"held"})}});
+  (void)system.result("flag", {{"up", true}});
+  (void)system.result("flag", {{"up", false}});
+  (void)system.result("switch", to("quick"));
+  (void)system.result("switch", to("wild"));
+  (void)system.call("drill");
+  (void)system.call("end");
+  std::map<std::string, int> counts;
+  const Json told = system.result("events", {{"since", last + 1}});
+  for (const Json& event : told["events"]) {
+    const std::string kind = event["kind"].as_string();
+    const bool is_of_rtpu = kind == "flag" && !text_at(event, "text").starts_with("the operator");
+    if (kind == "state" || is_of_rtpu) continue;
+    EXPECT_TRUE(text_at(event, "by").starts_with("configure:")) << event;
+    ++counts[kind];
+  }
+  EXPECT_EQ(counts["set"], 1);
+  EXPECT_EQ(counts["flag"], 2);
+  EXPECT_EQ(counts["command"], 9) << told;
+  EXPECT_EQ(counts["switch"], 4) << told;
+  EXPECT_EQ(counts["drill"], 2) << told;
+}
+
 TEST(SteppedReceipts, ASecondRequestIsRefusedByNameAndTheFirstOneCanBeCancelled) {
   SteppedSubsystem system(kReceipts);
   ASSERT_TRUE(system.until_started());

@@ -173,8 +173,11 @@ class SteppedSubsystem {
     ASSERT_TRUE(made) << made.error().message.c_str();
     manager_ = *std::move(made);
     backend_ = std::make_unique<ManagerBackend>(*manager_);
-    const int receipts[] = {manager_->receipts().descriptor()};
-    await_readable(receipts, seconds(60));  // the thread that reads the receipts of before is not stepped
+    first_event_ = manager_->state().log.first();
+    for (const Filing* filing : manager_->filings()) {
+      const int readers[] = {filing->descriptor()};
+      await_readable(readers, seconds(60));  // the thread that reads the file of before is not stepped
+    }
     keep();
   }
   /// While it is stopped the keeper starts nothing.
@@ -233,11 +236,11 @@ class SteppedSubsystem {
       text += one["to"].as_string() + " " + one["end"].as_string() + "\n";
     return text;
   }
-  /// The texts of all events of a kind, a line each, with the name of the task first if there is one.
+  /// The texts of all events of a kind of this manager, a line each, with the name of the task first if there is one.
   std::string events(std::string_view kind) {
     std::string text;
     const ManagerState& state = manager_->state();
-    for (std::uint64_t n = state.log.first(); n <= state.log.last(); ++n) {
+    for (std::uint64_t n = first_event_; n <= state.log.last(); ++n) {
       const LoggedEvent& event = state.log.at(n);
       if (event.kind != kind) continue;
       text += (event.task.is_valid() ? state.name(event.task) + ": " : "") + event.text + "\n";
@@ -279,7 +282,8 @@ class SteppedSubsystem {
     if (!keeper_is_stopped_) page().beats.fetch_add(1);
     if (manager_ == nullptr) return;
     if (!manager_->step(now())) return kill_manager();
-    if (manager_->receipts().unfiled() > 0) manager_->finish();  // the thread that files is not stepped
+    Filing& receipts = manager_->receipts().filing();
+    if (!receipts.unfiled().empty()) receipts.flush(milliseconds(800));  // the thread that files is not stepped
     if (!keeper_is_stopped_) keep();
   }
   void step(std::uint32_t r) {
@@ -385,6 +389,7 @@ class SteppedSubsystem {
   Channel channel_;
   OwnedDescriptor manager_segment_{-1};
   std::uint32_t manager_incarnation_ = 0;
+  std::uint64_t first_event_ = 1;  // of this manager
   bool keeper_is_stopped_ = false;
   std::unique_ptr<ManagerLoop> manager_;
   std::unique_ptr<ManagerBackend> backend_;

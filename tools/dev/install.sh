@@ -134,7 +134,7 @@ remove() {
   for path in "${changed[@]}"; do note "left where it is, because you changed it: $prefix/$path"; done
   note "removed ${#same[@]} files from $prefix"
   local state=${XDG_STATE_HOME:-${HOME:-}/.local/state}/chimera
-  [ ! -d "$state" ] || note "left where it is, because it is yours: $state (receipts of switches, lines of the shell)"
+  [ ! -d "$state" ] || note "left where it is, because it is yours: $state (receipts, events, lines of the shell)"
 }
 
 act=${1:-} prefix=${2:-}

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "chimera/base/assert.h"
+#include "chimera/cli/live/events_command.h"
 #include "chimera/cli/live/live.h"
 #include "chimera/cli/live/one_shot.h"
 #include "chimera/cli/live/receipts_command.h"
@@ -73,7 +74,12 @@ RunningCommand end_row() {
 RunningCommand events_row() {
   return {.words = {.name = "events",
                     .help = "Print the events of the subsystem, numbered without a gap",
-                    .options = {{.name = "--since", .value = "N", .help = "events from this number on"},
+                    .options = {{.name = "--since",
+                                 .value = "TIME|N",
+                                 .help = "events from a time on ('10 min' ago, '14:05', '2026-11-28'), or from N on",
+                                 .manual = "Events from a time on, also of earlier runs: '10 min' ago, '14:05', "
+                                           "'2026-11-28' or '2026-11-28 14:05:30' of local time; or those of this run "
+                                           "from number N on."},
                                 {.name = "--kind",
                                  .value = "KIND,...",
                                  .help = "only these, such as 'set,fault'",
@@ -86,11 +92,13 @@ RunningCommand events_row() {
                                 {.name = "--follow", .help = "print new events as they happen, until Ctrl-C"}},
                     .example = "chimera events --follow",
                     .manual = "Prints the events of the subsystem, numbered without a gap; says how many older ones "
-                              "were overwritten."},
+                              "are gone. When the subsystem does not run, from its file: "
+                              "`$XDG_STATE_HOME/chimera/SUBSYSTEM/events.jsonl`, else in `~/.local/state`."},
           .method = "events",
           .once = events,
           .live = follow_events,
-          .live_option = "--follow"};
+          .live_option = "--follow",
+          .without = filed_events};
 }
 
 RunningCommand flag_row() {

@@ -38,7 +38,7 @@ TEST(Command, OperandsAndOptionsComeInAnyOrder) {
 TEST(Command, RefusesWithTheNearestName) {
   EXPECT_EQ(refusal({"statsu"}), "no command 'statsu'; did you mean 'status'?; `help` lists them");
   EXPECT_EQ(refusal({"events", "--sinc", "3"}), "events has no option '--sinc'; did you mean '--since'?");
-  EXPECT_EQ(refusal({"events", "--since"}), "--since needs a value: N");
+  EXPECT_EQ(refusal({"events", "--since"}), "--since needs a value: TIME|N");
   EXPECT_EQ(refusal({"why"}), "VAR is required");
   EXPECT_EQ(refusal({"status", "x"}), "'x' is one word too many");
   EXPECT_EQ(refusal({"status", "--subsystem", "x"}), "status has no option '--subsystem'");
@@ -115,7 +115,7 @@ TEST(Command, HelpPrintsUsageOptionsAndAnExample) {
             "Usage: events [OPTIONS]\n\n"
             "Options:\n"
             "  -h,--help                   Print this help and exit\n"
-            "  --since N                   events from this number on\n"
+            "  --since TIME|N              events from a time on ('10 min' ago, '14:05', '2026-11-28'), or from N on\n"
             "  --kind KIND,...             only these, such as 'set,fault'\n"
             "  --each                      a line for every event; else misses within 100 ms of each other are one\n"
             "  --follow                    print new events as they happen, until Ctrl-C\n"

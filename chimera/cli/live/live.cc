@@ -7,10 +7,10 @@
 
 #include "chimera/base/hosted/terminal_text.h"
 #include "chimera/base/hosted/wording.h"
+#include "chimera/cli/live/events_command.h"
 #include "chimera/cli/live/terminal.h"
 #include "chimera/cli/live/top.h"
 #include "chimera/cli/live/watch.h"
-#include "chimera/cli/print/event_lines.h"
 #include "chimera/cli/print/fields.h"
 #include "chimera/cli/print/sparkline.h"
 #include "chimera/platform/standard_streams.h"
@@ -133,7 +133,7 @@ int follow(Session& session, const Call& call, Json subscription, std::FILE* out
   if (!subscribed.is_good()) return print(refused(subscribed, call.json), out, err);
   InputWait attention(false);
   for (;;) {
-    const Wakeup woken = attention.wait(&session.client(), seconds(60));
+    Wakeup woken = attention.wait(&session.client(), seconds(60));
     if (woken.by == By::kStop) return end_of_notes(session);
     if (woken.by == By::kLost && !session.ask("subscribe", subscription).is_good())
       return print(refused(woken.error, call.json), out, err);
@@ -169,7 +169,7 @@ int watch(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
   Watch shown(channels.value());
   bool is_first = true;
   const Json wanted = {{"to", "values"}, {"period_ms", period.value()}, {"variables", variables_of(channels.value())}};
-  return follow(session, call, wanted, out, err, [&](const control::Note& note, Json&) {
+  return follow(session, call, wanted, out, err, [&](control::Note& note, Json&) {
     if (call.json) return;
     shown.add((*note.parameters)["values"]);
     const std::size_t width = screen_size(kStandardOutput).width;
@@ -182,18 +182,13 @@ int watch(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
 }
 
 int follow_events(Session& session, const Call& call, std::FILE* out, std::FILE* err) {
-  const auto kinds = read_kinds(call.value("--kind"));
-  if (!kinds) return print(refused(kinds.error(), call.json, kUsage), out, err);
-  Call once = call;
-  once.options.erase("--follow");
-  const CommandResult said = one_shot(session, once, {});
-  if (said.code != kOk) return print(said, out, err);
-  const std::string since = call.value("--since");
-  Json wanted = {{"to", "events"}};
-  wanted["since"] = since.empty() ? 0 : std::stoll(since);
-  EventLines lines(kinds.value(), call.has("--each"));
-  return follow(session, call, wanted, out, err, [&](const control::Note& note, Json& next) {
+  const auto choice = read_choice(call);
+  if (!choice) return print(refused(choice.error(), call.json, kUsage), out, err);
+  EventLines lines = choice->lines;
+  const Json wanted = {{"to", "events"}, {"since", choice->since.number}};
+  return follow(session, call, wanted, out, err, [&](control::Note& note, Json& next) {
     for (const Json& event : (*note.parameters)["events"]) next["since"] = whole_of(event, "number") + 1;
+    note.parameters = std::make_shared<const Json>(only(lines, *note.parameters));
     if (call.json) return;
     if (const std::int64_t gone = whole_of(*note.parameters, "lost"); gone > 0)
       std::fprintf(out, "(%lld older events are gone)\n", static_cast<long long>(gone));

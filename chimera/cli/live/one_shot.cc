@@ -3,7 +3,6 @@
 #include "chimera/cli/live/one_shot.h"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 
 #include "chimera/analysis/recorded_profile.h"
@@ -13,7 +12,6 @@
 #include "chimera/cli/live/save_file.h"
 #include "chimera/cli/live/words.h"
 #include "chimera/cli/print/answer_text.h"
-#include "chimera/cli/print/event_lines.h"
 #include "chimera/cli/print/fields.h"
 #include "chimera/cli/print/status_text.h"
 #include "chimera/platform/standard_streams.h"
@@ -87,11 +85,6 @@ bool has_agreed(const std::string& question) {
   return typed.substr(0, typed.find_first_of("\r\n")) == "yes";
 }
 
-Json only(const EventLines& lines, Json answer) {
-  std::erase_if(answer["events"].elements(), [&](const Json& e) { return !lines.is_wanted(e); });
-  return answer;
-}
-
 }  // namespace
 
 CommandResult turn_on(Session& session, const Call& call, const Screen&) {
@@ -112,21 +105,6 @@ CommandResult profile(Session& session, const Call& call, const Screen&) {
   const auto written = write_recorded_profile(file, recorded(text_of(*hello.result, "subsystem"), *tasks));
   if (!written) return refused(written.error(), call.json);
   return {call.json ? json_line({{"file", file}}) : file + ": written\n", "", kOk};
-}
-
-CommandResult events(Session& session, const Call& call, const Screen&) {
-  std::int64_t since = 0;
-  const std::string text = call.value("--since");
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), since);
-  if (call.has("--since") && (error != std::errc() || end != text.data() + text.size() || since < 0))
-    return wrong("--since: '" + text + "' is no number of an event", call.json);
-  const auto kinds = read_kinds(call.value("--kind"));
-  if (!kinds) return refused(kinds.error(), call.json, kUsage);
-  control::RpcResponse answer = session.ask("events", {{"since", since}});
-  const EventLines lines(kinds.value(), call.has("--each"));
-  if (call.json && answer.is_good() && !kinds->empty())
-    answer = control::RpcResponse::good(only(lines, *answer.result));
-  return answered(answer, call.json, [&](const Json& told) { return events_text(told, since, lines); });
 }
 
 CommandResult flag(Session& session, const Call& call, const Screen&) {

@@ -11,7 +11,6 @@ CommandResult turn_on(Session& session, const Call& call, const Screen& screen);
 CommandResult status(Session& session, const Call& call, const Screen& screen);
 CommandResult profile(Session& session, const Call& call, const Screen& screen);
 CommandResult save(Session& session, const Call& call, const Screen& screen);
-CommandResult events(Session& session, const Call& call, const Screen& screen);
 CommandResult flag(Session& session, const Call& call, const Screen& screen);
 CommandResult switch_to(Session& session, const Call& call, const Screen& screen);
 CommandResult drill(Session& session, const Call& call, const Screen& screen);

@@ -2,22 +2,17 @@
 // Asks for receipts, or reads them from their file, and makes a table of them.
 #include "chimera/cli/live/receipts_command.h"
 
-#include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
-#include <filesystem>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "chimera/base/hosted/wording.h"
+#include "chimera/cli/live/filed_lines.h"
 #include "chimera/cli/print/answer_text.h"
 #include "chimera/cli/print/columns.h"
 #include "chimera/cli/print/fields.h"
 #include "chimera/cli/print/figures.h"
-#include "chimera/control/receipt/receipt_file.h"
-#include "chimera/control/state_folder.h"
 #include "chimera/text/json.h"
 
 namespace chimera::cli {
@@ -25,18 +20,6 @@ namespace {
 
 /// How many receipts are asked for.
 std::uint64_t last_of(const Call& call) { return call.has("--last") ? std::stoull(call.value("--last")) : 20; }
-
-/// The subsystems with receipts, in order.
-std::vector<std::string> all_with_receipts() {
-  std::vector<std::string> all;
-  std::error_code error;
-  for (std::filesystem::directory_iterator at(control::state_folder(), error), end; !error && at != end;
-       at.increment(error))
-    if (std::filesystem::exists(control::ReceiptFile(at->path().string()).path(), error))
-      all.push_back(at->path().filename().string());
-  std::ranges::sort(all);
-  return all;
-}
 
 std::string asked_at(const Json& receipt) {
   const auto at = static_cast<std::time_t>(whole_of(receipt, "wall_ns") / 1'000'000'000);
@@ -103,27 +86,14 @@ CommandResult receipts(Session& session, const Call& call, const Screen&) {
 }
 
 CommandResult filed_receipts(const Call& call, const std::string& subsystem, const Error& why) {
-  if (why.code != ErrorCode::kNotFound) return refused(why, call.json);  // it may run
-  const char* chosen = std::getenv("CHIMERA_SUBSYSTEM");
-  const std::string asked = !subsystem.empty() ? subsystem : chosen != nullptr ? chosen : "";
-  const std::vector<std::string> all = asked.empty() ? all_with_receipts() : std::vector{asked};
-  if (all.size() > 1) {
-    const std::string others = join(std::span(all).subspan(1), ", ");
-    const std::string text = std::string(why.message.view()) + "; receipts of earlier runs: `chimera receipts " +
-                             "--subsystem " + all[0] + "`, also " + others;
-    return refused({why.code, std::string_view(text), why.where}, call.json);
-  }
-  const std::string name = all.empty() ? "" : all[0];
-  if (name.empty() || name.find('/') != std::string::npos) return refused(why, call.json);
-  const control::ReceiptFile file(control::state_folder_of(name));
-  const std::vector<std::string> lines = file.last(last_of(call));
-  if (lines.empty()) return refused(why, call.json);
+  const auto filed = filed_lines("receipts", subsystem, last_of(call), why);
+  if (!filed) return refused(filed.error(), call.json);
   Json receipts = Json::array();
-  for (const std::string& line : lines) receipts.push_back(Json::parse(line));
-  const Json answer = {{"receipts", std::move(receipts)}, {"file", file.path()}, {"unfiled", 0}, {"fault", Json()},
-                       {"subsystem", name}};
+  for (const std::string& line : filed->lines) receipts.push_back(Json::parse(line));
+  const Json answer = {{"receipts", std::move(receipts)}, {"file", filed->path}, {"unfiled", 0}, {"fault", Json()},
+                       {"subsystem", filed->subsystem}};
   if (call.json) return {json_line(answer), "", kOk};
-  return {receipts_text(answer), "'" + name + "' does not run: from " + file.path() + "\n", kOk};
+  return {receipts_text(answer), filed->source(), kOk};
 }
 
 }  // namespace chimera::cli

@@ -7,7 +7,7 @@
 #include <ctime>
 #include <filesystem>
 
-#include "chimera/control/receipt/receipt_file.h"
+#include "chimera/control/rotated_file.h"
 #include "chimera/text/json.h"
 
 namespace chimera::cli {
@@ -42,7 +42,7 @@ struct ReceiptsCommandTest : ::testing::Test {
   ~ReceiptsCommandTest() override { std::filesystem::remove_all(place); }
   void file(const std::string& subsystem, int number) {
     const std::string line = "{\"number\": " + std::to_string(number) + ", \"origin_ns\": 7, \"to\": \"a\"}";
-    ASSERT_TRUE(control::ReceiptFile(std::string(place) + "/chimera/" + subsystem).file({line}));
+    ASSERT_TRUE(control::RotatedFile(std::string(place) + "/chimera/" + subsystem, "receipts").file({line}));
   }
   static CommandResult filed(const std::vector<std::string>& words, const std::string& subsystem = {},
                              ErrorCode code = ErrorCode::kNotFound) {

@@ -206,7 +206,9 @@ TEST_F(ShellTest, ARefusalHasTheServersWordsAndTheNearestName) {
   EXPECT_EQ(error["error"]["code"], control::kUnknown);
   EXPECT_EQ(error["error"]["nearest"], "pid");
   EXPECT_EQ(run({"flag", "sideways"}), "2||[puma_pid] flag: found 'sideways', expected up or down\n");
-  EXPECT_EQ(run({"events", "--since", "x"}), "2||[puma_pid]\n--since: 'x' is no number of an event\n");
+  EXPECT_EQ(run({"events", "--since", "x"}),
+            "2||[puma_pid]\n--since: found 'x', expected the number of an event, a time ago such as '10 min', or a "
+            "time such as '14:05' or '2026-11-28 14:05'\n");
 }
 
 TEST_F(ShellTest, AnActOnASubsystemOfAnotherTerminalAndFolderWantsItsName) {

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdio>
 #include <ctime>
+#include <optional>
 #include <utility>
 
 #include "chimera/base/hosted/wording.h"
@@ -15,6 +17,7 @@
 #include "chimera/cli/print/figures.h"
 #include "chimera/text/json.h"
 #include "chimera/text/nearest.h"
+#include "chimera/units/quantity.h"
 
 namespace chimera::cli {
 namespace {
@@ -32,23 +35,59 @@ constexpr std::int64_t kPause = milliseconds(100).count;  // that does not end a
 
 bool is_of_a_miss(std::string_view kind) { return std::ranges::find(kOfAMiss, kind) != kOfAMiss.end(); }
 
-std::string clock_text(std::int64_t wall_ns) {
-  const std::time_t seconds = wall_ns / 1'000'000'000;
+constexpr std::int64_t kSecond = 1'000'000'000;
+
+std::string clock_text(std::int64_t wall_ns, bool is_dated) {
+  const std::time_t seconds = wall_ns / kSecond;
   std::tm parts{};
   localtime_r(&seconds, &parts);
   char text[48];
-  std::snprintf(text, sizeof text, "%02d:%02d:%02d.%03d", parts.tm_hour, parts.tm_min, parts.tm_sec,
-                static_cast<int>(wall_ns / 1'000'000 % 1000));
+  const std::size_t end = std::strftime(text, sizeof text, is_dated ? "%F %T" : "%T", &parts);
+  std::snprintf(text + end, sizeof text - end, ".%03d", static_cast<int>(wall_ns / 1'000'000 % 1000));
   return text;
 }
 
-std::string line(std::int64_t number, std::int64_t wall_ns, const std::string& kind, const std::string& text) {
-  char head[32];
-  std::snprintf(head, sizeof head, "%6lld", static_cast<long long>(number));
-  return std::string(head) + "  " + clock_text(wall_ns) + "  " + fitted(kind, 15) + "  " + text + "\n";
+/// The instant of "2026-11-28 14:05:30", without seconds, or without a time of day; or the last "14:05" before `now`.
+std::optional<std::int64_t> instant_of(std::string text, std::time_t now) {
+  std::ranges::replace(text, 'T', ' ');
+  for (const char* const form : {"%Y-%m-%d %H:%M:%S", "%Y-%m-%d %H:%M", "%Y-%m-%d", "%H:%M:%S", "%H:%M"}) {
+    const bool has_day = form[1] == 'Y';
+    std::tm parts{};
+    if (!has_day) localtime_r(&now, &parts), parts.tm_sec = 0;
+    const char* const end = ::strptime(text.c_str(), form, &parts);
+    if (end == nullptr || *end != '\0') continue;
+    parts.tm_isdst = -1;
+    std::tm typed = parts;
+    std::time_t at = std::mktime(&parts);
+    if (parts.tm_mday != typed.tm_mday) return std::nullopt;  // such as 30 February
+    if (!has_day && at > now) --typed.tm_mday, at = std::mktime(&typed);
+    return std::clamp<std::int64_t>(at, -9 * kSecond, 9 * kSecond) * kSecond;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
+
+Result<Since> read_since(const std::string& text, std::int64_t now_ns) {
+  Since since;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), since.number);
+  const bool is_number = error == std::errc() && end == text.data() + text.size() && since.number >= 0;
+  if (is_number) return since;
+  since.number = 0;
+  if (const auto ago = parse_duration(text)) since.wall_ns = now_ns - ago->count;
+  else if (const auto at = instant_of(text, now_ns / kSecond)) since.wall_ns = *at;
+  if (since.is_time()) return since;
+  return Error{ErrorCode::kBadInput,
+               {"--since: found '" + text + "', expected the number of an event, a time ago such as '10 min', or a " +
+                "time such as '14:05' or '2026-11-28 14:05'"},
+               {}};
+}
+
+std::string EventLines::line(const Event& first, const std::string& kind, const std::string& text) const {
+  char head[32];
+  std::snprintf(head, sizeof head, "%6lld", static_cast<long long>(first.number));
+  return std::string(head) + "  " + clock_text(first.wall_ns, is_dated_) + "  " + fitted(kind, 15) + "  " + text + "\n";
+}
 
 EventLines::Event EventLines::read(const Json& event) {
   const std::string task = text_of(event, "task");
@@ -60,12 +99,12 @@ EventLines::Event EventLines::read(const Json& event) {
           text_of(event, "text") + (text_of(event, "by").empty() ? "" : ", by " + text_of(event, "by"))};
 }
 
-std::string EventLines::line_of(const Event& event) {
-  return line(event.number, event.wall_ns, event.kind, (event.who.empty() ? "" : event.who + ": ") + event.text);
+std::string EventLines::line_of(const Event& event) const {
+  return line(event, event.kind, (event.who.empty() ? "" : event.who + ": ") + event.text);
 }
 
 // "miss x4": the tasks, the first cause, and how far it goes.
-std::string EventLines::line_of(const std::vector<Event>& incident) {
+std::string EventLines::line_of(const std::vector<Event>& incident) const {
   std::vector<std::string> tasks;
   for (const Event& event : incident)
     if (!event.who.empty() && std::ranges::find(tasks, event.who) == tasks.end()) tasks.push_back(event.who);
@@ -74,7 +113,7 @@ std::string EventLines::line_of(const std::vector<Event>& incident) {
   const std::string text = join(tasks, ", ") + ": " + (cause == incident.end() ? first : *cause).text + "; " +
                            std::to_string(incident.size()) + " events to number " + std::to_string(last.number) +
                            ", within " + duration_text(last.at_ns - first.at_ns);
-  return line(first.number, first.wall_ns, "miss x" + std::to_string(incident.size()), text);
+  return line(first, "miss x" + std::to_string(incident.size()), text);
 }
 
 std::span<const std::string_view> event_kinds() noexcept { return kKinds; }
@@ -95,6 +134,7 @@ Result<std::vector<std::string>> read_kinds(std::string_view text) {
 }
 
 bool EventLines::is_wanted(const Json& event) const {
+  if (whole_of(event, "wall_ns") < from_ns_) return false;
   return kinds_.empty() || std::ranges::find(kinds_, text_of(event, "kind")) != kinds_.end();
 }
 

@@ -36,6 +36,44 @@ TEST(EventLines, NameTheUserWhoseRequestAnEventIs) {
   EXPECT_NE(events_text(events, 0).find("set              kp = 2, by operate:ann\n"), std::string::npos);
 }
 
+TEST(EventLines, HaveADateIfAsked) {
+  setenv("TZ", "UTC", 1);
+  tzset();
+  const Json events = Json::parse(R"({"first": 1, "last": 1, "events": [
+      {"number": 1, "at_ns": 5, "wall_ns": 1700000002123456789, "kind": "set", "text": "kp = 2",
+       "by": "operate:ann"}]})");
+  EXPECT_EQ(events_text(events, 0, EventLines({}, true, INT64_MIN, true)),
+            "     1  2023-11-14 22:13:22.123  set              kp = 2, by operate:ann\n");
+  EXPECT_EQ(events_text(events, 0, EventLines({}, true, 1700000002123456790)), "") << "it is earlier";
+}
+
+TEST(Since, IsANumberAnAgeOrATime) {
+  setenv("TZ", "UTC", 1);
+  tzset();
+  constexpr std::int64_t kNow = 1'700'000'002;  // 2023-11-14 22:13:22
+  const auto seconds_of = [](const std::string& text) {
+    return read_since(text, kNow * 1'000'000'000)->wall_ns / 1'000'000'000;
+  };
+  EXPECT_EQ(read_since("17", 0)->number, 17);
+  EXPECT_FALSE(read_since("17", 0)->is_time());
+  EXPECT_EQ(seconds_of("10 min"), kNow - 600);
+  EXPECT_EQ(seconds_of("22:13"), kNow - 22);
+  EXPECT_EQ(seconds_of("22:13:22"), kNow);
+  EXPECT_EQ(seconds_of("22:13:23"), kNow + 1 - 86400) << "yesterday";
+  EXPECT_EQ(seconds_of("2023-11-14"), kNow - kNow % 86400);
+  EXPECT_EQ(seconds_of("2023-11-14 22:13"), kNow - 22);
+  EXPECT_EQ(seconds_of("2023-11-14T22:13:21"), kNow - 1);
+  EXPECT_GT(seconds_of("9999-12-31"), kNow);
+  for (const char* const wrong : {"", "-1", "1.5", "17x", "ten", "10 m", "-10 min", "25:00", "12:60", "2023-02-30",
+                                  "2023-13-01", "2023-11-14 25:00", "99999999999999999999", "22:13 h"}) {
+    const auto since = read_since(wrong, kNow);
+    ASSERT_FALSE(since) << wrong;
+    EXPECT_EQ(since.error().message.view(),
+              "--since: found '" + std::string(wrong) + "', expected the number of an event, a time ago such as " +
+                  "'10 min', or a time such as '14:05' or '2026-11-28 14:05'");
+  }
+}
+
 Json event(int number, std::int64_t at_ms, const char* kind, const char* task, const char* text) {
   return {{"number", number},
           {"at_ns", at_ms * 1'000'000},

@@ -87,6 +87,7 @@ class RemoteTarget final : public RunTarget {
   void on_event(const Json& event);
   void take_back_failure();  // that came behind the start
   void check_output();
+  std::string finish_log() { return request_.log == nullptr ? "" : request_.log->finish(kFilingLimit); }
   void act_next();
   void act(const TimedAct& timed);
   void switch_to(const TimedAct& timed);
@@ -190,14 +191,9 @@ Result<void> RemoteTarget::know_tasks(const Json& status) {
 }
 
 /// The lines of a warning behind each other.
-std::string in_one_line(const std::string& grant) {
-  std::string line;
-  for (std::size_t at = 0; at < grant.size(); ++at) {
-    const bool is_break = grant.compare(at, 3, "\n  ") == 0;
-    line += is_break ? std::string("; ") : std::string(1, grant[at]);
-    if (is_break) at += 2;
-  }
-  return line;
+std::string in_one_line(std::string grant) {
+  for (std::size_t at; (at = grant.find("\n  ")) != grant.npos;) grant.replace(at, 3, "; ");
+  return grant;
 }
 
 void RemoteTarget::print_grants(const Json& status) {
@@ -227,8 +223,9 @@ void RemoteTarget::poll_events() {
   page_.events_seen = std::max<std::uint64_t>(page_.events_seen, next_event_);
 }
 
-/// Reports once that standard output is lost; the run goes on.
+/// Reports once that standard output or the log is lost; the run goes on.
 void RemoteTarget::check_output() {
+  if (request_.log != nullptr) request_.log->report_loss(err_);
   const int why = request_.outlet == nullptr ? 0 : request_.outlet->why_lost();
   if (why == 0 || page_.lost_output != 0) return;
   page_.lost_output = why;
@@ -256,6 +253,7 @@ void RemoteTarget::on_event(const Json& event) {
   if (kind == "rtpu-restarted" && event["rtpu"].is_string())
     restarted_[event["rtpu"].as_string()] = instant(event["at_ns"]);
   const bool is_news = next_event_ > page_.events_seen;
+  if (is_news && request_.log != nullptr) request_.log->add(event);
   if (kind == "note" && !run_.json && is_news) std::fprintf(out_, "%s\n", note_line(task, text).c_str());
   if (kind == "not-off") not_off_.push_back({task, text});
   if ((kind == "switch" && !text.ends_with(": begun")) || kind == "bump") switches_ += text + "\n";
@@ -419,6 +417,7 @@ void RemoteTarget::judge_end(RunReport& report, const Json& before) {
         " of the acts of --at were carried out: the process that asked for them died");
   if (ended.empty() && !names_.tasks.empty())
     report.verdict.failures.emplace_back("the manager did not answer at the end: how the tasks ended is not known");
+  if (const std::string loss = finish_log(); !loss.empty()) report.verdict.failures.push_back(loss);
   const Nanoseconds until = clock_.now() + kFilingLimit;
   for (bool is_last = !after; !is_last; clock_.wait_until(clock_.now() + kStartLook)) {
     const auto answer = line_.ask("receipts", {{"last", 1}});
@@ -437,6 +436,7 @@ int RemoteTarget::refuse(const Error& error) {
   std::fputs(output.err.c_str(), err_);
   std::fflush(out_);
   (void)await_end();
+  (void)finish_log();
   for (const NotOff& one : not_off_) std::fprintf(err_, "FAILED: %s: %s\n", one.task.c_str(), one.text.c_str());
   return output.code;
 }

@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "chimera/cli/run/outlet.h"
+#include "chimera/cli/print/outlet.h"
+#include "chimera/cli/print/run_log.h"
 #include "chimera/cli/run/run.h"
 #include "chimera/runtime/hosted/face_page.h"
 
@@ -19,6 +20,7 @@ struct AttendRequest {
   std::vector<Bound> bounds;  ///< of run.expect
   int keeper = 0;              ///< process that ends the tasks when it gets SIGUSR1; 0: none
   FacePage* page = nullptr;    ///< progress of earlier run clients; null: there was none, and none will follow
+  RunLog* log = nullptr;       ///< gets each event; may be null
   Outlet* outlet = nullptr;    ///< of `out`: asked for losses, which SIGUSR2 reports to the keeper; may be null
 };
 

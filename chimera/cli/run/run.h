@@ -34,6 +34,7 @@ struct RunRequest {
   Nanoseconds every;                  ///< how often; 0: every second, into a picture at the shortest period
   std::string svg;                    ///< draw them to this file instead; virtual time or one process only
   std::string profile;                ///< save the profile into this file at the end; "": not
+  std::string log;                    ///< add the events to this file as they come; "": not
   bool json = false;
   bool strict = false;  ///< a run that was not clean (run_verdict.h) is no success
 };

@@ -5,7 +5,7 @@
 #include "chimera/cli/run/run.h"
 #include "chimera/cli/run/testing/test_application.h"
 
-namespace chimera::cli {
+namespace chimera::cli::several_rtpus_test {
 namespace {
 
 /// The rtpu of each kind of record.
@@ -155,4 +155,4 @@ TEST(SeveralRtpus, SwitchToTheSetThatNamedTasksLeadTo) {
 }
 
 }  // namespace
-}  // namespace chimera::cli
+}  // namespace chimera::cli::several_rtpus_test

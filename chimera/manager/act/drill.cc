@@ -56,7 +56,7 @@ Drill::Drill(ManagerState& state, std::function<void(RtpuId)> end_rtpu)
 
 void Drill::begin(Nanoseconds wait, RtpuId to_kill, Nanoseconds now, Drilled drilled) {
   CHIMERA_ASSERT(!is_under_way());
-  Present present{{}, now, now + wait, wait, std::move(drilled), to_kill};
+  Present present{{}, now, now + wait, wait, std::move(drilled), to_kill, state_.acting};
   for (const DrillPart& part : hardware_) {
     if (state_.state(part.task) != State::kOn) continue;
     present.outcome.tasks.push_back(part);
@@ -138,6 +138,7 @@ void Drill::look(Nanoseconds now) {
   show_flag(false);
   const Present over = std::move(*present_);
   present_.reset();
+  const Acting acting(state_, over.by);
   tell(over.outcome, now);
   over.drilled(over.outcome);
 }

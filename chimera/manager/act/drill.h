@@ -82,6 +82,7 @@ class Drill {
     Nanoseconds raised, until, wait;
     Drilled drilled;
     RtpuId to_kill;
+    std::string by;  ///< who asked for it
     Nanoseconds killed_at{};
   };
   void show_flag(bool up);

@@ -285,6 +285,7 @@ Json profile_json(const ManagerState& state, Nanoseconds at) {
 
 Json event_json(const ManagerState& state, const LoggedEvent& event) {
   Json json = {{"number", event.number},
+               {"origin_ns", state.keeper.origin.count},
                {"at_ns", event.at.count},
                {"wall_ns", event.wall_ns},
                {"kind", event.kind},

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The events of a subsystem, numbered without a gap from its start, over every restart of the manager. The log keeps
-// the last 10,000; a client that asks for older events learns how many are lost.
+// the last 10,000, also those of dead managers; a client that asks for older events learns how many are gone.
 #pragma once
 
 #include <cstdint>
 #include <deque>
 #include <string>
+#include <vector>
 
 #include "chimera/base/ids.h"
 #include "chimera/base/time.h"
@@ -34,6 +35,8 @@ class EventLog {
 
   /// Adds an event under the next number; ignores `event.number`.
   void add(LoggedEvent event);
+  /// Puts events of dead managers before those kept: the ones without a gap up to first(). Requires: `older` ascends.
+  void recall(std::vector<LoggedEvent> older);
   /// Number of the oldest event kept, last() + 1 when there is none; and of the newest, 0 before the first.
   std::uint64_t first() const noexcept { return last_ - kept_.size() + 1; }
   std::uint64_t last() const noexcept { return last_; }

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 namespace chimera::manager {
 namespace {
 
@@ -27,6 +29,37 @@ TEST(EventLog, GoesOnBehindThePredecessorsLastNumber) {
   EXPECT_EQ(log.last(), 232u);
   EXPECT_EQ(log.at(231).text, "a");
   EXPECT_EQ(log.at(232).number, 232u);
+}
+
+std::vector<LoggedEvent> numbered(std::vector<std::uint64_t> numbers) {
+  std::vector<LoggedEvent> events;
+  for (const std::uint64_t number : numbers) {
+    events.push_back(said(std::to_string(number)));
+    events.back().number = number;
+  }
+  return events;
+}
+
+TEST(EventLog, RecallsEventsOfDeadManagersUpToAGap) {
+  EventLog log(7);
+  log.add(said("own"));
+  log.recall(numbered({1, 2, 4, 5, 6, 6, 7, 8, 9}));
+  EXPECT_EQ(log.first(), 4u) << "event 3 is lost";
+  EXPECT_EQ(log.at(6).text, "6");
+  EXPECT_EQ(log.at(8).text, "own") << "an event of this manager is not replaced";
+  log.recall(numbered({1, 2}));
+  EXPECT_EQ(log.first(), 4u);
+  log.recall({});
+}
+
+TEST(EventLog, RecallsNoMoreThanItKeeps) {
+  EventLog log(kEventsKept);
+  for (int i = 0; i < 5; ++i) log.add(said("own"));
+  std::vector<std::uint64_t> numbers(kEventsKept);
+  std::iota(numbers.begin(), numbers.end(), 1u);
+  log.recall(numbered(numbers));
+  EXPECT_EQ(log.first(), 6u);
+  EXPECT_EQ(log.at(6).text, "6");
 }
 
 TEST(EventLog, KeepsTheLastTenThousand) {

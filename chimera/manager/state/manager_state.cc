@@ -49,8 +49,9 @@ FaultRecord ManagerState::fault(TaskId task) const noexcept {
 }
 
 void ManagerState::tell(std::string kind, TaskId task, RtpuId rtpu, std::string text, Nanoseconds at) {
-  own.block().memory().events.store(log.last() + 1, std::memory_order_release);
   log.add({0, at, wall_ns(at), std::move(kind), task, rtpu, std::move(text), acting});
+  if (keep) keep(log.at(log.last()));  // may add a note about the disk
+  own.block().memory().events.store(log.last(), std::memory_order_release);
 }
 
 void ManagerState::announce() noexcept {

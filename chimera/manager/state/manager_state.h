@@ -2,6 +2,7 @@
 // The state from which the manager makes all its answers.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -58,6 +59,7 @@ struct ManagerState {
   std::vector<std::uint32_t> tap_users;  ///< by task: subscriptions that want its publications
   std::int32_t keeper_pid = 0;
   std::string keeper_hang, guard_hang;  ///< "" while it runs
+  std::function<void(const LoggedEvent&)> keep;  ///< called with each event before a client can see it; may be null
   std::string acting;                   ///< Asker::text() of the request that is being carried out; "": none is
 
   const ApplicationSpec& spec() const noexcept { return peers.spec(); }
@@ -88,7 +90,7 @@ struct ManagerState {
   std::string name(TaskId task) const { return std::string(spec().tasks[task.index].name); }
   std::string name(RtpuId rtpu) const { return std::string(spec().rtpus[rtpu.index].name); }
 
-  /// Numbers and keeps an event. It remembers the number before any client can see the event.
+  /// Numbers and keeps an event. A successor has event and number before any client can see the event.
   void tell(std::string kind, TaskId task, RtpuId rtpu, std::string text, Nanoseconds at);
   /// Wakes all peers to read this manager's block, because it has changed.
   void announce() noexcept;

@@ -2,6 +2,8 @@
 // Makes the manager's segment, or takes over what its predecessor left in one.
 #include "chimera/manager/state/own_segment.h"
 
+#include <algorithm>
+
 #include "chimera/manager/state/switch_journal.h"
 
 namespace chimera::manager {
@@ -50,7 +52,8 @@ void OwnSegment::take_over(const BlockView& left, const Peers& peers) noexcept {
   SwitchJournal(block_.journal()).take_over(left.journal());
   const ManagerMemory& from = left.memory();
   ManagerMemory& to = block_.memory();
-  copy_word(to.events, from.events);
+  const std::uint64_t last = LineJournal(block_.event_journal()).take_over(left.event_journal());
+  to.events.store(std::max(last, from.events.load(std::memory_order_relaxed)), std::memory_order_relaxed);
   copy_word(to.started, from.started);
   copy_word(to.started_at, from.started_at);
   for (std::uint32_t r = 0; r < kMaxRtpus; ++r) {

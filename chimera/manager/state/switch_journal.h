@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "chimera/manager/state/asker.h"
+#include "chimera/manager/state/line_journal.h"
 #include "chimera/runtime/hosted/rtpu_block.h"
 #include "chimera/runtime/switch/switch_orders.h"
 
@@ -35,17 +36,8 @@ class SwitchJournal {
   struct Pages {
     std::atomic<std::uint32_t> last{0};   ///< last number in use
     std::atomic<std::uint64_t> begun{0};  ///< number of the switch under way, twice, and its index in `slots`
-    std::atomic<std::uint32_t> end{0};    ///< end of `text`, which has an Entry before each receipt
     BegunSwitch slots[2];
-    alignas(64) char text[128 << 10];
-  };
-  struct Entry {
-    std::uint32_t number, length;
-    std::atomic<std::uint32_t> is_filed;
-  };
-  struct Receipt {
-    std::uint32_t number;
-    std::string_view text;
+    alignas(64) std::byte lines[LineJournal::kHeadBytes + (128 << 10)];  ///< the LineJournal of receipts
   };
   static_assert(sizeof(Pages) <= kJournalBytes);
 
@@ -67,14 +59,11 @@ class SwitchJournal {
   /// if there is no room: then only the present manager has the receipt.
   bool put(std::uint32_t number, std::string_view text) noexcept;
   /// Receipts that are not filed, in the order of put().
-  std::vector<Receipt> unfiled() const;
-  void filed(std::uint32_t number) noexcept;
+  std::vector<LineJournal::Line> unfiled() const { return lines().unfiled(); }
+  void filed(std::uint64_t number) noexcept { lines().filed(number); }
+  LineJournal lines() const noexcept { return LineJournal(pages_->lines); }
 
  private:
-  Entry& entry_at(std::uint32_t at) const noexcept;
-  template <class Visit>
-  void visit(Visit&& visit) const;
-
   Pages* pages_;
 };
 

@@ -95,9 +95,9 @@ TEST_F(SwitchJournalTest, AFiledReceiptFreesItsRoomAndIsNotHandedOn) {
   EXPECT_TRUE(next.put(4, half)) << "a successor takes over unfiled receipts";
   next.filed(2);
   next.filed(4);
-  EXPECT_EQ(memory->pages().end, 0u);
+  EXPECT_EQ(numbers(next), "");
   EXPECT_EQ(next.next(), 5u);
-  EXPECT_FALSE(next.put(5, std::string(sizeof memory->pages().text, 'x')));
+  EXPECT_FALSE(next.put(5, std::string(sizeof memory->pages().lines, 'x')));
 }
 
 // The stores of an act one by one. After each of them its owner may be killed.
@@ -127,7 +127,7 @@ TEST_F(SwitchJournalTest, EachNumberHasOneReceiptThoughManagersAreKilled) {
   const auto seed = std::random_device{}();
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
-  std::multiset<std::uint32_t> filed;
+  std::multiset<std::uint64_t> filed;
   SwitchJournal journal = memory->journal();
   for (int i = 0; i < 20'000; ++i) {
     switch (random() % 6) {
@@ -158,7 +158,7 @@ TEST_F(SwitchJournalTest, EachNumberHasOneReceiptThoughManagersAreKilled) {
     if (filed.count(number) == 0) filed.insert(number);
   EXPECT_GT(filed.size(), 1000u);
   std::uint32_t expected = 0;
-  for (const std::uint32_t number : filed) EXPECT_EQ(number, ++expected);
+  for (const std::uint64_t number : filed) EXPECT_EQ(number, ++expected);
   EXPECT_EQ(expected + 1, journal.next());
 }
 
@@ -170,7 +170,7 @@ TEST_F(SwitchJournalTest, GarbageIsNotFollowed) {
     (void)journal.put(journal.next(), std::string(random() % 300, 'x'));
     for (int n = 0; n < 20; ++n) memory->bytes[random() % 4096] = static_cast<std::byte>(random());
     SwitchJournal next = successor();
-    for (const auto& receipt : next.unfiled()) EXPECT_LE(receipt.text.size(), sizeof memory->pages().text);
+    for (const auto& receipt : next.unfiled()) EXPECT_LE(receipt.text.size(), sizeof memory->pages().lines);
   }
 }
 

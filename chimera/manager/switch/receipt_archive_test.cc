@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "chimera/base/testing/await.h"
-#include "chimera/control/receipt/receipt_file.h"
+#include "chimera/control/rotated_file.h"
 #include "chimera/manager/testing/lone_state.h"
 #include "chimera/platform/file.h"
 
@@ -39,7 +39,8 @@ struct ReceiptArchiveTest : ::testing::Test {
   bool until(const std::function<bool()>& holds) {
     return await_that([&] { return archive->look(now()), holds(); });
   }
-  std::vector<std::string> filed() const { return control::ReceiptFile(folder()).last(1000); }
+  std::string path() const { return control::RotatedFile(folder(), "receipts").path(); }
+  std::vector<std::string> filed() const { return control::RotatedFile(folder(), "receipts").last(1000); }
   SwitchJournal journal() { return SwitchJournal(lone.state().own.block().journal()); }
 
   char place[40] = "/tmp/chimera_archive_XXXXXX";
@@ -67,7 +68,7 @@ TEST_F(ReceiptArchiveTest, AnAnswerWaitsForTheDisk) {
 // Another process holds the lock: the writer waits, as for a stalled disk.
 TEST_F(ReceiptArchiveTest, AStalledDiskIsWaitedForATenthOfASecond) {
   std::filesystem::create_directories(folder());
-  std::optional<Result<LineFile>> lock(LineFile::open(control::ReceiptFile(folder()).path()));
+  std::optional<Result<LineFile>> lock(LineFile::open(path()));
   const Nanoseconds at = now();
   archive->add(1, receipt(1), at, [this] { answered += "1 "; });
   archive->look(at + ReceiptArchive::kDiskLimit - milliseconds(1));
@@ -82,7 +83,7 @@ TEST_F(ReceiptArchiveTest, AStalledDiskIsWaitedForATenthOfASecond) {
 }
 
 TEST_F(ReceiptArchiveTest, KeepsAReceiptThatCannotBeFiledAndTriesAgain) {
-  std::filesystem::create_directories(control::ReceiptFile(folder()).path());  // a folder in the place of the file
+  std::filesystem::create_directories(path());  // a folder in the place of the file
   add(1);
   ASSERT_TRUE(until([this] { return archive->fault() != ""; }));
   EXPECT_EQ(answered, "1 ") << "a switch does not wait for a failing disk";
@@ -96,7 +97,7 @@ TEST_F(ReceiptArchiveTest, KeepsAReceiptThatCannotBeFiledAndTriesAgain) {
       << "reported once";
   std::filesystem::remove(archive->path());
   ASSERT_TRUE(until([this] {
-    archive->look(now() + ReceiptArchive::kTryAgain + seconds(1));
+    archive->look(now() + Filing::kTryAgain + seconds(1));
     return archive->unfiled() == 0;
   }));
   EXPECT_EQ(filed(), (std::vector<std::string>{receipt(1), receipt(2)}));
@@ -110,7 +111,7 @@ TEST_F(ReceiptArchiveTest, FilesReceiptsOfAPredecessorOnce) {
   archive.reset();
   ASSERT_TRUE(journal().put(1, receipt(1)));
   ASSERT_TRUE(journal().put(2, receipt(2)));
-  ASSERT_TRUE(control::ReceiptFile(folder()).file({receipt(1)}));
+  ASSERT_TRUE(control::RotatedFile(folder(), "receipts").file({receipt(1)}));
   begin(folder());
   EXPECT_EQ(archive->unfiled(), 2u);
   ASSERT_TRUE(until([this] { return archive->unfiled() == 0; }));
@@ -119,19 +120,19 @@ TEST_F(ReceiptArchiveTest, FilesReceiptsOfAPredecessorOnce) {
 }
 
 TEST_F(ReceiptArchiveTest, WithoutRoomTheOldestReceiptIsLostAndReported) {
-  std::filesystem::create_directories(control::ReceiptFile(folder()).path());
+  std::filesystem::create_directories(path());
   add(1);
   ASSERT_TRUE(until([&] { return archive->fault() != ""; }));
-  const auto most = static_cast<std::uint32_t>(ReceiptArchive::kMostUnfiled);
+  const auto most = static_cast<std::uint32_t>(Filing::kMostUnfiled);
   for (std::uint32_t number = 2; number <= 2 * most + 2; ++number) add(number);
   EXPECT_LE(archive->unfiled(), 2 * most);
-  EXPECT_NE(lone.told().find(" is lost: "), std::string::npos) << lone.told();
+  EXPECT_NE(lone.told().find("note: receipts are lost from number "), std::string::npos) << lone.told();
 }
 
 TEST_F(ReceiptArchiveTest, FlushFilesTheRemainingReceipts) {
   add(1);
   add(2);
-  archive->flush(kHangLimit);
+  archive->filing().flush(kHangLimit);
   EXPECT_EQ(filed().size(), 2u);
 }
 

@@ -327,6 +327,8 @@ void SwitchCoordinator::look(Nanoseconds now) {
   auto outcome = collect(present_->begun, now);
   if (is_tried_again(outcome->receipt, now)) return;
   const Present over = *std::exchange(present_, std::nullopt);
+  const bool is_persons = over.begun.cause == SwitchCause::kScript;
+  const Acting acting(state_, is_persons ? over.begun.asked_by.text() : "");
   tell(*outcome, now);
   file(std::move(outcome), over.begun, now, over.switched);
 }

@@ -7,7 +7,7 @@
 #include <csignal>
 #include <cstring>
 
-#include "chimera/control/receipt/receipt_file.h"
+#include "chimera/control/rotated_file.h"
 #include "chimera/control/receipt/switch_reason.h"
 #include "chimera/manager/testing/fake_subsystem.h"
 
@@ -39,7 +39,9 @@ struct SwitchCoordinatorTest : ::testing::Test {
     got->receipt.variables = got->variables;
   }
   /// The receipts in the file.
-  std::vector<std::string> filed() const { return control::ReceiptFile(fake.state() + "/chimera/fake").last(1000); }
+  std::vector<std::string> filed() const {
+    return control::RotatedFile(fake.state() + "/chimera/fake", "receipts").last(1000);
+  }
   SwitchPart& part(std::uint32_t r) { return fake.rtpu(r).block().switch_part(); }
   /// The rtpu reports that it has finished its part.
   void over(std::uint32_t r, NoSwitch why = NoSwitch::kNone) {

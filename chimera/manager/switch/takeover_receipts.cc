@@ -25,7 +25,7 @@ bool is_in_range(const VariablePart& part, const Takeover& takeover, const Appli
 
 TakeoverReceipts::TakeoverReceipts(ManagerState& state, ReceiptArchive& archive)
     : state_(state), archive_(archive), journal_(state.own.block().journal()) {
-  for (const SwitchJournal::Receipt& one : journal_.unfiled()) {
+  for (const LineJournal::Line& one : journal_.unfiled()) {
     const Json receipt = Json::parse_or_none(one.text).value_or(nullptr);
     if (text_at(receipt, "way") != "takeover") continue;
     left_.push_back({whole_at(receipt, "asked_ns"), text_at(receipt["asked_by"], "task")});

@@ -159,6 +159,7 @@ class FakeSubsystem {
     ASSERT_TRUE(made) << made.error().message.c_str();
     loop_ = *std::move(made);
     ASSERT_NE(loop_, nullptr);
+    first_event_ = loop_->state().log.first();
   }
   /// Ends the manager as SIGKILL does: it sends no message.
   void kill_manager() {
@@ -196,11 +197,11 @@ class FakeSubsystem {
   bool until_on(std::string_view name) {
     return until([&] { return loop_->state().state(task(name)) == State::kOn; });
   }
-  /// The texts of all events of a kind, with the task's name before it.
+  /// The texts of all events of a kind of this manager, with the task's name before it.
   std::string told(const std::string& kind) {
     std::string text;
     const ManagerState& state = loop_->state();
-    for (std::uint64_t n = state.log.first(); n <= state.log.last(); ++n) {
+    for (std::uint64_t n = first_event_; n <= state.log.last(); ++n) {
       const LoggedEvent& event = state.log.at(n);
       if (event.kind == kind)
         text += (event.task.is_valid() ? state.name(event.task) + ": " : "") + event.text + "\n";
@@ -272,6 +273,7 @@ class FakeSubsystem {
   std::map<std::uint32_t, std::unique_ptr<FakeRtpu>> rtpus_;
   std::map<std::uint32_t, std::optional<KeeperMessage>> ended_;
   std::unique_ptr<ManagerLoop> loop_;
+  std::uint64_t first_event_ = 1;  // of this manager; those before may be read from the disk at any time
 };
 
 }  // namespace chimera::manager

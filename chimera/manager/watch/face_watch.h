@@ -11,7 +11,7 @@ namespace chimera::manager {
 
 struct ManagerState;
 
-/// Logs each death and each loss once in the life of a manager, because the events of its predecessor are lost.
+/// Logs each death and each loss once in the life of a manager.
 class FaceWatch {
  public:
   /// Context: setup; may allocate.

@@ -24,8 +24,7 @@ std::string unguarded_text(const ManagerState& state, RtpuId rtpu);
 /// The state of the guard, as the keeper page shows it.
 class GuardWatch {
  public:
-  /// Logs each lack once in the life of a manager, because the events of its predecessor are lost: the guard is late or
-  /// dead, or an rtpu has none. Context: setup.
+  /// Logs each lack once in the life of a manager: the guard is late or dead, or an rtpu has none. Context: setup.
   void look(ManagerState& state, Nanoseconds at);
 
  private:

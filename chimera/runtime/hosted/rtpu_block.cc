@@ -38,7 +38,8 @@ constexpr std::uint64_t kTapAt = after(kOutboxAt, sizeof(PostRing) * kMaxPeers);
 constexpr std::uint64_t kSwitchPartAt = after(kTapAt, sizeof(TapRing));
 constexpr std::uint64_t kTakeoversAt = after(kSwitchPartAt, sizeof(SwitchPart));
 constexpr std::uint64_t kJournalAt = after(kTakeoversAt, sizeof(TakeoverRing));
-constexpr std::uint64_t kStatusAt = after(kJournalAt, kJournalBytes);
+constexpr std::uint64_t kEventsAt = after(kJournalAt, kJournalBytes);
+constexpr std::uint64_t kStatusAt = after(kEventsAt, kEventJournalBytes);
 constexpr std::uint64_t wish_at(std::uint32_t n_tasks) noexcept {
   return after(kStatusAt, sizeof(std::uint64_t) * std::uint64_t{n_tasks});
 }
@@ -125,6 +126,9 @@ const ManagerMemory& BlockView::memory() const noexcept { return part<ManagerMem
 const SwitchPart& BlockView::switch_part() const noexcept { return part<SwitchPart>(bytes_, kSwitchPartAt); }
 const TakeoverRing& BlockView::takeovers() const noexcept { return part<TakeoverRing>(bytes_, kTakeoversAt); }
 std::span<const std::byte> BlockView::journal() const noexcept { return {bytes_ + kJournalAt, kJournalBytes}; }
+std::span<const std::byte> BlockView::event_journal() const noexcept {
+  return {bytes_ + kEventsAt, kEventJournalBytes};
+}
 const SafeFrame& BlockView::safe_frame(TaskId task, std::uint32_t index) const noexcept {
   CHIMERA_ASSERT(task.index < n_tasks_ && index < kSafeFrames);
   return part<SafeFrame>(bytes_, safe_at(n_tasks_), task.index * kSafeFrames + index);
@@ -187,5 +191,6 @@ ManagerMemory& BlockOwner::memory() const noexcept { return part<ManagerMemory>(
 SwitchPart& BlockOwner::switch_part() const noexcept { return part<SwitchPart>(bytes_, kSwitchPartAt); }
 TakeoverRing& BlockOwner::takeovers() const noexcept { return part<TakeoverRing>(bytes_, kTakeoversAt); }
 std::span<std::byte> BlockOwner::journal() const noexcept { return {bytes_ + kJournalAt, kJournalBytes}; }
+std::span<std::byte> BlockOwner::event_journal() const noexcept { return {bytes_ + kEventsAt, kEventJournalBytes}; }
 
 }  // namespace chimera

@@ -76,6 +76,8 @@ struct ManagerMemory {
 
 /// The journal of switches, used in the manager's block only. manager/state/switch_journal.h defines its format.
 inline constexpr std::size_t kJournalBytes = (128u << 10) + 1024;
+/// The LineJournal of events, used in the manager's block only: manager/state/line_journal.h.
+inline constexpr std::size_t kEventJournalBytes = (32u << 10) + 64;
 
 /// Views into a block over mapped bytes. Plain value; every accessor is O(1) and wait-free.
 class BlockView {
@@ -101,6 +103,7 @@ class BlockView {
   const SwitchPart& switch_part() const noexcept;
   const TakeoverRing& takeovers() const noexcept;
   std::span<const std::byte> journal() const noexcept;
+  std::span<const std::byte> event_journal() const noexcept;
   /// In the block of an rtpu: the frame to write for one of its tasks after the rtpu died.
   const SafeFrame& safe_frame(TaskId task, std::uint32_t index) const noexcept;
   bool is_there() const noexcept { return bytes_ != nullptr; }
@@ -130,6 +133,7 @@ class BlockOwner {
   SwitchPart& switch_part() const noexcept;
   TakeoverRing& takeovers() const noexcept;
   std::span<std::byte> journal() const noexcept;
+  std::span<std::byte> event_journal() const noexcept;
   std::span<SafeFrame, kSafeFrames> safe_frames(TaskId task) const noexcept;
   BlockView view() const noexcept { return BlockView(bytes_, n_tasks_); }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/cli/run/outlet.h"
+#include "chimera/cli/print/outlet.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Queues what is printed and writes it from a thread of its own.
-#include "chimera/cli/run/outlet.h"
+#include "chimera/cli/print/outlet.h"
 
 #include <poll.h>
 #include <sys/types.h>
@@ -11,9 +11,11 @@
 #include <condition_variable>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 
+#include "chimera/platform/file.h"
 #include "chimera/platform/standard_streams.h"
 
 namespace chimera::cli {
@@ -42,6 +44,14 @@ void Outlet::Queue::put(const char* text, std::size_t n) {
   changed.notify_all();
 }
 
+/// Takes back the part of a line that a full disk left at the end of a file. Part of a terminal or pipe stays.
+static void cut_back(int descriptor, std::string_view written) {
+  const auto part = static_cast<off_t>(written.size() - (written.rfind('\n') + 1));  // npos + 1 is 0
+  const off_t end = ::lseek(descriptor, 0, SEEK_CUR);
+  if (part == 0 || end < part || end != file_size(descriptor)) return;
+  if (::ftruncate(descriptor, end - part) == 0) (void)::lseek(descriptor, -part, SEEK_CUR);
+}
+
 /// 0, or why not all of it could be written.
 static int write_bytes(int descriptor, const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
@@ -52,7 +62,9 @@ static int write_bytes(int descriptor, const std::string& text) {
       pollfd room{descriptor, POLLOUT, 0};
       ::poll(&room, 1, -1);
     } else if (n == 0 || errno != EINTR) {
-      return n == 0 ? EIO : errno;
+      const int why = n == 0 ? EIO : errno;
+      cut_back(descriptor, std::string_view(text).substr(0, at));
+      return why;
     }
   }
   return 0;
