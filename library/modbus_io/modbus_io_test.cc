@@ -70,7 +70,7 @@ class Device {
   }
   // A stopped device keeps its connections and what it received, and answers all when it goes on.
   void stop() { ::kill(process_, SIGSTOP); }  // still ours: not reaped yet
-  void go_on() { ::kill(process_, SIGCONT); }
+  void go_on() { ::kill(process_, SIGCONT); }  // still ours
 
   Points* points;
 

@@ -21,13 +21,13 @@ CALLED = (
     ("'stack' of task", "`stack`"),
     ("\"isolation: process\", task", "`isolation: process` of a task"),
 )
-# Calls whose sentence stands in a variable: that of `what` in reaction(), which has two calls.
-ELSEWHERE = ("refuse(reaction->at, what,", "refuse(at, \"'\" + std::string(key)")
+# Calls whose sentence stands in a variable: that of `what` in load() and in reaction().
+ELSEWHERE = ("refuse(is_start ?", "refuse(reaction->at, what,", "refuse(at, \"'\" + std::string(key)")
 
 
 def refusals(code):
-    """The text of every call of refuse() and refuse_key(), and of the sentence made for reaction()."""
-    for match in re.finditer(r"\b(refuse(?:_key)?\((?!Place).*?|const std::string what =.*?)\)?;\n", code, re.DOTALL):
+    """The text of every call of refuse() and refuse_key(), and of each sentence made before its call."""
+    for match in re.finditer(r"\b(refuse(?:_key)?\((?!Place).*?|\bwhat = .*?)\)?;\n", code, re.DOTALL):
         if not match[1].startswith(ELSEWHERE):
             yield re.sub(r"\s+", " ", match[1])
 
