@@ -13,23 +13,19 @@ constexpr std::int32_t kStep = 4;  // most levels that are left free beside a ne
 
 }  // namespace
 
-LabelList::LabelList(Policy policy, std::size_t capacity, std::int32_t base, std::int32_t ceiling,
-                     std::span<const TaskSpec> tasks)
-    : policy_(policy), base_(base), ceiling_(ceiling), tasks_(tasks) {
+LabelList::LabelList(Policy policy, std::size_t capacity, std::int32_t base, std::int32_t ceiling)
+    : policy_(policy), base_(base), ceiling_(ceiling) {
   CHIMERA_ASSERT(ceiling - base >= 2);
   jobs_.reserve(capacity + 1);
   changes_.reserve(3 * capacity + 4);  // every job may move twice in one rekey
 }
 
-// A full tie keeps the job that runs; among the others tie_of() decides.
+// A full tie keeps the job that runs; among the others their tie decides.
 bool LabelList::goes_before(const LabelledJob& a, const LabelledJob& b) const noexcept {
   if (is_more_urgent(policy_, a.urgency, b.urgency)) return true;
   if (is_more_urgent(policy_, b.urgency, a.urgency)) return false;
   if (a.task == running_ || b.task == running_) return a.task == running_;
-  const auto tie = [this](TaskId task) {
-    return tie_of(tasks_.empty() ? 0 : tasks_[task.index].place, task.index);
-  };
-  return tie(a.task) < tie(b.task);
+  return a.tie < b.tie;
 }
 
 // The place above all jobs that it goes before. A job that ran once stands above its equals, so equals need not be in

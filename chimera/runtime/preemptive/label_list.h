@@ -16,7 +16,6 @@
 
 #include "chimera/base/ids.h"
 #include "chimera/schedule/policy.h"
-#include "chimera/task/task_spec.h"
 
 namespace chimera {
 
@@ -24,6 +23,7 @@ namespace chimera {
 struct LabelledJob {
   TaskId task;
   Urgency urgency;
+  std::uint64_t tie = 0;  // tie_of() the task
   std::int32_t level = 0;
 };
 
@@ -40,9 +40,7 @@ class LabelList {
   static constexpr std::size_t kFewMoves = 4;
 
   /// Jobs of at most `capacity` tasks, at levels base (parked) and base+1 .. ceiling-1. Requires: ceiling - base >= 2.
-  /// `tasks` outlives this and has their places; empty: all are 0.
-  LabelList(Policy policy, std::size_t capacity, std::int32_t base, std::int32_t ceiling,
-            std::span<const TaskSpec> tasks = {});
+  LabelList(Policy policy, std::size_t capacity, std::int32_t base, std::int32_t ceiling);
 
   /// Adds a job. Returns the changes, the new job's own level last. Requires: no job of this task is in the list.
   std::span<const LevelChange> insert(const LabelledJob& job) noexcept;
@@ -77,7 +75,6 @@ class LabelList {
   std::vector<LabelledJob> jobs_;      // capacity reserved once
   std::vector<LevelChange> changes_;   // capacity reserved once
   std::size_t n_parked_ = 0;
-  std::span<const TaskSpec> tasks_;
   TaskId running_;
 };
 

@@ -16,6 +16,7 @@ constexpr std::int32_t kBase = 61, kCeiling = 80;
 LabelledJob job(std::uint32_t task, std::int64_t deadline_ms, std::uint32_t criticality = 0) {
   LabelledJob made;
   made.task = TaskId(task);
+  made.tie = task;
   made.urgency.deadline = milliseconds(deadline_ms);
   made.urgency.criticality = criticality;
   return made;

@@ -18,7 +18,7 @@ Nanoseconds rounded(Nanoseconds t, Nanoseconds quantum) noexcept {
 ReadyJobs::ReadyJobs(TaskSet& set, const ProcessorPlace& place, Policy policy)
     : place_(place), has_levels_(place.ceiling > 0 && may_be_realtime(place.ceiling)),
       labels_(policy, set.tasks().size(), place.ceiling > 0 ? place.base : 0,
-              place.ceiling > 0 ? place.ceiling : kUnusedCeiling, set.spec().tasks),
+              place.ceiling > 0 ? place.ceiling : kUnusedCeiling),
       of_task_(set.tasks().size()) {
   for (Task& task : set.tasks())
     if (set.is_mine(task.id)) of_task_[task.id.index] = &threads_.emplace_back(task);
@@ -28,6 +28,7 @@ int ReadyJobs::insert(JobThread& job, Nanoseconds deadline, Nanoseconds remainin
   LabelledJob ready;
   ready.task = job.id;
   ready.urgency = urgency_of(job, deadline, remaining);
+  ready.tie = tie_of(job.spec.place, job.id.index);
   prefer_begun();
   return apply(labels_.insert(ready), own);
 }
