@@ -29,7 +29,7 @@ ASSERTS = {r'chimera::(assertion_failed|end_without_descriptor)\(': 'ends the pr
 SIGNALS = {r'chimera::BoundarySignals::(carry_out|signal|finish_slow)\(': 'a signal at an edge'}
 # Vectors within the room reserved at setup, which cannot be seen here; no_heap_test.cc and
 # rtpu_control_no_heap_test.cc count.
-RESERVED = {r'chimera::LabelList::set\(|(void )?std::vector<chimera::LabelledJob': 'a place for every task of the context',
+RESERVED = {r'chimera::LabelList::set\(|(void )?std::vector<chimera::LabelledJob': 'a place for every task',
             r'chimera::PeerLinks::watch_flags\(': 'a place for every peer'}
 
 
