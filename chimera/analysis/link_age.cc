@@ -39,14 +39,14 @@ std::string late_text(const ApplicationSpec& spec, TaskId from, TaskId to) {
   const RtpuSpec& rtpu = spec.rtpus[a.rtpu.index];
   const std::string reader = in_quotes(b.name), policy(policy_name(rtpu.policy));
   const auto helps = [](const std::string& change, const TaskSpec& of) {
-    return "; " + change + " of " + in_quotes(of.name) + " makes it 0";
+    return "; remedy: " + change + " of " + in_quotes(of.name);
   };
   if (a.rtpu != b.rtpu) return reader + " runs on another rtpu" + helps("rtpu: " + std::string(rtpu.name), b);
   if (a.server || b.server) return "events release one of the two";
   const bool is_more_critical = has_criticalities(rtpu.policy) && a.criticality != b.criticality;
   const bool is_laxity = rtpu.policy == Policy::kLlf || rtpu.policy == Policy::kMufLaxity;
   if (is_laxity && rtpu.preemptive && !is_more_critical)
-    return policy + " promises no order; policy: edf or muf of rtpu " + in_quotes(rtpu.name) + " makes it 0";
+    return policy + " promises no order; remedy: policy: edf or muf of rtpu " + in_quotes(rtpu.name);
   const bool same_key = key_of(a, rtpu.policy) == key_of(b, rtpu.policy);
   if (!is_more_critical && same_key && a.period == b.period && a.offset != b.offset)
     return a.offset < b.offset ? "" : reader + " has the earlier offset" + helps("offset: " + time_text(a.offset), b);

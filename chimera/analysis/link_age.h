@@ -19,8 +19,8 @@ struct TaskLink {
   std::uint32_t periods() const noexcept { return late.empty() ? 0 : 1; }
 };
 
-/// Why `to` reads what `from` wrote a period before, and what makes it 0 periods: "'b' runs on another rtpu; rtpu: main
-/// of 'b' makes it 0". Empty: it does not. Context of all: setup.
+/// The reason why `to` reads the value that `from` wrote a period before, and the remedy if there is one: "'b' runs on
+/// another rtpu; remedy: rtpu: main of 'b'". Empty: it reads the value of its own period. Context of all: setup.
 std::string late_text(const ApplicationSpec& spec, TaskId from, TaskId to);
 /// Each pair of `tasks` that is linked, once, in the order of cycles.
 std::vector<TaskLink> links_among(const ApplicationSpec& spec, std::span<const TaskId> tasks);

@@ -47,34 +47,34 @@ TEST_F(LinkAge, EqualsReadInTheSameCycle) {
 
 TEST_F(LinkAge, EachCauseHasAChangeThatHelps) {
   rtpus[0].policy = Policy::kEdf;
-  EXPECT_EQ(late(kWriter, kOther), "'other' runs on another rtpu; rtpu: main of 'other' makes it 0");
+  EXPECT_EQ(late(kWriter, kOther), "'other' runs on another rtpu; remedy: rtpu: main of 'other'");
 
   tasks[0].period = tasks[0].deadline = milliseconds(2);
   EXPECT_EQ(late(kWriter, kReader),
-            "edf runs 'reader' first, which is due sooner; deadline: 1 ms of 'writer' makes it 0");
+            "edf runs 'reader' first, which is due sooner; remedy: deadline: 1 ms of 'writer'");
   EXPECT_EQ(cycle_order(spec, {kWriter, kReader}), (std::vector{kReader, kWriter}));
   tasks[0].deadline = milliseconds(1);
   EXPECT_EQ(late(kWriter, kReader), "");
 
   rtpus[0].policy = Policy::kRm;
   EXPECT_EQ(late(kWriter, kReader),
-            "rm runs the shorter period of 'reader' first; the same rate of 'writer' makes it 0");
+            "rm runs the shorter period of 'reader' first; remedy: the same rate of 'writer'");
   tasks[0].period = milliseconds(1);
   EXPECT_EQ(late(kWriter, kReader), "");
 
   tasks[1].user_priority = 7;
-  EXPECT_EQ(late(kWriter, kReader), "'reader' has the higher priority; user_priority: 7 of 'writer' makes it 0");
+  EXPECT_EQ(late(kWriter, kReader), "'reader' has the higher priority; remedy: user_priority: 7 of 'writer'");
   tasks[0].user_priority = 7;
   EXPECT_EQ(late(kWriter, kReader), "");
 
   rtpus[0].policy = Policy::kMuf;
   tasks[1].criticality = 2;
-  EXPECT_EQ(late(kWriter, kReader), "'reader' is more critical; criticality: high of 'writer' makes it 0");
+  EXPECT_EQ(late(kWriter, kReader), "'reader' is more critical; remedy: criticality: high of 'writer'");
   tasks[0].criticality = 2;
   EXPECT_EQ(late(kWriter, kReader), "");
 
   tasks[0].offset = microseconds(500);
-  EXPECT_EQ(late(kWriter, kReader), "'reader' has the earlier offset; offset: 500 us of 'reader' makes it 0");
+  EXPECT_EQ(late(kWriter, kReader), "'reader' has the earlier offset; remedy: offset: 500 us of 'reader'");
   tasks[1].offset = microseconds(500);
   EXPECT_EQ(late(kWriter, kReader), "");
 
@@ -82,12 +82,12 @@ TEST_F(LinkAge, EachCauseHasAChangeThatHelps) {
   tasks[0].budget = microseconds(100);
   tasks[1].budget = microseconds(300);
   EXPECT_EQ(late(kWriter, kReader),
-            "muf-laxity runs 'reader' first, which can wait less; deadline: 800 us of 'writer' makes it 0");
+            "muf-laxity runs 'reader' first, which can wait less; remedy: deadline: 800 us of 'writer'");
   tasks[0].deadline = microseconds(800);
   EXPECT_EQ(late(kWriter, kReader), "");
   rtpus[0].preemptive = true;
   EXPECT_EQ(late(kWriter, kReader),
-            "muf-laxity promises no order; policy: edf or muf of rtpu 'main' makes it 0");
+            "muf-laxity promises no order; remedy: policy: edf or muf of rtpu 'main'");
 }
 
 TEST_F(LinkAge, ListsEachPairOfTheSetOnce) {

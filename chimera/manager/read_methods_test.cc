@@ -56,7 +56,7 @@ TEST_F(ReadMethodsTest, WhySaysWhichLinksAreAPeriodLate) {
   const Json result = *ask(MethodId::kWhy, {{"variable", "tau"}})->result;
   for (const Json& link : result["chain"])
     late += link["variable"].as_string() + ": " + link["late"].as_string() + "\n";
-  EXPECT_EQ(late, "tau: \ny: 'law' runs on another rtpu; rtpu: servo of 'law' makes it 0\nkp: \nx: \n");
+  EXPECT_EQ(late, "tau: \ny: 'law' runs on another rtpu; remedy: rtpu: servo of 'law'\nkp: \nx: \n");
 }
 
 TEST_F(ReadMethodsTest, EventsBeginWhereTheyAreAskedForAndEndAtTheLimit) {

@@ -109,7 +109,7 @@ int ModbusLine::talk(ModbusRequest request, ModbusAnswer& answer) noexcept {
 }
 
 // A refusal is an answer, too. A device may ignore probes: then a long silence shows that no answer is due. After two
-// of them the exchanges up to the next failure have no probe.
+// ignored probes, exchanges have no probe until the next failure.
 int ModbusLine::prove() noexcept {
   ModbusAnswer answer{};
   const int error = talk(probe(), answer);

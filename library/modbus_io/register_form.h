@@ -2,6 +2,7 @@
 // How numbers lie in registers: one or two registers, whole or floating, either word first.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -49,12 +50,22 @@ struct RegisterPlace {
   }
 };
 
+/// Reads "int16" or "float32_low" into `to`; false if `word` is no form. Context: setup.
+inline bool read_form(std::string_view word, RegisterPlace& to) {
+  constexpr std::string_view kForms[] = {"int16", "uint16", "int32", "uint32", "float32"};
+  const bool is_low_first = word.ends_with("_low");
+  const auto found = std::ranges::find(kForms, word.substr(0, word.size() - (is_low_first ? 4 : 0)));
+  if (found == std::end(kForms)) return false;
+  to.form = static_cast<RegisterForm>(found - std::begin(kForms));
+  to.is_low_first = is_low_first;
+  return !is_low_first || to.width() == 2;
+}
+
 /// Reads the places of `count` numbers: "holding:100 int16 float32 input:7 uint32_low". A word with a colon says where
 /// the next number is; each further number follows the one before. The last form is that of the numbers behind it.
 /// Throws std::runtime_error, with `name`, the constant. Context: setup.
 inline std::vector<RegisterPlace> register_places(std::string_view text, const char* name, std::size_t count,
                                                   bool is_written) {
-  constexpr const char* kForms[] = {"int16", "uint16", "int32", "uint32", "float32"};
   const auto refuse = [&](const std::string& why) -> void {
     throw std::runtime_error("`" + std::string(name) + "`: " + why);
   };
@@ -82,14 +93,9 @@ inline std::vector<RegisterPlace> register_places(std::string_view text, const c
       end = std::stoi(std::string(digits));
       continue;
     }
-    const bool is_low_first = word.ends_with("_low");
-    const std::string_view form = word.substr(0, word.size() - (is_low_first ? 4 : 0));
-    std::size_t f = 0;
-    while (f < std::size(kForms) && form != kForms[f]) ++f;
-    if (f == std::size(kForms) || (is_low_first && f < 2))
+    if (!read_form(word, next))
       refuse("\"" + std::string(word) + "\" is no form: int16 uint16 int32 uint32 float32, and int32_low uint32_low "
              "float32_low with the low word first");
-    next.form = static_cast<RegisterForm>(f), next.is_low_first = is_low_first;
     add();
   }
   if (places.size() > count && count > 0)

@@ -18,8 +18,8 @@
 namespace chimera::cli {
 namespace {
 
-constexpr std::size_t kAtOnce = 1000;     // events in one answer
-constexpr std::size_t kOfOneRun = 10'000; // as many as a manager keeps
+constexpr std::size_t kAtOnce = 1000;      // events in one answer
+constexpr std::size_t kOfOneRun = 10'000;  // as many as a manager keeps
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
 /// Events of earlier runs. None unless the file has events of this run too: it may belong to another user's subsystem

@@ -60,7 +60,6 @@ class SwitchJournal {
   bool put(std::uint32_t number, std::string_view text) noexcept;
   /// Receipts that are not filed, in the order of put().
   std::vector<LineJournal::Line> unfiled() const { return lines().unfiled(); }
-  void filed(std::uint64_t number) noexcept { lines().filed(number); }
   LineJournal lines() const noexcept { return LineJournal(pages_->lines); }
 
  private:

@@ -88,7 +88,7 @@ TEST_F(SwitchJournalTest, AFiledReceiptFreesItsRoomAndIsNotHandedOn) {
   EXPECT_TRUE(journal.put(2, half));
   EXPECT_FALSE(journal.put(3, half)) << "there is no room";
   EXPECT_EQ(journal.next(), 4u) << "its number is used nevertheless";
-  journal.filed(1);
+  journal.lines().filed(1);
   SwitchJournal next = successor();
   ASSERT_EQ(next.unfiled().size(), 1u);
   EXPECT_EQ(next.unfiled()[0].number, 2u);
@@ -147,7 +147,7 @@ TEST_F(SwitchJournalTest, EachNumberHasOneReceiptThoughManagersAreKilled) {
         for (const auto& [number, text] : journal.unfiled()) {
           if (filed.count(number) == 0) filed.insert(number);  // as the file, which knows its receipts, does
           if (random() % 8 == 0) break;  // killed between the file and the journal
-          journal.filed(number);
+          journal.lines().filed(number);
         }
         break;
       default: journal = successor();
