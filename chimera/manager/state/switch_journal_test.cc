@@ -93,8 +93,8 @@ TEST_F(SwitchJournalTest, AFiledReceiptFreesItsRoomAndIsNotHandedOn) {
   ASSERT_EQ(next.unfiled().size(), 1u);
   EXPECT_EQ(next.unfiled()[0].number, 2u);
   EXPECT_TRUE(next.put(4, half)) << "a successor takes over unfiled receipts";
-  next.filed(2);
-  next.filed(4);
+  next.lines().filed(2);
+  next.lines().filed(4);
   EXPECT_EQ(numbers(next), "");
   EXPECT_EQ(next.next(), 5u);
   EXPECT_FALSE(next.put(5, std::string(sizeof memory->pages().lines, 'x')));
@@ -118,7 +118,7 @@ TEST_F(SwitchJournalTest, AKillBetweenTwoStoresLeavesAnActDoneOrNot) {
   memory->pages().last = 1;  // put(): its number is not in use yet
   SwitchJournal fourth = successor();
   EXPECT_EQ(fourth.next(), 3u);
-  fourth.filed(1);
+  fourth.lines().filed(1);
   EXPECT_EQ(numbers(successor()), "2:refused ");
 }
 
