@@ -9,7 +9,10 @@ export function short(value: number): string {
   const size = Math.abs(value);
   if (size === 0) return "0";
   if (Number.isInteger(value) && size < 1e5) return String(value);
-  if (size >= 1e5 || size < 1e-3) return value.toExponential(1).replace("e+", "e");
+  if (size >= 1e5 || size < 1e-3) {
+    const text = value.toExponential(1).replace("e+", "e");
+    return text.length <= 7 ? text : value.toExponential(0).replace("e+", "e");
+  }
   return trimmed(size >= 1000 ? value.toFixed(0) : value.toPrecision(3));
 }
 
@@ -21,7 +24,7 @@ export function duration(ns: number): string {
   for (const [limit, unit] of units) {
     if (ns < limit * 0.9995) {
       const value = ns / size;
-      return (value < 9.95 && unit !== "ns" ? trimmed(value.toFixed(1)) : value.toFixed(0)) + unit;
+      return (value < 9.95 && unit.endsWith("s") && unit !== "ns" ? trimmed(value.toFixed(1)) : value.toFixed(0)) + unit;
     }
     size = limit;
   }
