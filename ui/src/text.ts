@@ -9,7 +9,7 @@ export function short(value: number): string {
   const size = Math.abs(value);
   if (size === 0) return "0";
   if (Number.isInteger(value) && size < 1e5) return String(value);
-  if (size >= 1e5 || size < 1e-3) {
+  if (size >= 1e5 || size < 1e-2) {
     const text = value.toExponential(1).replace("e+", "e");
     return text.length <= 7 ? text : value.toExponential(0).replace("e+", "e");
   }
