@@ -31,11 +31,12 @@ SHARES = (
     Share("processes", (("debug", "process"), ("release", "realtime"))),
     Share("firmware", (("debug", "firmware"),)),
     Share("models", (("debug", "model"),)),
+    Share("page", (("debug", "page"),)),
 )
 QUICK = Share("quick", (("debug", "unit"),))
 TREES = ("debug", "tsan", "release")
 # The result of these tests can depend on the scheduling of threads: a test that fails runs again, at most twice.
-SCHEDULED = {"threads", "process", "hostile", "realtime"}
+SCHEDULED = {"threads", "process", "hostile", "realtime", "page"}
 MOST_TRIES = 3
 DURATIONS = common.BUILD / "durations.jsonl"
 PASSED_BEFORE = common.BUILD / "debug" / "passed.json"
