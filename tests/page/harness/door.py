@@ -179,7 +179,7 @@ class Door:
         answer = getattr(self, method, None)
         if method in ("subscribe", "unsubscribe"):
             return answer(connection, **parameters)
-        if method not in ("describe", "get", "events", "receipts", "plan", "why", *NEEDS) or answer is None:
+        if method not in ("describe", "get", "events", "receipts", "profile", "plan", "why", *NEEDS) or answer is None:
             raise Refusal(-32601, f"no method '{method}'", {"where": method})
         return answer(**parameters)
 
@@ -195,6 +195,9 @@ class Door:
 
     def describe(self, picture=False, **_):
         return self.subject.describe(picture)
+
+    def profile(self):
+        return {"tasks": []}
 
     def get(self, variables=()):
         return {"values": self.subject.readings(variables)}

@@ -72,6 +72,40 @@ class Page:
         self.await_that(f"document.querySelector({quoted(selector)}).textContent !== {quoted(before)}",
                         f"another text than '{before}' in {selector}")
 
+    def await_open(self, version=None):
+        """Until the page shows a subsystem: connected, described and with its states."""
+        self.await_root("door", "open")
+        self.await_that("document.querySelector('svg.picture')", "the picture")
+        if version is not None:
+            self.await_root("version", str(version))
+
+    # ---- boxes of the picture
+
+    @staticmethod
+    def box(task):
+        return f"g.box[data-task={quoted(task)}]"
+
+    def await_state(self, task, state):
+        self.await_one(f"{self.box(task)}[data-state={quoted(state)}]")
+
+    def states(self):
+        return self.script("return Object.fromEntries([...document.querySelectorAll('g.box')]"
+                           ".map(e => [e.dataset.task, e.dataset.state]))")
+
+    def choose(self, *tasks):
+        """Presses the boxes, the second and later ones with Ctrl."""
+        for number, task in enumerate(tasks):
+            if number == 0:
+                self.click(self.box(task))
+            else:
+                ActionChains(self.driver, duration=0).key_down(Keys.CONTROL).click(self.one(self.box(task))).key_up(
+                    Keys.CONTROL).perform()
+        self.await_that(f"document.querySelectorAll('g.box.chosen').length === {len(tasks)}", f"{tasks} chosen")
+
+    @staticmethod
+    def button(label):
+        return f"button[aria-label={quoted(label)}]"
+
     # ---- what is done
 
     def click(self, selector):
