@@ -6,6 +6,7 @@ import json
 import socket
 import threading
 
+from browser import PATIENCE
 from subject import Subject
 
 ROLES = ("observe", "operate", "configure")
@@ -43,6 +44,7 @@ class Connection(threading.Thread):
     def answer(self, request):
         with self.door.lock:
             self.door.requests.append(request)
+            self.door.answering.notify_all()
             self.door.answering.wait_for(lambda: not self.door.stalled)
             try:
                 self.send(id=request["id"], result=self.door.act(self, request["method"], request.get("params", {})))
@@ -141,6 +143,12 @@ class Door:
         """Parameters of the requests of that method so far."""
         with self.lock:
             return [request.get("params", {}) for request in self.requests if request["method"] == method]
+
+    def await_asked(self, method, times=1):
+        """Until that many requests of the method have arrived."""
+        with self.lock:
+            came = self.answering.wait_for(lambda: len(self.asked(method)) >= times, PATIENCE)
+        assert came, f"{times} requests '{method}' did not come within {PATIENCE:.0f} s"
 
     # ---- what the server does
 

@@ -134,8 +134,7 @@ class Subject:
                 at = x + (WIDTH if p["kind"] == "out-var" else 0)
                 ports.append({"task": name, "port": p["port"], "kind": p["kind"], "variable": p["variable"], "x": at,
                               "y": y + HEIGHT / 2})
-                labels.append(self.label(p["variable"], at, y + HEIGHT / 2 - 4, "port", task=name,
-                                         variable=p["variable"]))
+                labels.append(self.label(p["variable"], at, y - 4, "port", task=name, variable=p["variable"]))
         for start in (p for p in ports if p["kind"] == "out-var"):
             for end in (p for p in ports if p["kind"] == "in-var" and p["variable"] == start["variable"]):
                 lines.append({"variable": start["variable"], "x1": start["x"], "y1": start["y"], "x2": end["x"],
