@@ -88,7 +88,7 @@ export function CpuBars({ status, previous }: { status: Status; previous: Status
         const measured = load.measured === null ? "" : load.measured.toFixed(2);
         const words = `cpu ${load.cpu}, rtpu ${load.rtpu}: measured ${measured || "not yet"}, budgets ` +
           `${load.budgets.toFixed(2)} of ${CAPACITY}, ${load.missed} missed`;
-        const note = !load.isAlive ? "has ended" : load.late.length > 0 ? `missing: ${load.late.join(", ")}`
+        const note = !load.isAlive ? "has ended" : load.late.length > 0 ? `missed just now: ${load.late.join(", ")}`
           : load.missed > 0 ? `${load.missed} missed` : "all keep their deadlines";
         return (
           <div key={load.rtpu} className="cpu" role="img" aria-label={words} title={words} data-rtpu={load.rtpu}>

@@ -51,20 +51,34 @@ export const LiveText = memo(function LiveText({ variable, values }: { variable:
   return <span className="live"><span ref={text} data-live={variable} /> <span ref={age} className="age" /></span>;
 });
 
-function PortRow({ port, values }: { port: Port; values: LiveValues }) {
-  const isLinked = port.variable !== "" && port.kind !== "resource";
-  const isVariable = port.kind === "in-var" || port.kind === "out-var";
+function PortLine({ port, values }: { port: Port; values: LiveValues }) {
+  const isVariable = port.variable !== "" && (port.kind === "in-var" || port.kind === "out-var");
   return (
-    <tr>
-      <td>{port.kind}</td>
-      <td title={`${port.type}${port.shape} ${port.unit}`}>{port.port}</td>
-      <td>{isLinked && isVariable
-        ? <button type="button" className="link" onClick={() => showVariable(port.variable)}>{port.variable}</button>
-        : port.variable}</td>
-      <td>{isLinked && isVariable ? <LiveText variable={port.variable} values={values} />
-        : `${port.type}${port.shape}`}</td>
-    </tr>
+    <li>
+      <span title={`${port.type}${port.shape} ${port.unit}`}>{port.port}</span>
+      {isVariable && <> <button type="button" className="link" aria-label={`Why ${port.variable}`}
+                                onClick={() => showVariable(port.variable)}>{port.variable}</button></>}
+      {!isVariable && port.variable !== "" && <span className="soft"> {port.variable}</span>}
+      {isVariable ? <div><LiveText variable={port.variable} values={values} /></div>
+        : <span className="soft"> {port.type}{port.shape} {port.unit === "1" ? "" : port.unit}</span>}
+    </li>
   );
+}
+
+const KINDS: [Port["kind"], string][] = [["in-var", "Inputs"], ["out-var", "Outputs"], ["in-const", "Constants"],
+  ["out-const", "Constants for others"], ["resource", "Resources"]];
+
+function Ports({ task, ports, values }: { task: string; ports: Port[]; values: LiveValues }) {
+  return <>{KINDS.map(([kind, words]) => {
+    const found = ports.filter((port) => port.kind === kind);
+    return found.length === 0 ? null : (
+      <section key={kind}>
+        <h4>{words}</h4>
+        <ul className="ports" aria-label={`${words} of ${task}`}>
+          {found.map((port) => <PortLine key={port.port} port={port} values={values} />)}</ul>
+      </section>
+    );
+  })}</>;
 }
 
 function Figures({ task }: { task: TaskStatus }) {
@@ -88,10 +102,7 @@ function OneTask({ described, task, values }: { described: DescribedTask | undef
       {task.standby_for !== null && <p>standby for {task.standby_for}</p>}
       {task.fault !== null && <p className="fault" role="note">last fault: {task.fault}</p>}
       <Figures task={task} />
-      <table className="ports" aria-label={`Ports of ${task.task}`}>
-        <tbody>{(described?.ports ?? []).map((port) => (
-          <PortRow key={port.port + port.kind} port={port} values={values} />))}</tbody>
-      </table>
+      <Ports task={task.task} ports={described?.ports ?? []} values={values} />
     </article>
   );
 }

@@ -4,7 +4,7 @@ import { ACTS } from "./acts";
 import { raiseFlag } from "./header";
 import { begin } from "./inspector";
 import type { Machine } from "./machine";
-import { choose, view } from "./view";
+import { choose, view, zoomBy } from "./view";
 
 function isTypedInto(target: EventTarget | null): boolean {
   return target instanceof HTMLElement && target.matches("input:not([type=checkbox]):not([type=range]), textarea, select");
@@ -26,7 +26,7 @@ export function takeKey(event: KeyboardEvent, machine: Machine | null, fit: () =
     return;
   }
   if (isTypedInto(event.target)) return;
-  const { chosen, zoom, question } = view.get();
+  const { chosen, question } = view.get();
   if (event.key === "F" && event.shiftKey && machine) return raiseFlag(machine, true);
   if (question) return;
   const act = ACTS.find((one) => one.key === event.key);
@@ -35,8 +35,8 @@ export function takeKey(event: KeyboardEvent, machine: Machine | null, fit: () =
   else if (event.key === "/") view.set({ isFinding: true });
   else if (event.key === "?") view.set({ isHelping: true });
   else if (event.key === "Escape") view.set({ chosen: [], variable: "", isFinding: false, isHelping: false });
-  else if (event.key === "+") view.set({ zoom: Math.min(4, zoom * 1.2) });
-  else if (event.key === "-") view.set({ zoom: Math.max(0.2, zoom / 1.2) });
+  else if (event.key === "+") zoomBy(1.2);
+  else if (event.key === "-") zoomBy(1 / 1.2);
   else if (event.key === "0") fit();
   else return;
   event.preventDefault();

@@ -3,7 +3,7 @@
 import { MouseEvent, useCallback, useEffect, useMemo, useRef, useState } from "react";
 import { createRoot } from "react-dom/client";
 import { Banner, Banners, benchBanner, machineBanners, MessageBox } from "./banners";
-import { QuestionBox } from "./controls";
+import { Button, QuestionBox } from "./controls";
 import { Door, DoorState } from "./door";
 import { Finder, Help } from "./finder";
 import { CpuBars, Header } from "./header";
@@ -16,7 +16,7 @@ import { PictureView } from "./picture";
 import type { BenchHello, Hello, MachineName } from "./protocol";
 import { Store, useStore } from "./store";
 import { joinPath } from "./text";
-import { choose, showVariable, view } from "./view";
+import { choose, showVariable, view, zoomBy } from "./view";
 
 interface BenchState { door: DoorState; sentence: string; hello: BenchHello | null; machines: MachineName[] | null }
 
@@ -79,6 +79,9 @@ function markMachine(state: MachineState): void {
   });
 }
 
+/** A picture that does not fit is scrolled rather than drawn with letters that are too small to read. */
+const LEAST_FIT = 0.8;
+
 /** Moves the scrolled place while the background is pulled. */
 function pull(event: MouseEvent<HTMLDivElement>): void {
   const place = event.currentTarget;
@@ -110,7 +113,7 @@ function MachinePage({ machine, isBenchOpen }: { machine: Machine; isBenchOpen: 
     if (!place.current || !picture) return;
     const { clientWidth, clientHeight } = place.current;
     const whole = Math.min((clientWidth - 4) / picture.width, (clientHeight - 4) / picture.height);
-    view.set({ zoom: Math.max(0.4, Math.min(1.5, whole)) });
+    view.set({ zoom: Math.max(LEAST_FIT, Math.min(1.5, whole)) });
   }, [picture]);
   useEffect(() => markMachine(state), [state]);
   useEffect(() => { if (state.version === 1) fit(); }, [state.version, fit]);
@@ -125,6 +128,11 @@ function MachinePage({ machine, isBenchOpen }: { machine: Machine; isBenchOpen: 
       <MessageBox machine={machine} state={state} />
       {state.status && <CpuBars status={state.status} previous={state.previous} />}
       <main className={isBenchOpen && state.door === "open" ? "" : "stale"}>
+        <div className="zoom" role="toolbar" aria-label="Zoom of the picture">
+          <Button label="Zoom in" title="key +" press={() => zoomBy(1.2)}>+</Button>
+          <Button label="Zoom out" title="key -" press={() => zoomBy(1 / 1.2)}>−</Button>
+          <Button label="Fit the picture" title="key 0" press={fit}>fit</Button>
+        </div>
         <div ref={place} className="canvas" onMouseDown={pull}>
           {picture && state.status
             ? <PictureView picture={picture} tasks={state.status.tasks} before={state.previous?.tasks ?? []} dead={dead}

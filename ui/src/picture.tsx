@@ -7,7 +7,7 @@ import { rate } from "./text";
 import { besidePort, LiveValues } from "./values";
 
 /** Room right of a port for its value, and places of texts around it: docs/formats/web.md, "The picture". */
-const BELOW = 10, RIGHT = 4, STUB = 20;
+const BELOW = 9, RIGHT = 4, STUB = 20;
 
 interface ValueProps { port: PicturePort; values: LiveValues }
 
@@ -36,6 +36,7 @@ interface BoxProps {
 const TaskBox = memo(function TaskBox({ box, rateHz, state, isDead, isMissing, isChosen, isFirst, choose, move }: BoxProps) {
   const { x, y, width, height } = box;
   const words = `${box.task}, ${state}${isDead ? ", its rtpu has ended" : ""}, ${rate(rateHz)}`;
+  const tag = isMissing ? `missed, ${state}` : state;
   return (
     <g className={`box state-${state}${isDead ? " dead" : ""}${isChosen ? " chosen" : ""}`} data-task={box.task}
        data-state={state} role="button" aria-label={words} aria-pressed={isChosen} tabIndex={isFirst ? 0 : -1}
@@ -44,9 +45,8 @@ const TaskBox = memo(function TaskBox({ box, rateHz, state, isDead, isMissing, i
       <rect className="frame" x={x} y={y} width={width} height={height} rx={12} />
       {state === "ERROR" && <rect className="hatch" x={x} y={y} width={width} height={height} rx={12} />}
       {state === "ON" && <rect className="bar" x={x + 3} y={y + 12} width={4} height={height - 24} rx={2} />}
-      <rect className="tag" x={x + width - 8 - state.length * 7} y={y - 8} width={state.length * 7 + 4} height={14} rx={4} />
-      <text className="state" x={x + width - 6} y={y + 3} textAnchor="end">{state}</text>
-      {isMissing && <text className="missing" x={x + width - 6} y={y + height - 6} textAnchor="end">missed</text>}
+      <rect className="tag" x={x + width - 8 - tag.length * 6.1} y={y - 8} width={tag.length * 6.1 + 4} height={14} rx={4} />
+      <text className={isMissing ? "state missing" : "state"} x={x + width - 6} y={y + 3} textAnchor="end">{tag}</text>
     </g>
   );
 });
