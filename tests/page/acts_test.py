@@ -95,6 +95,19 @@ class ActsTest(PageTest):
         self.door.await_asked("end")
         self.assertEqual(self.door.asked("end"), [{}])
 
+    def test_escape_closes_what_is_open_and_nothing_else(self):
+        self.look()
+        self.page.choose("task1")
+        for label, opened in (("Switch configuration", ".sheet"), ("More acts", ".sheet"), ("Help", ".help"),
+                              ("Find", ".finder")):
+            self.page.click(self.page.button(label))
+            self.page.await_one(opened)
+            self.page.press(Keys.ESCAPE)
+            self.page.await_none(opened)
+            self.assertEqual(len(self.page.all("g.box.chosen")), 1, label)
+        self.page.press(Keys.ESCAPE)
+        self.page.await_none("g.box.chosen")
+
     def test_the_flag_goes_up_at_once_by_button_and_key(self):
         self.look()
         self.page.click(self.page.button("Raise the FLAG"))
@@ -117,10 +130,7 @@ class ActsTest(PageTest):
 
     def test_a_field_sets_an_operator_variable(self):
         self.look()
-        field = self.page.one("#set-wish")
-        field.clear()
-        field.send_keys("2.5", Keys.ENTER)
-        self.page.await_text("text.value[data-value=v0]", "0")
+        field = self.page.type_over("#set-wish", "2.5", Keys.ENTER)
         self.page.await_that("document.getElementById('set-wish').value === '2.5'", "the new value")
         self.assertEqual(self.door.asked("set"), [{"values": {"wish": "2.5"}}])
         field.send_keys("99", Keys.ESCAPE)
@@ -130,9 +140,7 @@ class ActsTest(PageTest):
     def test_a_refused_value_stays_in_the_field_with_the_reason(self):
         self.look()
         self.door.refuse("set", -32602, "wish: 99 is above its maximum 10", {"where": "wish"})
-        field = self.page.one("#set-wish")
-        field.clear()
-        field.send_keys("99", Keys.ENTER)
+        field = self.page.type_over("#set-wish", "99", Keys.ENTER)
         self.await_message("above its maximum")
         self.assertEqual(field.get_property("value"), "99")
 

@@ -233,8 +233,8 @@ class Door:
         return {"tasks": [self.subject.to(task, AFTER[signal]) for task in tasks]}
 
     def set(self, values):
-        self.subject.values.update(values)
         for name, value in values.items():
+            self.subject.values[name] = float(str(value).split()[0])  # a number, or a text with a unit
             self.subject.event("set", f"{name} = {value}", by="configure:ann")
         return {"values": self.subject.readings(values)}
 

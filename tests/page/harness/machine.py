@@ -5,7 +5,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "processes"))
 
-from system import System  # noqa: E402
+from system import System, await_that  # noqa: E402
 
 PLANT = pathlib.Path(__file__).parent / "plant.yaml"
 

@@ -129,6 +129,13 @@ class Page:
     def press_with(self, modifier, key):
         ActionChains(self.driver, duration=0).key_down(modifier).send_keys(key).key_up(modifier).perform()
 
+    def type_over(self, selector, text, *keys):
+        """Types in the place of what a field holds, then presses keys. Returns the field."""
+        field = self.one(selector)
+        field.send_keys(Keys.CONTROL + "a")
+        field.send_keys(text, *keys)
+        return field
+
     def tab_to(self, selector, most=200):
         """Presses Tab until an element of the selector has the focus."""
         for _ in range(most):
