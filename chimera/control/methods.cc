@@ -50,7 +50,7 @@ constexpr MethodRule kMethods[] = {
     {MethodId::kPlan, "plan", Role::kObserve, false, false,
      {{"configuration", Kind::kText, false}, {"on", Kind::kTexts, false}, {"off", Kind::kTexts, false}}},
     {MethodId::kSubscribe, "subscribe", Role::kObserve, false, false,
-     {{"to", Kind::kText, true, "status events values tap"}, count("period_ms", 20, 60'000),
+     {{"to", Kind::kText, true, "status events values tap machines"}, count("period_ms", 20, 60'000),
       {"variables", Kind::kTexts, false}, count("since", 0, INT64_MAX)}},
     {MethodId::kUnsubscribe, "unsubscribe", Role::kObserve, false, false, {count("subscription", 1, INT64_MAX, true)}},
     {MethodId::kCheck, "check", Role::kObserve, false, true, {kText, kFile}},
@@ -69,6 +69,7 @@ constexpr MethodRule kMethods[] = {
      {count("wait_ms", 1, 600'000), {"kill", Kind::kText, false}}},
     {MethodId::kSave, "save", Role::kConfigure, true, false, {}},
     {MethodId::kEnd, "end", Role::kConfigure, true, false, {count("code", 0, 255)}},
+    question(MethodId::kMachines, "machines"),
 };
 // clang-format on
 

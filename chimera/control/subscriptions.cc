@@ -24,7 +24,7 @@ RpcResponse Subscriptions::open(std::uint64_t connection, const Json& parameters
   RpcResponse opened = backend_.open(number, parameters);
   if (!opened.is_good()) return opened;
   const std::string to = parameters.at("to").as_string();
-  const bool skips = to == "status" || to == "values";
+  const bool skips = to != "events" && to != "tap";
   const Nanoseconds period = skips ? milliseconds(whole_at(parameters, "period_ms", 100)) : kLookAtNews;
   all_[number] = {connection, to, period, skips, now};
   return RpcResponse::good({{"subscription", number}});

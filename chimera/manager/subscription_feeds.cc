@@ -24,6 +24,9 @@ std::shared_ptr<const Json> shared(Json json) { return std::make_shared<const Js
 RpcResponse SubscriptionFeeds::open(std::uint64_t subscription, const Json& parameters) {
   using To = Feed::To;
   const std::string to = parameters.at("to").as_string();
+  if (to == "machines")
+    return RpcResponse::error(control::kBadParameters, "a subsystem knows no other machines; chimera-web does",
+                              {{"where", "to"}});
   const auto names = control::texts(parameters, "variables");
   auto variables = variables_named(state_, names);
   if (const auto* refused = std::get_if<RpcResponse>(&variables)) return *refused;

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// The server of the page: chimera-web [--json] [--port N] [FILE], started by `chimera web`, which judges the words.
+#include <unistd.h>
+
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <new>
+#include <string_view>
+
+#include "chimera/base/hosted/terminal_text.h"
+#include "chimera/control/running.h"
+#include "chimera/platform/socket_place.h"
+#include "chimera/platform/standard_streams.h"
+#include "chimera/text/json.h"
+#include "chimera/web/web_server.h"
+
+namespace {
+
+using namespace chimera;  // NOLINT: a main() of this project
+
+constexpr std::string_view kNoMemory = "chimera-web: out of memory\n";
+
+void tell(const std::string& sentence) { std::fprintf(stderr, "chimera-web: %s\n", plain_line(sentence).c_str()); }
+
+int serve(const web::WebRequest& request, bool json) {
+  std::error_code error;
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe", error).string();
+  auto page = web::read_page(program);
+  if (!page) return tell(std::string(page.error().where.view()) + ": " + page.error().message.c_str()), 1;
+  auto server = web::WebServer::open(request, *std::move(page), tell);
+  if (!server) return tell(server.error().message.c_str()), 1;
+  const std::string& link = (*server)->link();
+  const std::string line = json ? Json{{"url", link}, {"pid", static_cast<int>(::getpid())}}.dump(Json::Style::kSpaced)
+                                : link;
+  std::printf("%s\n", line.c_str());
+  (void)flush_and_look(stdout);  // without a reader the page is served all the same
+  (*server)->run();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hold_standard_streams();
+  std::signal(SIGPIPE, SIG_IGN);
+  std::set_new_handler([] {
+    (void)!::write(STDERR_FILENO, kNoMemory.data(), kNoMemory.size());
+    ::_exit(1);
+  });
+  bool json = false;
+  web::WebRequest request{{}, {CHIMERA_VERSION, "", std::string(socket_folder().view()), control::kServiceFolder}};
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--json") {
+      json = true;
+    } else if (word == "--port" && i + 1 < argc) {
+      const std::string_view text = argv[++i];
+      std::uint16_t port = 0;
+      std::from_chars(text.data(), text.data() + text.size(), port);
+      request.port = port;
+    } else {
+      request.facts.file = word;
+    }
+  }
+  return serve(request, json);
+}

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Answers the questions of pages about this machine, and notices subsystems that begin or end.
+#include "chimera/web/bench.h"
+
+#include <algorithm>
+
+#include "chimera/control/running.h"
+#include "chimera/platform/file.h"
+#include "chimera/platform/process_state.h"
+#include "chimera/platform/socket_place.h"
+#include "chimera/text/json.h"
+
+namespace chimera::web {
+
+using control::MethodId;
+using control::RpcResponse;
+
+namespace {
+
+constexpr Nanoseconds kListingPeriod = seconds(1);
+constexpr Nanoseconds kStartTime = seconds(2);      // a new socket file may not listen yet
+constexpr Nanoseconds kAskingPeriod = seconds(10);  // the file of a killed keeper stays
+
+}  // namespace
+
+void Bench::call(const control::MethodRule& method, const Json&, const control::Caller& caller,
+                 control::Reply reply) {
+  if (method.id == MethodId::kHello) return reply(RpcResponse::good(hello(caller.role)));
+  if (method.id == MethodId::kMachines) return reply(RpcResponse::good(*machines()));
+  reply(RpcResponse::error(control::kNoMethod, "'" + std::string(method.name) +
+                                                   "' is a method of a subsystem: connect to /machine/NAME"));
+}
+
+RpcResponse Bench::open(std::uint64_t subscription, const Json& parameters) {
+  if (parameters.at("to").as_string() != "machines")
+    return RpcResponse::error(control::kBadParameters, "'to' must be machines; a subsystem has the others",
+                              {{"where", "to"}, {"nearest", "machines"}});
+  sent_[subscription] = nullptr;
+  return {};
+}
+
+std::shared_ptr<const Json> Bench::pull(std::uint64_t subscription) {
+  std::shared_ptr<const Json>& sent = sent_.at(subscription);
+  const auto& present = machines();
+  if (sent != nullptr && *sent == *present) return nullptr;
+  return sent = present;
+}
+
+Json Bench::hello(control::Role role) const {
+  std::error_code error;
+  const FileStart host("/proc/sys/kernel/hostname");
+  return {{"protocol", 1},
+          {"program", facts_.program},
+          {"role", control::role_name(role)},
+          {"user", user_name(own_user())},
+          {"host", host.view().substr(0, host.view().find('\n'))},
+          {"file", facts_.file.empty() ? Json() : Json(facts_.file)},
+          {"folder", std::filesystem::current_path(error).string()},
+          {"pid", own_process_id()}};
+}
+
+/// Without the folder of the user if others may write to it.
+std::vector<std::string> Bench::folders() const {
+  if (is_safe_folder(facts_.own_folder.c_str())) return {facts_.own_folder, facts_.service_folder};
+  return {facts_.service_folder};
+}
+
+std::vector<std::pair<std::string, Bench::Time>> Bench::sockets() const {
+  std::vector<std::pair<std::string, Time>> found;
+  for (const std::string& folder : folders()) {
+    std::error_code error;
+    std::filesystem::directory_iterator entries(folder, error);
+    for (; !error && entries != std::filesystem::directory_iterator(); entries.increment(error)) {
+      std::error_code gone;
+      if (entries->path().extension() == ".sock")
+        found.emplace_back(entries->path().string(), entries->last_write_time(gone));
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+/// As it was within the last kListingPeriod.
+const std::shared_ptr<const Json>& Bench::machines() {
+  const Nanoseconds now = clock_.now();
+  if (machines_ != nullptr && now - listed_at_ < kListingPeriod) return machines_;
+  listed_at_ = now;
+  auto present = sockets();
+  if (present != known_) changed_at_ = now;
+  const bool must_ask = machines_ == nullptr || now - changed_at_ < kStartTime || now - asked_at_ >= kAskingPeriod;
+  known_ = std::move(present);
+  if (!must_ask) return machines_;
+  asked_at_ = now;
+  std::vector<std::string> named;
+  Json all = Json::array();
+  for (const std::string& folder : folders()) {
+    for (const std::string& name : control::running_subsystems(folder)) {
+      if (std::find(named.begin(), named.end(), name) != named.end()) continue;
+      named.push_back(name);
+      all.push_back({{"name", name}, {"service", folder != facts_.own_folder}});
+    }
+  }
+  Json answer = Json::object();
+  answer["machines"] = std::move(all);
+  machines_ = std::make_shared<const Json>(std::move(answer));
+  return machines_;
+}
+
+}  // namespace chimera::web
