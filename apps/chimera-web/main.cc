@@ -13,7 +13,6 @@
 #include "chimera/control/running.h"
 #include "chimera/platform/socket_place.h"
 #include "chimera/platform/standard_streams.h"
-#include "chimera/text/json.h"
 #include "chimera/web/web_server.h"
 
 namespace {
@@ -32,9 +31,7 @@ int serve(const web::WebRequest& request, bool json) {
   auto server = web::WebServer::open(request, *std::move(page), tell);
   if (!server) return tell(server.error().message.c_str()), 1;
   const std::string& link = (*server)->link();
-  const std::string line = json ? Json{{"url", link}, {"pid", static_cast<int>(::getpid())}}.dump(Json::Style::kSpaced)
-                                : link;
-  std::printf("%s\n", line.c_str());
+  std::printf("%s\n", (json ? "{\"url\": \"" + link + "\"}" : link).c_str());
   (void)flush_and_look(stdout);  // without a reader the page is served all the same
   (*server)->run();
   return 0;

@@ -28,6 +28,7 @@ FileCommand run_row();
 FileCommand idle_row();
 FileCommand attend_row();
 FileCommand sweep_row();
+FileCommand web_row();
 FileCommand shell_row();
 FileCommand pages_row();
 FileCommand version_row();

@@ -327,7 +327,7 @@ void WebServer::Connection::check(Nanoseconds at) {
 void WebServer::Connection::check_open(Nanoseconds at) {
   if (is_writing_) {
     const int unread = unread_by_other_end(tcp_socket().native_handle());
-    if (unread < unread_) moved_ = at;
+    if (unread < unread_) moved_ = heard_ = at;
     unread_ = unread;
     if (at - moved_ >= kStuckLimit) return close(kSilent, "the browser read nothing for 5 s");
   }

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/web/bench.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "chimera/platform/local_socket.h"
+#include "chimera/platform/process_state.h"
+#include "chimera/platform/socket_place.h"
+#include "chimera/text/json.h"
+
+namespace chimera::web {
+namespace {
+
+struct BenchTest : ::testing::Test {
+  void SetUp() override {
+    char made[] = "/tmp/chimera-bench-XXXXXX";
+    place = ::mkdtemp(made);
+    bench.emplace(BenchFacts{"1.2.3", "/a/arm.yaml", own(), service()}, clock);
+  }
+  void TearDown() override { std::filesystem::remove_all(place); }
+  std::string own() const { return place + "/own"; }
+  std::string service() const { return place + "/service"; }
+  static SocketPlace listen(const std::string& folder, const std::string& name) {
+    return *SocketPlace::open(folder, name, false);
+  }
+  control::RpcResponse call(const char* method) {
+    control::RpcResponse answer;
+    bench->call(*control::find_method(method), Json::object(), {control::Role::kConfigure, 1, 0},
+                [&](const control::RpcResponse& given) { answer = given; });
+    return answer;
+  }
+  std::string machines() { return (*call("machines").result)["machines"].dump(); }
+  void pass(Nanoseconds span) { clock.advance(span); }
+
+  std::string place;
+  VirtualClock clock;
+  std::optional<Bench> bench;
+};
+
+TEST_F(BenchTest, SaysWhoItIs) {
+  const Json hello = *call("hello").result;
+  EXPECT_EQ(hello["protocol"], Json(1));
+  EXPECT_EQ(hello["program"], Json("1.2.3"));
+  EXPECT_EQ(hello["role"], Json("configure"));
+  EXPECT_EQ(hello["file"], Json("/a/arm.yaml"));
+  EXPECT_EQ(hello["user"], Json(user_name(own_user())));
+  EXPECT_EQ(hello["pid"].as_int64(), own_process_id());
+  EXPECT_EQ(hello["folder"], Json(std::filesystem::current_path().string()));
+  EXPECT_FALSE(hello["host"].as_string().empty());
+  bench.emplace(BenchFacts{"1.2.3", "", own(), service()}, clock);
+  EXPECT_TRUE((*call("hello").result)["file"].is_null());
+}
+
+TEST_F(BenchTest, NamesOwnSubsystemsThenServicesOfOtherNames) {
+  EXPECT_EQ(machines(), "[]");
+  pass(seconds(1));
+  const SocketPlace b = listen(own(), "b"), a = listen(own(), "a");
+  const SocketPlace same = listen(service(), "a"), c = listen(service(), "c");
+  EXPECT_EQ(machines(), R"([{"name":"a","service":false},{"name":"b","service":false},{"name":"c","service":true}])");
+}
+
+TEST_F(BenchTest, ListsNoFolderToWhichOthersMayWrite) {
+  const SocketPlace a = listen(own(), "a");
+  std::filesystem::permissions(own(), std::filesystem::perms::all);
+  EXPECT_EQ(machines(), "[]");
+}
+
+TEST_F(BenchTest, ListsOnceASecond) {
+  EXPECT_EQ(machines(), "[]");
+  const SocketPlace a = listen(own(), "a");
+  pass(milliseconds(999));
+  EXPECT_EQ(machines(), "[]");
+  pass(milliseconds(1));
+  EXPECT_EQ(machines(), R"([{"name":"a","service":false}])");
+}
+
+/// Connections that wait at a socket: each is a question whether a process listens there.
+std::size_t questions(const SocketPlace& socket) {
+  std::size_t n = 0;
+  while (accept_now(socket.descriptor()).fd >= 0) ++n;
+  return n;
+}
+
+TEST_F(BenchTest, ConnectsToSocketsOnlyAfterAChangeAndEveryTenSeconds) {
+  const SocketPlace a = listen(own(), "a");
+  (void)questions(a);
+  EXPECT_NE(machines(), "[]");
+  pass(seconds(2));
+  EXPECT_NE(machines(), "[]");
+  (void)questions(a);
+  for (int i = 0; i < 7; ++i) pass(seconds(1)), (void)machines();
+  EXPECT_EQ(questions(a), 0u);
+  pass(seconds(1)), (void)machines();
+  EXPECT_EQ(questions(a), 1u);
+  pass(seconds(1)), (void)machines();
+  EXPECT_EQ(questions(a), 0u);
+  bench->look_again();
+  (void)machines();  // within the second of the last listing
+  EXPECT_EQ(questions(a), 0u);
+  pass(seconds(1)), (void)machines();
+  EXPECT_EQ(questions(a), 1u);
+}
+
+TEST_F(BenchTest, NotifiesAtOnceAndAtEachChange) {
+  const Json to_machines{{"to", "machines"}};
+  EXPECT_TRUE(bench->open(1, to_machines).is_good());
+  EXPECT_EQ(bench->pull(1)->dump(), R"({"machines":[]})");
+  EXPECT_EQ(bench->pull(1), nullptr);
+  std::optional<SocketPlace> a = listen(own(), "a");
+  pass(seconds(1));
+  EXPECT_TRUE(bench->open(2, to_machines).is_good());
+  const std::string one = R"({"machines":[{"name":"a","service":false}]})";
+  EXPECT_EQ(bench->pull(1)->dump(), one);
+  EXPECT_EQ(bench->pull(2)->dump(), one);
+  bench->close(1);
+  a.reset();
+  pass(seconds(1));
+  EXPECT_EQ(bench->pull(2)->dump(), R"({"machines":[]})");
+  EXPECT_EQ(bench->pull(2), nullptr);
+}
+
+TEST_F(BenchTest, RefusesWhatASubsystemAnswers) {
+  EXPECT_EQ(call("status").code, control::kNoMethod);
+  EXPECT_EQ(call("end").message, "'end' is a method of a subsystem: connect to /machine/NAME");
+  EXPECT_EQ(bench->open(1, {{"to", "values"}}).code, control::kBadParameters);
+}
+
+}  // namespace
+}  // namespace chimera::web
