@@ -195,6 +195,25 @@ class Which(PageTest):
         self.look_at(Door(self.runtime, Subject.chain("omega")), arguments=("/machines/omega.yaml",))
         self.assertEqual(self.page.root("machine"), "omega")
 
+    def test_a_subsystem_that_has_ended_stays_said_while_the_page_tries_again(self):
+        door = self.look_at(Door(self.runtime))
+        self.expected = ["WebSocket"]
+        door.die()
+        self.page.await_root("door", "gone")
+        self.page.script("""
+            const root = document.documentElement, Real = WebSocket;
+            window.seen = [];
+            window.WebSocket = class extends Real {
+              constructor(...of) { super(...of); root.dataset.tries = Number(root.dataset.tries ?? 0) + 1; } };
+            new MutationObserver(() => seen.push(root.dataset.door))
+              .observe(root, {attributes: true, attributeFilter: ['data-door']});""")
+        self.page.await_that("Number(document.documentElement.dataset.tries) >= 4", "four tries to connect")
+        self.assertEqual(self.page.script("return seen"), [])
+        self.page.await_text(".banner.lost", "plant has ended")
+        door.listen()
+        self.page.await_root("door", "open")
+        self.page.await_none(".banner")
+
     def test_an_old_link_is_refused_with_the_remedy(self):
         server = self.web()
         self.page.open(server.link[:-43] + 43 * "A")
