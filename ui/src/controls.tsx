@@ -25,6 +25,13 @@ export function Button({ label, forbidden = "", title = "", className = "", isPr
   );
 }
 
+/** A handler of keys: Escape closes what is open, and does nothing else. */
+export const onEscape = (close: () => void) => (event: { key: string; preventDefault: () => void }): void => {
+  if (event.key !== "Escape") return;
+  event.preventDefault();
+  close();
+};
+
 /** Asks once, in place. Escape and Cancel leave everything as it is. */
 export function QuestionBox() {
   const { question } = useStore(view);
@@ -39,7 +46,7 @@ export function QuestionBox() {
   if (!question) return null;
   return (
     <div className="question" role="alertdialog" aria-label={question.title} aria-describedby="question-text"
-         onKeyDown={(event) => { if (event.key === "Escape") ask(null); }}>
+         onKeyDown={onEscape(() => ask(null))}>
       <strong>{question.title}</strong>
       <p id="question-text">{question.text}</p>
       <button ref={button} type="button" onClick={() => ask(null)}>Cancel</button>

@@ -42,7 +42,7 @@ export class Door {
 
   call(method: string, params: object = {}): Promise<any> {
     const socket = this.socket;
-    if (this.state !== "open" || !socket) return Promise.reject(new Lost("there is no connection"));
+    if (socket?.readyState !== WebSocket.OPEN) return Promise.reject(new Lost("there is no connection"));
     const id = ++this.lastId;
     socket.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
     return new Promise((resolve, reject) => this.calls.set(id, { resolve, reject }));
@@ -50,7 +50,7 @@ export class Door {
 
   /** Tries again at once. */
   retry(): void {
-    if (this.isClosed || this.state === "open" || this.state === "connecting") return;
+    if (this.isClosed || (this.socket?.readyState ?? WebSocket.CLOSED) < WebSocket.CLOSING) return;
     window.clearTimeout(this.timer);
     this.connect();
   }
@@ -68,7 +68,6 @@ export class Door {
     socket.onopen = () => {
       if (this.socket !== socket || this.isClosed) return;
       socket.send(this.key);
-      this.set("open", "");
       this.events.opened(this);
     };
     socket.onmessage = (message) => { if (this.socket === socket) this.take(String(message.data)); };
@@ -78,6 +77,7 @@ export class Door {
   private take(line: string): void {
     const message = JSON.parse(line);
     this.failures = 0;
+    if (this.state !== "open") this.set("open", "");  // not before: the key may be old, the subsystem not there
     if (message.method !== undefined) return this.events.note(message.method, message.params);
     const call = this.calls.get(message.id);
     if (!call) return;

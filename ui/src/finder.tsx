@@ -2,7 +2,7 @@
 // Anything by name (Ctrl-K), and the list of keys (?).
 import { useEffect, useRef, useState } from "react";
 import { ACTS } from "./acts";
-import { Table } from "./controls";
+import { onEscape, Table } from "./controls";
 import type { MachineName } from "./protocol";
 import type { MachineState } from "./machine";
 import { choose, showVariable, view } from "./view";
@@ -67,7 +67,7 @@ export function Help() {
   const close = () => view.set({ isHelping: false });
   return (
     <div className="question help" role="dialog" aria-label="Keys"
-         onKeyDown={(event) => { if (event.key === "Escape") close(); }}>
+         onKeyDown={onEscape(close)}>
       <Table label="Keys" heading={["key", "what it does"]} rows={KEYS} />
       <p className="hint">A key acts on the chosen tasks while no field is being typed into.</p>
       <button ref={button} type="button" onClick={close}>Close</button>

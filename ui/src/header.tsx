@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The line that is always there: which subsystem, what is in force, and the FLAG.
 import { useState } from "react";
-import { Button } from "./controls";
+import { Button, onEscape } from "./controls";
 import { forbidden, Machine, MachineState } from "./machine";
 import type { BenchHello, MachineName, Status } from "./protocol";
 import { CAPACITY, loads } from "./load";
@@ -62,10 +62,10 @@ function MoreMenu({ machine, state }: { machine: Machine; state: MachineState })
     machine.say(`Drill: ${answer.safe ? "safe" : "NOT safe"} after ${Math.round(answer.flag_ns / 1e6)} ms: ${tasks.join(", ")}.`);
   };
   return (
-    <div className="menu">
+    <div className="menu" onKeyDown={onEscape(() => open(false))}>
       <Button label="More acts" isPressed={isOpen} press={() => open(!isOpen)}>More ▾</Button>
       {isOpen && (
-        <ul className="sheet" aria-label="More acts" onKeyDown={(event) => { if (event.key === "Escape") open(false); }}>
+        <ul className="sheet" aria-label="More acts">
           <li><Button label="Drill" forbidden={why} press={() => { open(false); ask({
             title: `Drill ${state.name}?`, button: "Drill", carryOut: () => void drill(),
             text: "The FLAG goes up until every hardware task is safe, for 10 s at most: the machine stops. Then the " +

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The menu of configurations: each with its plan before it is pressed; the receipt comes after.
 import { useEffect, useState } from "react";
-import { Button } from "./controls";
+import { Button, onEscape } from "./controls";
 import { forbidden, Machine, MachineState } from "./machine";
 import type { Plan, Receipt } from "./protocol";
 import { duration } from "./text";
@@ -61,13 +61,12 @@ export function SwitchMenu({ machine, state }: { machine: Machine; state: Machin
   }, [isOpen, inForce, list, machine]);
   if (names.length < 2) return null;
   return (
-    <div className="menu">
+    <div className="menu" onKeyDown={onEscape(() => open(false))}>
       <Button label="Switch configuration" isPressed={isOpen} press={() => open(!isOpen)}>Switch ▾</Button>
       {underWay && <Button label="Cancel the switch under way" forbidden={forbidden(state.hello?.role, "operate")}
                            press={() => void machine.act("cancel", {})}>Cancel: {underWay.progress}</Button>}
       {isOpen && (
-        <ul className="sheet" aria-label="Configurations"
-            onKeyDown={(event) => { if (event.key === "Escape") open(false); }}>
+        <ul className="sheet" aria-label="Configurations">
           {names.map((name) => {
             const plan = plans[name];
             const why = forbidden(state.hello?.role, "operate");
