@@ -15,7 +15,7 @@ NAME = re.compile(r"`([A-Za-z_]\w*)(?:\.(\w+))?`")
 def python_tests():
     """"door_test.test_x" of all scripts, and "questions_test" of one that is one test: who names a promise's test says
     which of them."""
-    for folder in ("hostile", "processes"):
+    for folder in ("hostile", "processes", "page"):
         for path in (ROOT / "tests" / folder).glob("*_test.py"):
             methods = re.findall(r"^    def (test_\w+)\(", path.read_text(encoding="utf-8"), re.M)
             yield from [f"{path.stem}.{method}" for method in methods] or [path.stem]
