@@ -69,13 +69,13 @@ class LookTest(PageTest):
         self.page.await_text("text.value[data-value=v1]", "-0.412 ")
         self.assertRegex(self.page.text("text.value[data-value=v1]"), r"^-0\.412 \d+(\.\d)?(ns|us|ms|s)$")
 
-    def test_the_value_of_a_chosen_task_has_its_unit(self):
+    def test_a_chosen_task_shows_its_inputs_and_its_sentence(self):
         subject = Subject.chain()
         subject.values["v0"] = 0.5
         self.look_at(Door(self.runtime, subject))
         self.page.choose("task1")
         self.page.await_text("[data-live=v0]", "0.5")
-        self.assertIn("1", self.page.attribute("article[aria-label='Task task1'] td[title]", "title").split())
+        self.page.await_text("article[aria-label='Task task1'] .doc", "Adds one.")
 
     def test_a_value_whose_producer_is_off_is_grey(self):
         door = self.look_at(Door(self.runtime))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """One test file of the page: PageTest is the base of its tests, main() runs them. After each test the console has no
-error, and each frame fits the schema. What a failed test leaves is in BUILD/page/TEST."""
+error, and each frame fits the schema. What a failed test leaves is in BUILD/page_failures/TEST."""
 import os
 import pathlib
 import re
@@ -74,7 +74,7 @@ class PageTest(unittest.TestCase):
 
     def leave_evidence(self):
         """Picture, console, frames and text of the page, for a failed test. Returns their folder."""
-        folder = BUILD / "page" / self.id().removeprefix("__main__.")
+        folder = BUILD / "page_failures" / self.id().removeprefix("__main__.")
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         try:
