@@ -8,7 +8,7 @@ WIDTH, HEIGHT, GAP = 120, 60, 80  # of a box of the picture, and between two, in
 
 
 def port(name, kind, variable, unit="1", type_="float64"):
-    return {"port": name, "kind": kind, "variable": variable, "type": type_, "unit": unit, "shape": ""}
+    return {"port": name, "kind": kind, "variable": variable, "type": type_, "unit": unit, "shape": "", "frame": None}
 
 
 class Subject:
@@ -67,7 +67,7 @@ class Subject:
     def status(self):
         return {"subsystem": self.name, "configuration": self.configuration, "now_ns": time.monotonic_ns(),
                 "origin_ns": 1, "started_ns": 2, "ending": False,
-                "flag": {"up": bool(self.flag_by), "by": self.flag_by}, "keeper": {"pid": 10, "hang": None},
+                "flag": {"up": bool(self.flag_by), "by": self.flag_by}, "switch": None, "keeper": {"pid": 10, "hang": None},
                 "guard": None, "face": {"deaths": 0, "last_end": None, "lost_output": None},
                 "rtpus": [self.rtpu(name, alive) for name, alive in self.rtpus.items()],
                 "tasks": [self.task(name, task) for name, task in self.tasks.items()]}
@@ -106,7 +106,8 @@ class Subject:
                 if p["variable"] == variable and p["kind"] == kind]
 
     def variable(self, name):
-        return {"variable": name, "constant": False, "given": name in self.operator, "type": "float64", "unit": "1",
+        return {"variable": name, "constant": False, "given": name in self.operator, "operator": name in self.operator,
+                "least": None, "most": None, "type": "float64", "unit": "1",
                 "shape": "", "producers": self.ends(name, "out-var"), "consumers": self.ends(name, "in-var")}
 
     def reading(self, name):
@@ -129,11 +130,11 @@ class Subject:
         ports, lines, labels = [], [], [self.label(self.name, GAP, 20, "title")]
         for name, task in self.tasks.items():
             x, y = place[name]
-            labels.append(self.label(name, x + WIDTH / 2, y + HEIGHT / 2, "name", task=name))
+            labels.append(self.label(name, x + WIDTH // 2, y + HEIGHT // 2, "name", task=name))
             for p in task["ports"]:
                 at = x + (WIDTH if p["kind"] == "out-var" else 0)
                 ports.append({"task": name, "port": p["port"], "kind": p["kind"], "variable": p["variable"], "x": at,
-                              "y": y + HEIGHT / 2})
+                              "y": y + HEIGHT // 2})
                 labels.append(self.label(p["variable"], at, y - 4, "port", task=name, variable=p["variable"]))
         for start in (p for p in ports if p["kind"] == "out-var"):
             for end in (p for p in ports if p["kind"] == "in-var" and p["variable"] == start["variable"]):
