@@ -19,7 +19,7 @@
 #   with fewer, a fifth faster.
 # chimera_script_test(NAME LABEL label [TREES tree...] [DEPENDS target...] COMMAND command...)
 #   A test that is a command. Exit 77 = skipped, the last line of its output is the reason.
-#   Labels: unit program (runs whole programs) hostile process model firmware page (debug), threads (tsan), symbol cost
+#   Labels: unit program (runs whole programs) hostile process page model firmware (debug), threads (tsan), symbol cost
 #   realtime (release).
 #   TREES: debug (default) tsan release.
 

@@ -32,11 +32,18 @@ foreach(program chimera chimera-guard chimera-rtpu chimera-manager chimera-descr
   install(PROGRAMS ${CMAKE_BINARY_DIR}/bin/${program} DESTINATION bin COMPONENT sdk)
 endforeach()
 install(DIRECTORY share/chimera DESTINATION share COMPONENT sdk PATTERN completion EXCLUDE)
+if(CHIMERA_WEB)
+  install(PROGRAMS ${CMAKE_BINARY_DIR}/bin/chimera-web DESTINATION bin COMPONENT page)
+  install(DIRECTORY ${CMAKE_BINARY_DIR}/page DESTINATION share/chimera COMPONENT page)
+endif()
 
 # The library without the test components. `product` is what `./dev install` and `./dev package` build.
 get_property(names GLOBAL PROPERTY chimera_component_names)
 list(FILTER names EXCLUDE REGEX "^t_")
 add_custom_target(product DEPENDS chimera chimera_pages chimera-describe chimera_base)
+if(CHIMERA_WEB)
+  add_dependencies(product chimera-web)
+endif()
 foreach(name IN LISTS names)
   if(TARGET component_${name}_files)
     add_dependencies(product component_${name}_files)

@@ -13,7 +13,7 @@ import sources  # noqa: E402
 
 FOLDER_FILES, FILE_LINES, FUNCTION_LINES, COLUMNS = 40, 500, 60, 120
 PRODUCTION = re.compile(r"(chimera/.+)/[^/]+(?<!_test)(?<!_fuzz)(?<!_stress)\.(?:h|cc)")
-CODE = (".h", ".cc", ".c", ".py", ".sh", ".cmake", ".js", ".ts", ".css", ".pml")
+CODE = (".h", ".cc", ".c", ".py", ".sh", ".cmake", ".js", ".ts", ".tsx", ".css", ".pml")
 MACRO = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(\w+)\(", re.MULTILINE)
 MACRO_ALLOWED = re.compile(r"CHIMERA_ASSERT$|CHIMERA_COMPONENT|PBO_|SVAR_")
 TYPE_NAME = re.compile(r"\b(?:class|struct)\s+(\w+(?:Manager|Helper|Util|Data|Impl))\b")

@@ -12,7 +12,7 @@ import sources  # noqa: E402
 FLOOR = {"base": 0, "platform": 1, "table": 2, "task": 3, "schedule": 4, "runtime": 5, "load": 5, "rtpu": 6,
          "text": 6, "units": 7, "description": 8, "catalogue": 9, "verify": 10, "analysis": 11,
          "keeper": 12, "guard": 12, "component_test": 12, "control": 12, "subsystem": 12, "draw": 12, "cli": 13,
-         "manager": 13, "record": 13}
+         "manager": 13, "record": 13, "web": 14}
 # Rooms of one floor: a room imports only those with lower numbers. "" is the folder itself.
 INSIDE = {"cli": {"": 0, "command": 0, "files": 1, "print": 1, "live": 2, "run": 3, "batch": 4},
           "runtime": {"": 0, "record": 1, "job": 2, "plan": 3, "state": 4, "life": 5, "switch": 6, "cycle": 7,
@@ -23,7 +23,8 @@ COMPONENT_INTERFACE = ("chimera/task/abi.h", "chimera/task/component.h", "chimer
                        "chimera/task/number_at.h", "chimera/task/pbo.h", "chimera/task/rig.h")
 ROOT_FOLDERS = ("chimera", "library", "apps", "executive", "examples", "tests", "bench", "tools")
 # Slow to compile: one .cc of an upper floor pays for each, never a header, never the real-time floors.
-HEAVY = re.compile(r"^(yaml-cpp/|nlohmann/|fmt/|mujoco/|gmock/)")
+HEAVY = re.compile(r"^(boost/|yaml-cpp/|nlohmann/|fmt/|mujoco/|gmock/)")
+SEES_BOOST = "chimera/web/web_server.cc"
 SEES_JSON_LIBRARY = ("chimera/text/json.cc", "chimera/text/json_test.cc")  # all others include chimera/text/json.h
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^">]+)[">]', re.MULTILINE)
 
@@ -135,6 +136,8 @@ def heavy_refusal(name, path):
         return None if name in SEES_JSON_LIBRARY else "slow to compile: include chimera/text/json.h"
     if not name.startswith("chimera/") or not HEAVY.match(path):
         return None
+    if path.startswith("boost/"):
+        return None if name == SEES_BOOST else f"only {SEES_BOOST} sees Boost"
     if (floor_of(name) or 0) < 6:
         return "libraries like this stay above the real-time line"
     return "slow to compile: include it in the one .cc that needs it" if name.endswith(".h") else None

@@ -12,7 +12,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent / "check"))
 import sources  # noqa: E402
 
 LICENCE = "SPDX-License-Identifier: Apache-2.0"
-LICENSED = (".h", ".cc", ".c", ".py", ".sh", ".cmake", ".js", ".ts", ".css", ".pml")
+LICENSED = (".h", ".cc", ".c", ".py", ".sh", ".cmake", ".js", ".ts", ".tsx", ".css", ".pml")
 BINARY = (".png", ".jpg", ".gz", ".zip", ".woff2", ".ico", ".stl", ".dae")
 # What a program leaves behind in a folder has none of these endings, or a name that nobody would type.
 ENDINGS = LICENSED + BINARY + (
@@ -73,7 +73,7 @@ def has_purpose(lines):
 
 def texts(name, content):
     """(line number, text) of what people read in a file: comments, strings, the prose of documents."""
-    if name.endswith((".h", ".cc", ".c")):
+    if name.endswith((".h", ".cc", ".c", ".ts", ".tsx")):
         for match in C_TEXT.finditer(content):
             yield content.count("\n", 0, match.start()) + 1, match[0]
     elif name.endswith(".py"):

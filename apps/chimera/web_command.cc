@@ -22,7 +22,8 @@ int web(const Call& call, const cli::Workplace&) {
     return print(cli::file_refusal(Message(why).error(ErrorCode::kRefused, where), call.json));
   };
   if (!file.empty())
-    if (const std::string why = not_ordinary(file, static_cast<std::size_t>(-1)); !why.empty()) return refuse(why, file);
+    if (const std::string why = not_ordinary(file, static_cast<std::size_t>(-1)); !why.empty())
+      return refuse(why, file);
   const std::string own = cli::program_path();
   std::vector<std::string> words = {own.substr(0, own.rfind('/') + 1) + "chimera-web"};
   if (call.json) words.push_back("--json");
@@ -55,11 +56,12 @@ FileCommand web_row() {
                     .json = "the link as one JSON object",
                     .footer = "Open the link that it prints; Ctrl-C ends the page, not the subsystems.",
                     .example = "chimera web arm.yaml",
-                    .manual = "Prints the link of a page that shows the running subsystems of this user and of "
-                              "/run/chimera: picture, states, values. The page shows first the subsystem that runs "
-                              "FILE, which need not exist. The link holds a key, new at each start: who has it acts "
-                              "as this user. Only programs of this machine reach the port; from another one: "
-                              "`ssh -L 7440:127.0.0.1:7440 HOST`.",
+                    .manual =
+                        "Prints the link of a page that shows the running subsystems of this user and of "
+                        "/run/chimera: picture, states, values. The page shows first the subsystem that runs "
+                        "FILE, which need not exist. The link holds a key, new at each start, with which "
+                        "a browser acts as this user. Only programs of this machine reach the port; from another one: "
+                        "`ssh -L 7440:127.0.0.1:7440 HOST`.",
                     .outlives_reader = true},
           .carry_out = web};
 }

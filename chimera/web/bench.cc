@@ -3,9 +3,11 @@
 #include "chimera/web/bench.h"
 
 #include <algorithm>
+#include <cerrno>
 
 #include "chimera/control/running.h"
 #include "chimera/platform/file.h"
+#include "chimera/platform/local_socket.h"
 #include "chimera/platform/process_state.h"
 #include "chimera/platform/socket_place.h"
 #include "chimera/text/json.h"
@@ -23,12 +25,11 @@ constexpr Nanoseconds kAskingPeriod = seconds(10);  // the file of a killed keep
 
 }  // namespace
 
-void Bench::call(const control::MethodRule& method, const Json&, const control::Caller& caller,
-                 control::Reply reply) {
+void Bench::call(const control::MethodRule& method, const Json&, const control::Caller& caller, control::Reply reply) {
   if (method.id == MethodId::kHello) return reply(RpcResponse::good(hello(caller.role)));
   if (method.id == MethodId::kMachines) return reply(RpcResponse::good(*machines()));
-  reply(RpcResponse::error(control::kNoMethod, "'" + std::string(method.name) +
-                                                   "' is a method of a subsystem: connect to /machine/NAME"));
+  reply(RpcResponse::error(control::kNoMethod,
+                           "'" + std::string(method.name) + "' is a method of a subsystem: connect to /machine/NAME"));
 }
 
 RpcResponse Bench::open(std::uint64_t subscription, const Json& parameters) {
@@ -44,6 +45,18 @@ std::shared_ptr<const Json> Bench::pull(std::uint64_t subscription) {
   const auto& present = machines();
   if (sent != nullptr && *sent == *present) return nullptr;
   return sent = present;
+}
+
+OwnedDescriptor Bench::connect(const std::string& machine) {
+  OwnedDescriptor door;
+  for (const std::string& folder : folders()) {
+    door = connect_to_path(control::socket_path(folder, machine), {});
+    if (door.fd >= 0 || (errno != ENOENT && errno != ECONNREFUSED)) return door;
+  }
+  const int why = errno;
+  look_again();
+  errno = why;
+  return door;
 }
 
 Json Bench::hello(control::Role role) const {

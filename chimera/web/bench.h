@@ -11,13 +11,14 @@
 
 #include "chimera/control/control_backend.h"
 #include "chimera/platform/clock.h"
+#include "chimera/platform/descriptor.h"
 
 namespace chimera::web {
 
 /// Plain value.
 struct BenchFacts {
-  std::string program;  ///< its version
-  std::string file;     ///< absolute path of the description that was named; "": none
+  std::string program;                     ///< its version
+  std::string file;                        ///< absolute path of the description that was named; "": none
   std::string own_folder, service_folder;  ///< of sockets
 };
 
@@ -32,7 +33,9 @@ class Bench final : public control::ControlBackend {
   control::RpcResponse open(std::uint64_t subscription, const Json& parameters) override;
   void close(std::uint64_t subscription) override { sent_.erase(subscription); }
   std::shared_ptr<const Json> pull(std::uint64_t subscription) override;
-  /// A subsystem ended, or is not there: the next listing connects to the sockets again.
+  /// A connection to the subsystem; -1 with errno. Context: setup; may block 10 ms.
+  OwnedDescriptor connect(const std::string& machine);
+  /// A subsystem ended: the next listing connects to the sockets again.
   void look_again() noexcept { asked_at_ = Nanoseconds{INT64_MIN / 2}; }
 
  private:
@@ -46,7 +49,7 @@ class Bench final : public control::ControlBackend {
   BenchFacts facts_;
   Clock& clock_;
   std::vector<std::pair<std::string, Time>> known_;
-  std::shared_ptr<const Json> machines_;  // the last answer
+  std::shared_ptr<const Json> machines_;                       // the last answer
   std::map<std::uint64_t, std::shared_ptr<const Json>> sent_;  // by subscription: the last notification
   Nanoseconds listed_at_{INT64_MIN / 2}, changed_at_{INT64_MIN / 2}, asked_at_{INT64_MIN / 2};
 };

@@ -14,6 +14,13 @@
 namespace chimera::web {
 namespace {
 
+/// Connections that wait at a socket: each is a question whether a process listens there.
+std::size_t questions(const SocketPlace& socket) {
+  std::size_t n = 0;
+  while (accept_now(socket.descriptor()).fd >= 0) ++n;
+  return n;
+}
+
 struct BenchTest : ::testing::Test {
   void SetUp() override {
     char made[] = "/tmp/chimera-bench-XXXXXX";
@@ -68,6 +75,18 @@ TEST_F(BenchTest, ListsNoFolderToWhichOthersMayWrite) {
   EXPECT_EQ(machines(), "[]");
 }
 
+TEST_F(BenchTest, ConnectsToTheSubsystemOfTheUserBeforeAService) {
+  EXPECT_LT(bench->connect("a").fd, 0);
+  EXPECT_EQ(errno, ENOENT);
+  const SocketPlace serving = listen(service(), "a");
+  EXPECT_GE(bench->connect("a").fd, 0);
+  EXPECT_EQ(questions(serving), 1u);
+  const SocketPlace a = listen(own(), "a");
+  EXPECT_GE(bench->connect("a").fd, 0);
+  EXPECT_EQ(questions(serving), 0u);
+  EXPECT_EQ(questions(a), 1u);
+}
+
 TEST_F(BenchTest, ListsOnceASecond) {
   EXPECT_EQ(machines(), "[]");
   const SocketPlace a = listen(own(), "a");
@@ -75,13 +94,6 @@ TEST_F(BenchTest, ListsOnceASecond) {
   EXPECT_EQ(machines(), "[]");
   pass(milliseconds(1));
   EXPECT_EQ(machines(), R"([{"name":"a","service":false}])");
-}
-
-/// Connections that wait at a socket: each is a question whether a process listens there.
-std::size_t questions(const SocketPlace& socket) {
-  std::size_t n = 0;
-  while (accept_now(socket.descriptor()).fd >= 0) ++n;
-  return n;
 }
 
 TEST_F(BenchTest, ConnectsToSocketsOnlyAfterAChangeAndEveryTenSeconds) {

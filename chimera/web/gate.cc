@@ -11,7 +11,7 @@
 namespace chimera::web {
 namespace {
 
-using Kind = Verdict::Kind;
+using Kind = GateVerdict::Kind;
 
 struct Field {
   std::string_view name, value;
@@ -22,7 +22,7 @@ struct Head {
   std::vector<Field> fields{};
 };
 
-Verdict refused(int status, std::string sentence) {
+GateVerdict refused(int status, std::string sentence) {
   return {.kind = Kind::kRefused, .status = status, .sentence = std::move(sentence)};
 }
 
@@ -123,7 +123,7 @@ bool is_all(const std::vector<std::string_view>& found, std::string_view word) {
 }
 
 /// A refusal of a request that another site may have made, or that has a form of its own; kMore: none.
-Verdict judge_sender(const Head& head) {
+GateVerdict judge_sender(const Head& head) {
   const auto host = values(head, "Host"), origin = values(head, "Origin"), site = values(head, "Sec-Fetch-Site");
   if (host.size() != 1 || !is_local(host[0]))
     return refused(421, "the request is for the host " + quoted(host.empty() ? "" : host[0]) +
@@ -140,11 +140,11 @@ Verdict judge_sender(const Head& head) {
 }
 
 /// Finds the target in the table of names.
-Verdict judge_target(const Head& head) {
+GateVerdict judge_target(const Head& head) {
   for (std::size_t i = 0; i < std::size(kPageFiles); ++i)
     if (head.target == kPageFiles[i].target) return {.kind = Kind::kFile, .file = i};
   constexpr std::string_view kMachine = "/machine/";
-  Verdict door;
+  GateVerdict door;
   if (head.target == "/bench") {
     door.kind = Kind::kBench;
   } else if (head.target.starts_with(kMachine) && is_name(head.target.substr(kMachine.size()))) {
@@ -153,33 +153,41 @@ Verdict judge_target(const Head& head) {
   } else {
     return refused(404, "there is no " + quoted(head.target) + " here");
   }
-  const bool is_upgrade = lists(values(head, "Connection"), "upgrade") && is_all(values(head, "Upgrade"), "websocket") &&
-                          is_all(values(head, "Sec-WebSocket-Version"), "13") &&
-                          values(head, "Sec-WebSocket-Key").size() == 1;
+  const bool is_upgrade =
+      lists(values(head, "Connection"), "upgrade") && is_all(values(head, "Upgrade"), "websocket") &&
+      is_all(values(head, "Sec-WebSocket-Version"), "13") && values(head, "Sec-WebSocket-Key").size() == 1;
   return is_upgrade ? door : refused(426, quoted(head.target) + " opens as a WebSocket, version 13");
 }
 
 }  // namespace
 
-Verdict judge(std::string_view bytes) {
+GateVerdict judge(std::string_view bytes) {
   const std::size_t size = size_of_head(bytes);
-  if (size == 0) return bytes.size() < kMaxHead ? Verdict{} : refused(431, "the head has more than 8 KiB");
+  if (size == 0) return bytes.size() < kMaxHead ? GateVerdict{} : refused(431, "the head has more than 8 KiB");
   Head head;
   if (size == std::string_view::npos || !read_head(bytes.substr(0, size), head))
     return refused(400, "this is no HTTP request; the link begins with http://");
   if (head.version != "HTTP/1.1")
     return head.version.starts_with("HTTP/") ? refused(505, "the version is " + quoted(head.version) + ", not HTTP/1.1")
                                              : refused(400, "this is no HTTP request; the link begins with http://");
-  Verdict sender = judge_sender(head);
+  GateVerdict sender = judge_sender(head);
   return sender.kind == Kind::kRefused ? sender : judge_target(head);
 }
 
 std::string answer(int status, const char* type, std::string_view body) {
-  constexpr std::pair<int, const char*> kWords[] = {
-      {200, "OK"}, {400, "Bad Request"}, {403, "Forbidden"}, {404, "Not Found"}, {405, "Method Not Allowed"},
-      {408, "Request Timeout"}, {413, "Content Too Large"}, {421, "Misdirected Request"}, {426, "Upgrade Required"},
-      {431, "Request Header Fields Too Large"}, {505, "HTTP Version Not Supported"}};
-  const auto word = std::find_if(std::begin(kWords), std::end(kWords), [&](const auto& w) { return w.first == status; });
+  constexpr std::pair<int, const char*> kWords[] = {{200, "OK"},
+                                                    {400, "Bad Request"},
+                                                    {403, "Forbidden"},
+                                                    {404, "Not Found"},
+                                                    {405, "Method Not Allowed"},
+                                                    {408, "Request Timeout"},
+                                                    {413, "Content Too Large"},
+                                                    {421, "Misdirected Request"},
+                                                    {426, "Upgrade Required"},
+                                                    {431, "Request Header Fields Too Large"},
+                                                    {505, "HTTP Version Not Supported"}};
+  const auto word =
+      std::find_if(std::begin(kWords), std::end(kWords), [&](const auto& w) { return w.first == status; });
   std::string text = "HTTP/1.1 " + std::to_string(status) + " " + (word == std::end(kWords) ? "" : word->second) +
                      "\r\nContent-Type: " + type + "\r\nContent-Length: " + std::to_string(body.size()) + "\r\n";
   for (const auto& [name, value] : kSafetyFields) text += std::string(name) + ": " + value + "\r\n";

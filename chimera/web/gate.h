@@ -13,7 +13,7 @@ namespace chimera::web {
 inline constexpr std::size_t kMaxHead = 8192;  ///< bytes
 
 /// The judgement of a head. Plain value.
-struct Verdict {
+struct GateVerdict {
   enum class Kind : unsigned char {
     kMore,     ///< the head has no end yet
     kFile,     ///< send `file`
@@ -30,7 +30,7 @@ struct Verdict {
 
 /// Judges the bytes that have come so far. Further bytes do not change a verdict other than kMore; kMaxHead bytes are
 /// enough for a verdict. Context: setup.
-Verdict judge(std::string_view bytes);
+GateVerdict judge(std::string_view bytes);
 
 /// Fields of every answer, also of those that open a WebSocket.
 inline constexpr std::pair<const char*, const char*> kSafetyFields[] = {

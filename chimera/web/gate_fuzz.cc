@@ -12,7 +12,7 @@
 namespace chimera::web {
 namespace {
 
-using Kind = Verdict::Kind;
+using Kind = GateVerdict::Kind;
 
 void require(bool holds, const char* what) {
   if (holds) return;
@@ -27,7 +27,7 @@ std::string lower(std::string_view text) {
 }
 
 /// Read in another way than the gate reads: by searches in the whole head.
-void check_admitted(std::string_view bytes, const Verdict& verdict) {
+void check_admitted(std::string_view bytes, const GateVerdict& verdict) {
   const std::string head(bytes.substr(0, bytes.find("\r\n\r\n") + 2)), low = lower(head);
   require(head.starts_with("GET /") && head.size() <= kMaxHead, "GET, within the limit");
   const std::size_t end = head.find("\r\n");
@@ -51,8 +51,9 @@ void check_admitted(std::string_view bytes, const Verdict& verdict) {
                 head.find("http://" + name + " ") != std::string::npos ||
                 head.find("http://" + name + "\t") != std::string::npos,
             "the Origin is the Host");
-  require(low.find("transfer-encoding:") == std::string::npos || low.find("\r\ntransfer-encoding:") == std::string::npos,
-          "no body");
+  require(
+      low.find("transfer-encoding:") == std::string::npos || low.find("\r\ntransfer-encoding:") == std::string::npos,
+      "no body");
   require(head.find('\0') == std::string::npos, "no NUL");
 }
 
@@ -62,21 +63,21 @@ void check_admitted(std::string_view bytes, const Verdict& verdict) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace chimera::web;  // NOLINT: the entry of a fuzz target
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  const Verdict whole = judge(bytes);
+  const GateVerdict whole = judge(bytes);
 #ifdef CHIMERA_PLANTED_DEFECT
   // A defect to prove that the fuzzer finds one: any WebSocket that is let in.
-  require(whole.kind != Verdict::Kind::kMachine, "planted");
+  require(whole.kind != GateVerdict::Kind::kMachine, "planted");
 #endif
-  require(whole.kind != Verdict::Kind::kMore || size < kMaxHead, "a verdict within the limit");
+  require(whole.kind != GateVerdict::Kind::kMore || size < kMaxHead, "a verdict within the limit");
   for (const std::size_t part : {size / 2, size - size / 7, size == 0 ? 0 : size - 1}) {
-    const Verdict early = judge(bytes.substr(0, part));
-    if (early.kind == Verdict::Kind::kMore) continue;
+    const GateVerdict early = judge(bytes.substr(0, part));
+    if (early.kind == GateVerdict::Kind::kMore) continue;
     require(early.kind == whole.kind && early.status == whole.status && early.machine == whole.machine,
             "more bytes change no verdict");
   }
-  if (whole.kind == Verdict::Kind::kRefused)
+  if (whole.kind == GateVerdict::Kind::kRefused)
     require(whole.status >= 400 && whole.status < 600 && !whole.sentence.empty(), "a refusal says why");
-  else if (whole.kind != Verdict::Kind::kMore)
+  else if (whole.kind != GateVerdict::Kind::kMore)
     check_admitted(bytes, whole);
   return 0;
 }

@@ -11,7 +11,7 @@
 namespace chimera::web {
 namespace {
 
-using Kind = Verdict::Kind;
+using Kind = GateVerdict::Kind;
 using Fields = std::map<std::string, std::string>;
 
 const Fields kSocket = {{"Connection", "keep-alive, Upgrade"},
@@ -33,7 +33,7 @@ Fields with(Fields fields, const Fields& more) {
 
 /// 0: it is let in, -1: it has no end yet.
 int status(const std::string& bytes) {
-  const Verdict verdict = judge(bytes);
+  const GateVerdict verdict = judge(bytes);
   if (verdict.kind == Kind::kMore) return -1;
   EXPECT_EQ(verdict.kind == Kind::kRefused, !verdict.sentence.empty());
   return verdict.status;
@@ -41,7 +41,7 @@ int status(const std::string& bytes) {
 
 TEST(Gate, ServesTheFilesOfThePage) {
   for (std::size_t i = 0; i < std::size(kPageFiles); ++i) {
-    const Verdict verdict = judge(head(kPageFiles[i].target));
+    const GateVerdict verdict = judge(head(kPageFiles[i].target));
     EXPECT_EQ(verdict.kind, Kind::kFile);
     EXPECT_EQ(verdict.file, i);
   }
@@ -49,7 +49,7 @@ TEST(Gate, ServesTheFilesOfThePage) {
 
 TEST(Gate, OpensWebSocketsToTheBenchAndToAMachine) {
   EXPECT_EQ(judge(head("/bench", kSocket)).kind, Kind::kBench);
-  const Verdict machine = judge(head("/machine/puma_pid", kSocket));
+  const GateVerdict machine = judge(head("/machine/puma_pid", kSocket));
   EXPECT_EQ(machine.kind, Kind::kMachine);
   EXPECT_EQ(machine.machine, "puma_pid");
 }
@@ -69,11 +69,30 @@ TEST(Gate, RefusesAWebSocketThatIsNone) {
 TEST(Gate, AllowsTheHostsOfThisMachineOnly) {
   for (const char* host : {"127.0.0.1", "127.0.0.1:1", "[::1]:7440", "localhost", "localhost:65535"})
     EXPECT_EQ(status(head("/", {{"Host", host}})), 0) << host;
-  for (const char* host :
-       {"", "evil.org", "evil.org:7440", "127.0.0.1.evil.org", "127.0.0.1:7440.evil.org", "localhost.evil.org",
-        "localhost:7440@evil.org", "user@localhost", "127.0.0.1:", "127.0.0.1:123456", "127.0.0.1:7440:1", "127.0.0.2",
-        "127.1", "0x7f000001", "0.0.0.0", "::1", "[::1", "[::2]", "[::ffff:127.0.0.1]", "localhost,evil.org", "LOCALHOST.",
-        "a.localhost", "127.0.0.1:-1", "127.0.0.1 evil.org"})
+  for (const char* host : {"",
+                           "evil.org",
+                           "evil.org:7440",
+                           "127.0.0.1.evil.org",
+                           "127.0.0.1:7440.evil.org",
+                           "localhost.evil.org",
+                           "localhost:7440@evil.org",
+                           "user@localhost",
+                           "127.0.0.1:",
+                           "127.0.0.1:123456",
+                           "127.0.0.1:7440:1",
+                           "127.0.0.2",
+                           "127.1",
+                           "0x7f000001",
+                           "0.0.0.0",
+                           "::1",
+                           "[::1",
+                           "[::2]",
+                           "[::ffff:127.0.0.1]",
+                           "localhost,evil.org",
+                           "LOCALHOST.",
+                           "a.localhost",
+                           "127.0.0.1:-1",
+                           "127.0.0.1 evil.org"})
     EXPECT_EQ(status(head("/", {{"Host", host}})), 421) << host;
 }
 
@@ -111,10 +130,31 @@ TEST(Gate, AnswersGetWithoutABody) {
 
 TEST(Gate, KnowsTheNamesOfItsTableOnly) {
   const std::string kLong(65, 'a');
-  for (const std::string target :
-       {"/index.html", "//", "//bench", "/bench/", "/Bench", "/bench?x", "/?", "/#", "/page.js?v=1", "/%2e", "/./",
-        "/../etc/passwd", "/machine", "/machine/", "/machine/..", "/machine/a/b", "/machine/%61", "/machine/a%00",
-        "/machine/a.sock", "/machine/-a", "/machine/1a", "*", "http://127.0.0.1:7440/", "127.0.0.1:7440", "\\bench"})
+  for (const std::string target : {"/index.html",
+                                   "//",
+                                   "//bench",
+                                   "/bench/",
+                                   "/Bench",
+                                   "/bench?x",
+                                   "/?",
+                                   "/#",
+                                   "/page.js?v=1",
+                                   "/%2e",
+                                   "/./",
+                                   "/../etc/passwd",
+                                   "/machine",
+                                   "/machine/",
+                                   "/machine/..",
+                                   "/machine/a/b",
+                                   "/machine/%61",
+                                   "/machine/a%00",
+                                   "/machine/a.sock",
+                                   "/machine/-a",
+                                   "/machine/1a",
+                                   "*",
+                                   "http://127.0.0.1:7440/",
+                                   "127.0.0.1:7440",
+                                   "\\bench"})
     EXPECT_EQ(status(head(target, kSocket)), 404) << target;
   EXPECT_EQ(status(head("/machine/" + kLong, kSocket)), 404);
   EXPECT_EQ(status(head("/machine/" + kLong.substr(1), kSocket)), 0);
@@ -131,14 +171,27 @@ TEST(Gate, RefusesOtherVersions) {
 
 TEST(Gate, RefusesBytesThatNoHeadHas) {
   const std::string first = "GET / HTTP/1.1\r\n", host = "Host: localhost\r\n";
-  for (const std::string& bytes : std::vector<std::string>{
-           std::string("\x16\x03\x01\x02\x00\x01", 6), "\r\nGET / HTTP/1.1\r\n", "get / HTTP/1.1\r\n" + host + "\r\n",
-           "GET / HTTP/1.1\n", "GET / HTTP/1.1\rHost", first + host + "A: b\n\n", first + std::string("Host: local\0host", 16),
-           first + host + "A: \x01\r\n\r\n", first + host + "A: \x7f\r\n\r\n", first + host + " A: folded\r\n\r\n",
-           first + host + "\tA: folded\r\n\r\n", first + host + "A : b\r\n\r\n", first + host + "A\r\n\r\n",
-           first + host + ": b\r\n\r\n", first + host + "\xc3\xa4: b\r\n\r\n", "GET  / HTTP/1.1\r\n" + host + "\r\n",
-           "GET /\tHTTP/1.1\r\n" + host + "\r\n", "GET / a HTTP/1.1\r\n" + host + "\r\n", "GET /\r\n" + host + "\r\n",
-           "GET\r\n\r\n", "G<T / HTTP/1.1\r\n" + host + "\r\n"})
+  for (const std::string& bytes : std::vector<std::string>{std::string("\x16\x03\x01\x02\x00\x01", 6),
+                                                           "\r\nGET / HTTP/1.1\r\n",
+                                                           "get / HTTP/1.1\r\n" + host + "\r\n",
+                                                           "GET / HTTP/1.1\n",
+                                                           "GET / HTTP/1.1\rHost",
+                                                           first + host + "A: b\n\n",
+                                                           first + std::string("Host: local\0host", 16),
+                                                           first + host + "A: \x01\r\n\r\n",
+                                                           first + host + "A: \x7f\r\n\r\n",
+                                                           first + host + " A: folded\r\n\r\n",
+                                                           first + host + "\tA: folded\r\n\r\n",
+                                                           first + host + "A : b\r\n\r\n",
+                                                           first + host + "A\r\n\r\n",
+                                                           first + host + ": b\r\n\r\n",
+                                                           first + host + "\xc3\xa4: b\r\n\r\n",
+                                                           "GET  / HTTP/1.1\r\n" + host + "\r\n",
+                                                           "GET /\tHTTP/1.1\r\n" + host + "\r\n",
+                                                           "GET / a HTTP/1.1\r\n" + host + "\r\n",
+                                                           "GET /\r\n" + host + "\r\n",
+                                                           "GET\r\n\r\n",
+                                                           "G<T / HTTP/1.1\r\n" + host + "\r\n"})
     EXPECT_EQ(status(bytes), 400) << bytes;
   EXPECT_EQ(status(first + host + "A: \xc3\xa4\tb\r\n\r\n"), 0);
 }

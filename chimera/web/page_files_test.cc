@@ -40,8 +40,9 @@ TEST_F(PageFilesTest, SaysWhatIsMissing) {
   const auto page = read();
   ASSERT_FALSE(page);
   EXPECT_EQ(page.error().where.view(), place + "/share/chimera/page/page.css");
-  EXPECT_EQ(page.error().message.view(), "the page is not there: cannot be opened: No such file or directory, nor is it in " +
-                                             place + "/page; `./dev install` builds and installs it");
+  EXPECT_EQ(page.error().message.view(),
+            "the page is not there: cannot be opened: No such file or directory, nor is it in " + place +
+                "/page; `./dev install` builds and installs it");
 }
 
 }  // namespace

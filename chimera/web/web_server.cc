@@ -14,11 +14,10 @@
 
 #include "chimera/control/closings.h"
 #include "chimera/control/control_server.h"
-#include "chimera/control/running.h"
 #include "chimera/platform/local_socket.h"
 #include "chimera/platform/process_state.h"
-#include "chimera/platform/socket_place.h"
 #include "chimera/web/gate.h"
+#include "chimera/web/limits.h"
 #include "chimera/web/page_key.h"
 
 namespace chimera::web {
@@ -30,22 +29,6 @@ using asio::ip::tcp;
 using LocalSocket = asio::local::stream_protocol::socket;
 using Code = boost::system::error_code;
 
-constexpr std::uint16_t kFirstPort = 7440, kLastPort = 7449;
-constexpr std::size_t kMaxSockets = 64, kMaxStrangers = 16, kMaxPages = 12;
-constexpr std::size_t kMaxKeyFrame = 128, kMaxReason = 123;
-constexpr std::size_t kChunk = std::size_t{1} << 14;  // bytes that wait in this process, in each direction
-constexpr int kSendBuffer = 1 << 16;                  // bytes that wait in the kernel, about
-constexpr Nanoseconds kHeadLimit = seconds(10), kKeyLimit = seconds(5), kAnswerLimit = seconds(5);
-constexpr Nanoseconds kPingAfter = seconds(5), kSilenceLimit = seconds(15), kStuckLimit = seconds(5);
-constexpr Nanoseconds kCloseLimit = seconds(2);
-constexpr Nanoseconds kStrangerTime = milliseconds(250);  // for a request, before another one may take its place
-constexpr auto kSweep = std::chrono::milliseconds(250);
-
-enum CloseCode : std::uint16_t {
-  kEnds = 1001, kNoText = 1003, kNoLine = 1007, kWrongKey = 4401, kNoMachine = 4404, kSilent = 4408, kFull = 4429,
-  kDoorEnded = 4502
-};
-
 Nanoseconds now() { return LinuxClock().now(); }
 
 }  // namespace
@@ -54,8 +37,6 @@ Nanoseconds now() { return LinuxClock().now(); }
 class WebServer::Loop {
  public:
   Loop(PageContents page, PageKey key, BenchFacts facts, Tell tell);
-  Loop(const Loop&) = delete;
-  Loop& operator=(const Loop&) = delete;
   ~Loop();
 
   Result<void> open(std::optional<std::uint16_t> port);
@@ -67,13 +48,14 @@ class WebServer::Loop {
   /// Another connection showed the key: has it a place? "": yes, else why not.
   std::string admit(bool is_bench);
   /// A connected socket to the server that the verdict names; none, with the reason for the browser.
-  std::optional<LocalSocket> door_to(const Verdict& verdict, websocket::close_reason& why);
+  std::optional<LocalSocket> door_to(const GateVerdict& verdict, websocket::close_reason& why);
   void refuse(const std::string& sentence) { refusals_.add(0, sentence, now()); }
   void machine_ended() { bench_.look_again(); }
   void leave(const std::shared_ptr<Connection>& connection);
 
  private:
-  bool has_room();
+  std::vector<std::shared_ptr<Connection>> strangers() const;
+  bool has_room() const;
   void accept();
   void enter(tcp::socket socket);
   void sweep();
@@ -102,14 +84,14 @@ class WebServer::Connection : public std::enable_shared_from_this<WebServer::Con
  public:
   Connection(Loop& loop, tcp::socket socket) : loop_(loop), socket_(std::move(socket)) {}
 
-  void start() { read_head(); }
+  void read_head();
   /// Ends the connection if a time limit has passed.
   void check(Nanoseconds at);
   /// Sends the reason if the browser can take it.
   void close(std::uint16_t code, std::string_view reason);
   void drop();
   bool is_stranger() const noexcept { return !has_key_; }
-  bool is_page() const noexcept { return has_key_ && verdict_.kind == Verdict::Kind::kBench; }
+  bool is_page() const noexcept { return has_key_ && verdict_.kind == GateVerdict::Kind::kBench; }
   Nanoseconds since() const noexcept { return since_; }
 
  private:
@@ -127,7 +109,6 @@ class WebServer::Connection : public std::enable_shared_from_this<WebServer::Con
     due_ = now() + limit;
   }
 
-  void read_head();
   void take_head(Code error, std::size_t n);
   void refuse(int status, const std::string& sentence);
   void send_answer(std::string text);
@@ -149,7 +130,7 @@ class WebServer::Connection : public std::enable_shared_from_this<WebServer::Con
   Stage stage_ = Stage::kHead;
   const Nanoseconds since_ = now();
   Nanoseconds due_ = since_ + kHeadLimit;
-  Verdict verdict_;
+  GateVerdict verdict_;
   bool has_key_ = false;
   std::vector<char> in_ = std::vector<char>(kMaxHead);  // the head, later the end of a frame from the browser
   std::vector<char> out_;                               // bytes of the door
@@ -171,11 +152,14 @@ void WebServer::Connection::take_head(Code error, std::size_t n) {
   in_size_ += n;
   verdict_ = judge({in_.data(), in_size_});
   switch (verdict_.kind) {
-    case Verdict::Kind::kMore: return read_head();
-    case Verdict::Kind::kFile:
+    case GateVerdict::Kind::kMore:
+      return read_head();
+    case GateVerdict::Kind::kFile:
       return send_answer(answer(200, kPageFiles[verdict_.file].type, loop_.page()[verdict_.file]));
-    case Verdict::Kind::kRefused: return refuse(verdict_.status, verdict_.sentence);
-    default: return upgrade();
+    case GateVerdict::Kind::kRefused:
+      return refuse(verdict_.status, verdict_.sentence);
+    default:
+      return upgrade();
   }
 }
 
@@ -224,8 +208,7 @@ void WebServer::Connection::take_key(Code error, std::size_t) {
   if (error) return drop();
   if (stage_ != Stage::kKey) return;
   if (socket_.got_binary()) return close(kNoText, "the key is a text, not a binary frame");
-  const auto given = key_.data();
-  if (!loop_.key().is({static_cast<const char*>(given.data()), given.size()})) {
+  if (!loop_.key().is({static_cast<const char*>(key_.data().data()), key_.size()})) {
     loop_.refuse("a browser came with another key: its link is old");
     return close(kWrongKey, "the link is old: chimera web was started anew and printed another one");
   }
@@ -233,7 +216,7 @@ void WebServer::Connection::take_key(Code error, std::size_t) {
 }
 
 void WebServer::Connection::join() {
-  const std::string full = loop_.admit(verdict_.kind == Verdict::Kind::kBench);
+  const std::string full = loop_.admit(verdict_.kind == GateVerdict::Kind::kBench);
   if (!full.empty()) return loop_.refuse(full), close(kFull, full);
   websocket::close_reason why;
   has_key_ = true;
@@ -261,21 +244,19 @@ void WebServer::Connection::take_from_browser(Code error, std::size_t n) {
   if (error) return drop();
   if (stage_ != Stage::kOpen) return;
   if (socket_.got_binary()) return close(kNoText, "a line is a text, not a binary frame");
-  if (std::find(in_.begin(), in_.begin() + static_cast<std::ptrdiff_t>(n), '\n') !=
-      in_.begin() + static_cast<std::ptrdiff_t>(n))
+  if (std::string_view(in_.data(), n).find('\n') != std::string_view::npos)
     return close(kNoLine, "a frame is one line without its end");
   if (socket_.is_message_done()) in_[n++] = '\n';
   asio::async_write(*door_, asio::buffer(in_.data(), n), then(&Connection::read_browser));
 }
 
-void WebServer::Connection::read_door() { door_->async_read_some(asio::buffer(out_), then(&Connection::take_from_door)); }
+void WebServer::Connection::read_door() {
+  door_->async_read_some(asio::buffer(out_), then(&Connection::take_from_door));
+}
 
 void WebServer::Connection::take_from_door(Code error, std::size_t n) {
   if (stage_ != Stage::kOpen) return;
-  if (error) {
-    loop_.machine_ended();
-    return close(kDoorEnded, "the subsystem ended the connection");
-  }
+  if (error) return loop_.machine_ended(), close(kDoorEnded, "the subsystem ended the connection");
   out_begin_ = 0;
   out_end_ = n;
   send_next({}, 0);
@@ -287,15 +268,15 @@ void WebServer::Connection::send_next(Code error, std::size_t) {
   if (error) return drop();
   if (stage_ != Stage::kOpen) return;
   if (out_begin_ == out_end_) return read_door();
-  const auto begin = out_.begin() + static_cast<std::ptrdiff_t>(out_begin_);
-  const auto end = out_.begin() + static_cast<std::ptrdiff_t>(out_end_);
-  const auto line_end = std::find(begin, end, '\n');
-  const auto size = static_cast<std::size_t>(line_end - begin);
-  out_begin_ += size + (line_end != end);
+  const std::string_view waiting(out_.data() + out_begin_, out_end_ - out_begin_);
+  const std::size_t end = waiting.find('\n');
+  const bool is_last = end != std::string_view::npos;
+  const std::string_view part = waiting.substr(0, end);
+  out_begin_ += part.size() + is_last;
   is_writing_ = true;
   moved_ = now();
   unread_ = INT_MAX;
-  socket_.async_write_some(line_end != end, asio::buffer(&*begin, size), then(&Connection::send_next));
+  socket_.async_write_some(is_last, asio::buffer(part), then(&Connection::send_next));
 }
 
 void WebServer::Connection::close(std::uint16_t code, std::string_view reason) {
@@ -382,17 +363,16 @@ void WebServer::Loop::run() {
 }
 
 std::string WebServer::Loop::admit(bool is_bench) {
-  const auto keyed = std::count_if(all_.begin(), all_.end(), [](const auto& one) { return !one->is_stranger(); });
+  if (all_.size() - strangers().size() >= kMaxSockets) return "64 WebSockets are open, and no more are allowed";
   const auto pages = std::count_if(all_.begin(), all_.end(), [](const auto& one) { return one->is_page(); });
-  if (keyed >= static_cast<std::ptrdiff_t>(kMaxSockets)) return "64 WebSockets are open, and no more are allowed";
-  const bool is_full = is_bench && pages >= static_cast<std::ptrdiff_t>(kMaxPages);
+  const bool is_full = is_bench && pages >= kMaxPages;
   return is_full ? "12 pages are open, and no more are allowed: close one" : "";
 }
 
-std::optional<LocalSocket> WebServer::Loop::door_to(const Verdict& verdict, websocket::close_reason& why) {
+std::optional<LocalSocket> WebServer::Loop::door_to(const GateVerdict& verdict, websocket::close_reason& why) {
   LocalSocket mine(io_);
   Code error;
-  if (verdict.kind == Verdict::Kind::kBench) {
+  if (verdict.kind == GateVerdict::Kind::kBench) {
     LocalSocket other(io_);
     asio::local::connect_pair(mine, other, error);
     if (!error) {
@@ -402,13 +382,7 @@ std::optional<LocalSocket> WebServer::Loop::door_to(const Verdict& verdict, webs
       return mine;
     }
   } else {
-    const std::string own(socket_folder().view());
-    OwnedDescriptor door;
-    for (const std::string& folder : {own, std::string(control::kServiceFolder)}) {
-      if (folder == own && !is_safe_folder(own.c_str())) continue;
-      door = connect_to_path(control::socket_path(folder, verdict.machine), {});
-      if (door.fd >= 0 || (errno != ENOENT && errno != ECONNREFUSED)) break;
-    }
+    OwnedDescriptor door = bench_.connect(verdict.machine);
     error = Code(errno, boost::system::system_category());
     if (door.fd >= 0) mine.assign({}, door.fd, error);
     if (mine.is_open()) {
@@ -416,8 +390,7 @@ std::optional<LocalSocket> WebServer::Loop::door_to(const Verdict& verdict, webs
       return mine;
     }
   }
-  bench_.look_again();
-  const bool is_full = error == asio::error::no_descriptors || error == boost::system::errc::too_many_files_open_in_system;
+  const bool is_full = error == asio::error::no_descriptors;
   if (is_full) refuse("no descriptor is left (ulimit -n)");
   const std::string reason = is_full ? "chimera-web has no descriptor left (ulimit -n)"
                                      : "no subsystem '" + verdict.machine + "' runs here: " + error.message();
@@ -432,12 +405,17 @@ void WebServer::Loop::leave(const std::shared_ptr<Connection>& connection) {
   accept();
 }
 
+/// Connections that have shown no key, the oldest first.
+std::vector<std::shared_ptr<WebServer::Connection>> WebServer::Loop::strangers() const {
+  std::vector<std::shared_ptr<Connection>> found;
+  std::copy_if(all_.begin(), all_.end(), std::back_inserter(found), [](const auto& one) { return one->is_stranger(); });
+  return found;
+}
+
 /// True if one more connection may come: the oldest without a key gives way after kStrangerTime.
-bool WebServer::Loop::has_room() {
-  const auto strangers = std::count_if(all_.begin(), all_.end(), [](const auto& one) { return one->is_stranger(); });
-  if (strangers < static_cast<std::ptrdiff_t>(kMaxStrangers)) return true;
-  const auto oldest = std::find_if(all_.begin(), all_.end(), [](const auto& one) { return one->is_stranger(); });
-  return now() - (*oldest)->since() >= kStrangerTime;
+bool WebServer::Loop::has_room() const {
+  const auto present = strangers();
+  return present.size() < kMaxStrangers || now() - present[0]->since() >= kStrangerTime;
 }
 
 void WebServer::Loop::accept() {
@@ -456,14 +434,12 @@ void WebServer::Loop::enter(tcp::socket socket) {
   Code ignored;
   socket.set_option(tcp::no_delay(true), ignored);
   socket.set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
-  const auto strangers = std::count_if(all_.begin(), all_.end(), [](const auto& one) { return one->is_stranger(); });
-  if (strangers >= static_cast<std::ptrdiff_t>(kMaxStrangers)) {
+  if (const auto present = strangers(); present.size() >= kMaxStrangers) {
     refuse("16 connections without a key are open: the oldest gave way");
-    const auto oldest = *std::find_if(all_.begin(), all_.end(), [](const auto& one) { return one->is_stranger(); });
-    oldest->drop();
+    present[0]->drop();
   }
   all_.push_back(std::make_shared<Connection>(*this, std::move(socket)));
-  all_.back()->start();
+  all_.back()->read_head();
 }
 
 void WebServer::Loop::sweep() {
@@ -473,7 +449,7 @@ void WebServer::Loop::sweep() {
   accept();
   is_sweeping_ = !all_.empty() || !is_accepting_ || refusals_.next_due() != kNever;
   if (!is_sweeping_) return;
-  sweep_timer_.expires_after(kSweep);
+  sweep_timer_.expires_after(std::chrono::nanoseconds(kSweepPeriod.count));
   sweep_timer_.async_wait([this](Code error) {
     if (!error) sweep();
   });

@@ -79,6 +79,10 @@ XDG_RUNTIME_DIR=$place/runtime "$chimera" run "$example" --priority 0 --for '50 
 grep -q "^members of $(id -gn) may operate: chimera status --subsystem $place/runtime/.*/puma_pid.sock$" out ||
   { cat out; fail "run does not say what members of a group type"; }
 grep -q '^ran 0.050 s' out || { cat out; fail "run $example by processes did not come to its end"; }
+if [ -e "$tree/bin/chimera-web" ]; then
+  code=0; timeout 5 "$chimera" web --port 0 > out 2>&1 || code=$?
+  [ "$code" = 124 ] && grep -q '^http://127.0.0.1:[0-9]*/#.\{43\}$' out || { cat out; fail "web"; }
+fi
 "$chimera" --help | grep -q "examples: $place/prefix/share/chimera$" || fail "--help does not name the documents"
 mkdir "$place/tree"
 echo unbuilt > "$place/tree/buildable.txt"

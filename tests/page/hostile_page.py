@@ -83,8 +83,8 @@ class Hostile(unittest.TestCase):
 
     def test_bytes_that_are_no_request_are_refused(self):
         host = f"Host: 127.0.0.1:{self.server.port}\r\n".encode()
-        for data, status in ((b"\x16\x03\x01\x02\x00\x01", 400), (b"GET / HTTP/1.1\n", 400), (b"GET / HTTP/1.1\rH", 400),
-                             (b"\r\n\r\n", 400), (b"GET / HTTP/1.1\r\n" + host + b" folded: x\r\n\r\n", 400),
+        for data, status in ((b"\x16\x03\x01\x02\x00\x01", 400), (b"GET / HTTP/1.1\n", 400),
+                             (b"GET / HTTP/1.1\rH", 400), (b"\r\n\r\n", 400), (b"GET / HTTP/1.1\r\n" + host + b" folded: x\r\n\r\n", 400),
                              (b"GET / HTTP/1.1\r\nA: \0\r\n", 400), (b"GET / HTTP/1.0\r\n\r\n", 505),
                              (b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", 505), (b"A" * 8192, 431),
                              (b"GET / HTTP/1.1\r\n" + b"A: b\r\n" * 5000, 431), (os.urandom(64) + b"\n", 400)):

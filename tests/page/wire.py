@@ -30,7 +30,8 @@ class Server:
         self.errors = open(self.place / "errors", "w+b")
         self.process = subprocess.Popen(
             [*prefix, str(BUILD / "bin" / "chimera-web"), "--port", str(port), *words], stdin=subprocess.DEVNULL,
-            stdout=stdout, stderr=self.errors, env=dict(os.environ, XDG_RUNTIME_DIR=str(self.runtime), ASAN_OPTIONS=QUIET))
+            stdout=stdout, stderr=self.errors,
+            env=dict(os.environ, XDG_RUNTIME_DIR=str(self.runtime), ASAN_OPTIONS=QUIET))
         self.link = self.process.stdout.readline().decode().strip() if stdout == subprocess.PIPE else ""
         if self.link:
             address, self.key = self.link.split("/#")

@@ -29,14 +29,14 @@ class Share:
 SHARES = (
     Share("units", (("debug", "unit|program|hostile"), ("tsan", "threads"), ("release", "symbol|cost"))),
     Share("processes", (("debug", "process"), ("release", "realtime"))),
+    Share("page", (("debug", "page"),)),
     Share("firmware", (("debug", "firmware"),)),
     Share("models", (("debug", "model"),)),
-    Share("page", (("debug", "page"),)),
 )
 QUICK = Share("quick", (("debug", "unit"),))
 TREES = ("debug", "tsan", "release")
 # The result of these tests can depend on the scheduling of threads: a test that fails runs again, at most twice.
-SCHEDULED = {"threads", "process", "hostile", "realtime", "page"}
+SCHEDULED = {"threads", "process", "hostile", "page", "realtime"}
 MOST_TRIES = 3
 DURATIONS = common.BUILD / "durations.jsonl"
 PASSED_BEFORE = common.BUILD / "debug" / "passed.json"
