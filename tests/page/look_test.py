@@ -91,6 +91,49 @@ class LookTest(PageTest):
         self.look_at(Door(self.runtime, subject))
         self.page.await_text("text.value[data-value=v2]", "never")
 
+    def test_a_dead_process_is_said_and_its_values_are_grey_until_it_is_back(self):
+        subject = Subject.chain()
+        subject.rtpus["beside"] = True
+        subject.tasks["task2"]["rtpu"] = "beside"
+        door = self.look_at(Door(self.runtime, subject))
+        with door.change():
+            subject.rtpus["beside"] = False
+            subject.to("task2", "ERROR", "its process has ended")
+        self.page.await_text(".banner.error", "rtpu beside has ended: was killed by SIGKILL")
+        self.page.await_one(f"{self.page.box('task2')}.dead")
+        self.page.await_one("text.value[data-value=v2].old")
+        self.page.await_one("text.value[data-value=v1]:not(.old)")
+        self.page.await_text(".cpu[data-rtpu=beside]", "has ended")
+        with door.change():
+            subject.rtpus["beside"] = True
+            subject.to("task2", "ON")
+        self.page.await_none(".banner")
+        self.page.await_none("g.box.dead")
+        self.page.await_one("text.value[data-value=v2]:not(.old)")
+
+    def test_a_manager_that_does_not_answer_is_said_until_it_does(self):
+        door = self.look_at(Door(self.runtime))
+        door.stall()
+        door.cut()
+        self.page.await_text(".banner.lost", "The manager of plant does not answer")
+        self.page.await_text("[data-state-word]", "NO CONNECTION")
+        self.page.await_one("main.stale")
+        door.resume()
+        self.page.await_none(".banner")
+        self.page.await_none("main.stale")
+        self.page.await_text("[data-state-word]", "RUNNING")
+
+    def test_events_that_are_lost_are_counted(self):
+        door = self.look_at(Door(self.runtime))
+        with door.change() as subject:
+            subject.event("note", "the first")
+        self.page.await_root("events", "1")
+        with door.change() as subject:
+            subject.event("note", "the second")
+            subject.lost = 7
+        self.page.await_root("gaps", "7")
+        self.page.await_text("#panel", "7 events are lost")
+
     def test_a_flag_of_another_is_shown_with_its_origin(self):
         door = self.look_at(Door(self.runtime))
         with door.change() as subject:

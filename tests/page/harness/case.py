@@ -57,8 +57,8 @@ class PageTest(unittest.TestCase):
         return context.__enter__()
 
     def look_at(self, door, name="", arguments=()):
-        """Opens a page of a chimera-web, and waits until it shows the subsystem `name` (empty: the only one). `door`: the
-        server or machine behind it, which this starts. Returns it."""
+        """Starts `door`, the server or machine behind the page, and a chimera-web. Opens the page, and waits until it
+        shows the subsystem `name` (empty: the only one). Returns `door`."""
         door = self.using(door)
         self.web_server = self.web(*arguments)
         self.page.open(self.web_server.link + (f"&machine={name}" if name else ""))
