@@ -163,14 +163,14 @@ class AccessTest(PageTest):
         self.look(self.troubled())
         self.page.choose("task0")
         self.page.script("document.activeElement.blur()")
-        wanted = ("select[aria-label=Subsystem]", self.page.button("Switch configuration"), self.page.button("More acts"),
-                  self.page.button("Raise the FLAG"), "g.box", "#set-wish", "input[aria-label='wish, slider']",
+        wanted = ("select[aria-label=Subsystem]", self.page.button("Switch configuration"),
+                  self.page.button("More acts"), self.page.button("Raise the FLAG"), "g.box", "#set-wish", "input[aria-label='wish, slider']",
                   self.page.button("off task0"), "#tab-events", "input[aria-label='Filter of events']")
         for selector in wanted:
             self.page.tab_to(selector)
             shown = self.page.script(
-                "const e = document.activeElement, look = getComputedStyle(e.matches('g') ? e.querySelector('.frame') : e);"
-                "return e.matches('g') ? parseFloat(look.strokeWidth) : parseFloat(look.outlineWidth);")
+                "const e = document.activeElement, look = getComputedStyle(e.querySelector('.frame') ?? e);"
+                "return parseFloat(e.matches('g') ? look.strokeWidth : look.outlineWidth);")
             self.assertGreater(shown, 2, selector)
 
     def test_tabs_are_chosen_by_arrows(self):

@@ -85,15 +85,49 @@ class ActsTest(PageTest):
         self.assertEqual(len(self.door.asked("signal")), 1)
 
     def test_the_end_of_a_subsystem_asks_first(self):
+        self.asks_first("End the subsystem", "end", "Every task goes OFF")
+
+    def test_a_drill_asks_first(self):
+        self.asks_first("Drill", "drill", "the machine stops")
+
+    def asks_first(self, label, method, words):
         self.look()
-        for press in ("Cancel", "danger"):
+        self.door.refuse(method, -32000, "not now", {"kind": "flag-up", "where": "plant"})
+        for press in (".question button", ".question .danger"):
             self.page.click(self.page.button("More acts"))
-            self.page.click(self.page.button("End the subsystem"))
-            self.page.await_text(".question", "Every task goes OFF")
-            self.assertEqual(self.door.asked("end"), [])
-            self.page.click(".question .danger" if press == "danger" else ".question button")
-        self.door.await_asked("end")
-        self.assertEqual(self.door.asked("end"), [{}])
+            self.page.click(self.page.button(label))
+            self.page.await_text(".question", words)
+            self.assertEqual(self.door.asked(method), [])
+            self.page.click(press)
+        self.await_message("not now")
+        self.assertEqual(self.door.asked(method), [{}])
+
+    def test_a_slow_switch_asks_first(self):
+        subject = Subject.chain()
+        subject.way = "slow"
+        self.look(subject)
+        self.door.refuse("switch", -32000, "not now", {"kind": "set", "where": "first"})
+        for press in (".question button", ".question .danger"):
+            self.page.click(self.page.button("Switch configuration"))
+            self.page.await_text("[data-plan=first]", "slow")
+            self.page.click(self.page.button("Switch to first"))
+            self.page.await_text(".question", "init of task1 fits no gap")
+            self.assertEqual(self.door.asked("switch"), [])
+            self.page.click(press)
+        self.await_message("not now")
+        self.assertEqual(self.door.asked("switch"), [{"configuration": "first"}])
+
+    def test_a_switch_under_way_can_be_cancelled(self):
+        self.look()
+        self.door.refuse("cancel", -32000, "it is too late", {"kind": "too-late", "where": "first"})
+        with self.door.change() as subject:
+            subject.switch = {"to": "first", "progress": "agreeing", "deadline_ns": 1}
+        self.page.click(self.page.button("Cancel the switch under way"))
+        self.await_message("it is too late")
+        self.assertEqual(self.door.asked("cancel"), [{}])
+        with self.door.change() as subject:
+            subject.switch = None
+        self.page.await_none(self.page.button("Cancel the switch under way"))
 
     def test_escape_closes_what_is_open_and_nothing_else(self):
         self.look()

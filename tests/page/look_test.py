@@ -69,13 +69,13 @@ class LookTest(PageTest):
         self.page.await_text("text.value[data-value=v1]", "-0.412 ")
         self.assertRegex(self.page.text("text.value[data-value=v1]"), r"^-0\.412 \d+(\.\d)?(ns|us|ms|s)$")
 
-    def test_the_value_of_a_chosen_task_has_its_unit(self):
+    def test_a_chosen_task_shows_its_inputs_and_its_sentence(self):
         subject = Subject.chain()
         subject.values["v0"] = 0.5
         self.look_at(Door(self.runtime, subject))
         self.page.choose("task1")
         self.page.await_text("[data-live=v0]", "0.5")
-        self.assertIn("1", self.page.attribute("article[aria-label='Task task1'] td[title]", "title").split())
+        self.page.await_text("article[aria-label='Task task1'] .doc", "Adds one.")
 
     def test_a_value_whose_producer_is_off_is_grey(self):
         door = self.look_at(Door(self.runtime))
@@ -90,6 +90,49 @@ class LookTest(PageTest):
         subject.values["v2"] = None
         self.look_at(Door(self.runtime, subject))
         self.page.await_text("text.value[data-value=v2]", "never")
+
+    def test_a_dead_process_is_said_and_its_values_are_grey_until_it_is_back(self):
+        subject = Subject.chain()
+        subject.rtpus["beside"] = True
+        subject.tasks["task2"]["rtpu"] = "beside"
+        door = self.look_at(Door(self.runtime, subject))
+        with door.change():
+            subject.rtpus["beside"] = False
+            subject.to("task2", "ERROR", "its process has ended")
+        self.page.await_text(".banner.error", "rtpu beside has ended: was killed by SIGKILL")
+        self.page.await_one(f"{self.page.box('task2')}.dead")
+        self.page.await_one("text.value[data-value=v2].old")
+        self.page.await_one("text.value[data-value=v1]:not(.old)")
+        self.page.await_text(".cpu[data-rtpu=beside]", "has ended")
+        with door.change():
+            subject.rtpus["beside"] = True
+            subject.to("task2", "ON")
+        self.page.await_none(".banner")
+        self.page.await_none("g.box.dead")
+        self.page.await_one("text.value[data-value=v2]:not(.old)")
+
+    def test_a_manager_that_does_not_answer_is_said_until_it_does(self):
+        door = self.look_at(Door(self.runtime))
+        door.stall()
+        door.cut()
+        self.page.await_text(".banner.lost", "The manager of plant does not answer")
+        self.page.await_text("[data-state-word]", "NO CONNECTION")
+        self.page.await_one("main.stale")
+        door.resume()
+        self.page.await_none(".banner")
+        self.page.await_none("main.stale")
+        self.page.await_text("[data-state-word]", "RUNNING")
+
+    def test_events_that_are_lost_are_counted(self):
+        door = self.look_at(Door(self.runtime))
+        with door.change() as subject:
+            subject.event("note", "the first")
+        self.page.await_root("events", "1")
+        with door.change() as subject:
+            subject.event("note", "the second")
+            subject.lost = 7
+        self.page.await_root("gaps", "7")
+        self.page.await_text("#panel", "7 events are lost")
 
     def test_a_flag_of_another_is_shown_with_its_origin(self):
         door = self.look_at(Door(self.runtime))

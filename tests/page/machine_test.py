@@ -169,17 +169,6 @@ class Losses(MachineTest):
         self.assertEqual(self.shown_events(), [event["number"] for event in self.machine.events()])
         self.assertEqual(self.page.root("gaps"), "0")
 
-    def test_a_stopped_manager_is_said_and_what_is_shown_is_stale(self):
-        self.look()
-        pid = self.machine.call("hello")["manager"]["pid"]
-        self.machine.disconnect()
-        self.expected = ["WebSocket"]
-        self.assertTrue(self.machine.kill(pid))
-        self.page.await_root("manager", "2")
-        self.page.await_open()
-        self.assertEqual(self.page.text("[data-state-word]"), "RUNNING")
-        self.page.await_none("main.stale")
-
     def test_a_killed_process_is_said_and_its_values_come_back(self):
         self.look()
         self.page.await_one("text.value[data-value=torque]:not(.old)")

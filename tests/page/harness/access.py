@@ -21,15 +21,15 @@ const ratio = (a, b) => {
   return (high + 0.05) / (low + 0.05);
 };
 const paper = rgba(getComputedStyle(document.body).backgroundColor);
-const opacity = (e) => { let all = 1; for (; e; e = e.parentElement) all *= Number(getComputedStyle(e).opacity); return all; };
+const opacity = (e) => (e ? Number(getComputedStyle(e).opacity) * opacity(e.parentElement) : 1);
 const behind = (e) => {
   const layers = [];
   for (; e; e = e.parentElement) layers.push(rgba(getComputedStyle(e).backgroundColor));
   return layers.reverse().reduce((under, top) => over(top, under), [255, 255, 255, 1]);
 };
 const box = document.querySelector('.box .frame');
-const grounds = (e) => (e.ownerSVGElement ? [behind(e.ownerSVGElement),
-                                             ...(box ? [over(rgba(getComputedStyle(box).fill), paper)] : [])] : [behind(e)]);
+const boxes = () => (box ? [over(rgba(getComputedStyle(box).fill), paper)] : []);
+const grounds = (e) => (e.ownerSVGElement ? [behind(e.ownerSVGElement), ...boxes()] : [behind(e)]);
 const found = [];
 const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
 while (walker.nextNode()) {

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """One test file of the page: PageTest is the base of its tests, main() runs them. After each test the console has no
-error, and each frame fits the schema. What a failed test leaves is in BUILD/page/TEST."""
+error, and each frame fits the schema. What a failed test leaves is in BUILD/page_failures/TEST."""
 import os
 import pathlib
 import re
@@ -30,7 +30,7 @@ class PageTest(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.place, ignore_errors=True)
         self.runtime = self.place / "runtime"
         self.runtime.mkdir(mode=0o700)
-        self.expected, self.messages, self.frames = [], [], Frames()
+        self.expected, self.messages, self.frames, self.speakers = [], [], Frames(), []
         if PageTest.browser is None:
             PageTest.browser = Browser()
         self.browser.new_tab()
@@ -52,11 +52,13 @@ class PageTest(unittest.TestCase):
     def using(self, context):
         """Enters the context, and leaves it when the test ends."""
         self.addCleanup(context.__exit__, None, None, None)
+        if hasattr(context, "said"):
+            self.speakers.append(context)
         return context.__enter__()
 
     def look_at(self, door, name="", arguments=()):
-        """Opens a page of a chimera-web, and waits until it shows the subsystem `name` (empty: the only one). `door`: the
-        server or machine behind it, which this starts. Returns it."""
+        """Starts `door`, the server or machine behind the page, and a chimera-web. Opens the page, and waits until it
+        shows the subsystem `name` (empty: the only one). Returns `door`."""
         door = self.using(door)
         self.web_server = self.web(*arguments)
         self.page.open(self.web_server.link + (f"&machine={name}" if name else ""))
@@ -73,8 +75,8 @@ class PageTest(unittest.TestCase):
         return self.frames.sent("/machine/" + name, method)
 
     def leave_evidence(self):
-        """Picture, console, frames and text of the page, for a failed test. Returns their folder."""
-        folder = BUILD / "page" / self.id().removeprefix("__main__.")
+        """Picture, console, frames and text of the page, what the programs said. Returns their folder."""
+        folder = BUILD / "page_failures" / self.id().removeprefix("__main__.")
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         try:
@@ -83,6 +85,7 @@ class PageTest(unittest.TestCase):
             (folder / "page.html").write_text(self.browser.driver.page_source)
         finally:
             (folder / "console.txt").write_text("".join(f"{level} {text}\n" for level, text in self.messages))
+            (folder / "programs.txt").write_text("\n".join(program.said() for program in self.speakers))
             (folder / "frames.txt").write_text("".join(line + "\n" for line in self.frames.lines()))
         return folder
 

@@ -63,7 +63,8 @@ class Connection(threading.Thread):
             elif topic["to"] == "events" and self.seen[number] < len(subject.events):
                 events = subject.events[self.seen[number]:]
                 self.seen[number] = len(subject.events)
-                self.send(method="events", params={"subscription": number, "events": events, "lost": 0})
+                lost, subject.lost = subject.lost, 0
+                self.send(method="events", params={"subscription": number, "events": events, "lost": lost})
 
 
 class Door:

@@ -8,7 +8,7 @@ WIDTH, HEIGHT, GAP = 120, 60, 80  # of a box of the picture, and between two, in
 
 
 def port(name, kind, variable, unit="1", type_="float64"):
-    return {"port": name, "kind": kind, "variable": variable, "type": type_, "unit": unit, "shape": ""}
+    return {"port": name, "kind": kind, "variable": variable, "type": type_, "unit": unit, "shape": "", "frame": None}
 
 
 class Subject:
@@ -18,7 +18,8 @@ class Subject:
         self.name, self.role, self.file = name, "configure", f"/machines/{name}.yaml"
         self.tasks, self.rtpus, self.values, self.operator = {}, {}, {}, set()
         self.configurations, self.configuration, self.flag_by = {}, "", []
-        self.events, self.starts, self.published = [], 1, time.monotonic_ns()
+        self.events, self.lost, self.published = [], 0, {}
+        self.switch, self.way = None, "fast"  # the switch under way; the way of the next one
 
     @staticmethod
     def chain(name="plant", length=3, doc="Adds one."):
@@ -62,21 +63,22 @@ class Subject:
 
     def hello(self):
         return {"protocol": 1, "program": "0.1.0", "subsystem": self.name, "role": self.role, "file": self.file,
-                "keeper_pid": 10, "session": 1, "folder": "/machines", "manager": {"pid": 11, "starts": self.starts}}
+                "keeper_pid": 10, "session": 1, "folder": "/machines", "manager": {"pid": 11, "starts": 1}}
 
     def status(self):
         return {"subsystem": self.name, "configuration": self.configuration, "now_ns": time.monotonic_ns(),
                 "origin_ns": 1, "started_ns": 2, "ending": False,
-                "flag": {"up": bool(self.flag_by), "by": self.flag_by}, "keeper": {"pid": 10, "hang": None},
-                "guard": None, "face": {"deaths": 0, "last_end": None, "lost_output": None},
+                "flag": {"up": bool(self.flag_by), "by": self.flag_by}, "switch": self.switch,
+                "keeper": {"pid": 10, "hang": None}, "guard": None,
+                "face": {"deaths": 0, "last_end": None, "lost_output": None},
                 "rtpus": [self.rtpu(name, alive) for name, alive in self.rtpus.items()],
                 "tasks": [self.task(name, task) for name, task in self.tasks.items()]}
 
     @staticmethod
     def rtpu(name, alive):
         return {"name": name, "cpu": 1, "policy": "edf", "executor": "executive", "pid": 12 if alive else 0,
-                "incarnation": 1, "alive": alive, "phase": "serving" if alive else "ended", "grant": "", "running": None,
-                "hang": None, "restarts": 0, "last_end": None if alive else "was killed by SIGKILL",
+                "incarnation": 1, "alive": alive, "phase": "serving" if alive else "ended", "grant": "",
+                "running": None, "hang": None, "restarts": 0, "last_end": None if alive else "was killed by SIGKILL",
                 "given_up": False, "remedy": None, "lost_events": 0, "resident_bytes": 20000000 if alive else 0,
                 "first_resident_bytes": 20000000, "not_real_time": None, "lost_rights": None, "unguarded": None,
                 "flag": False}
@@ -106,16 +108,21 @@ class Subject:
                 if p["variable"] == variable and p["kind"] == kind]
 
     def variable(self, name):
-        return {"variable": name, "constant": False, "given": name in self.operator, "type": "float64", "unit": "1",
+        return {"variable": name, "constant": False, "given": name in self.operator, "operator": name in self.operator,
+                "least": None, "most": None, "type": "float64", "unit": "1",
                 "shape": "", "producers": self.ends(name, "out-var"), "consumers": self.ends(name, "in-var")}
 
     def reading(self, name):
         producer = next((end["task"] for end in self.ends(name, "out-var")), "operator")
-        value = self.values[name]
+        value, now = self.values[name], time.monotonic_ns()
+        task = self.tasks.get(producer)
+        if task is None or task["state"] == "ON" and self.rtpus[task["rtpu"]]:
+            self.published[name] = now - 1000000
+        published = self.published.get(name, now)
         return {"value": value, "text": "never written" if value is None else f"{value:g}", "unit": "1",
                 "type": "float64", "shape": "", "producer": producer,
-                "state": "ON" if producer == "operator" else self.tasks[producer]["state"],
-                "published_ns": self.published, "age_ns": max(0, time.monotonic_ns() - self.published), "sequence": 1,
+                "state": "ON" if task is None else task["state"], "published_ns": published,
+                "age_ns": now - published, "sequence": 1,
                 "valid": value is not None}
 
     def readings(self, names=()):
@@ -129,11 +136,11 @@ class Subject:
         ports, lines, labels = [], [], [self.label(self.name, GAP, 20, "title")]
         for name, task in self.tasks.items():
             x, y = place[name]
-            labels.append(self.label(name, x + WIDTH / 2, y + HEIGHT / 2, "name", task=name))
+            labels.append(self.label(name, x + WIDTH // 2, y + HEIGHT // 2, "name", task=name))
             for p in task["ports"]:
                 at = x + (WIDTH if p["kind"] == "out-var" else 0)
                 ports.append({"task": name, "port": p["port"], "kind": p["kind"], "variable": p["variable"], "x": at,
-                              "y": y + HEIGHT / 2})
+                              "y": y + HEIGHT // 2})
                 labels.append(self.label(p["variable"], at, y - 4, "port", task=name, variable=p["variable"]))
         for start in (p for p in ports if p["kind"] == "out-var"):
             for end in (p for p in ports if p["kind"] == "in-var" and p["variable"] == start["variable"]):
@@ -150,7 +157,9 @@ class Subject:
     def plan(self, on, to=None):
         now = self.on()
         return {"from": self.configuration or None, "to": to, "end": "nothing-to-do" if on == now else "possible",
-                "reason": None, "why": None, "remedy": None, "way": "fast", "slow_because": [], "slow_why": None,
+                "reason": None, "why": None, "remedy": None, "way": self.way,
+                "slow_because": [] if self.way == "fast" else ["no-gap"],
+                "slow_why": None if self.way == "fast" else "init of task1 fits no gap",
                 "expected_ns": 1100000, "late_off": None, "arrives": sorted(on - now), "leaves": sorted(now - on),
                 "stays": sorted(on & now), "variables": []}
 
@@ -161,6 +170,6 @@ class Subject:
         verdict = {"ON": "ok", "ERROR": "producer-error"}.get(state, "producer-off")
         link = {"depth": 0, "variable": variable, "producer": reading["producer"], "component": "adder",
                 "rtpu": self.tasks[producer]["rtpu"] if producer else "", "state": state, "period_ns": 10000000,
-                "published_ns": self.published, "age_ns": 1000000, "valid": reading["valid"],
+                "published_ns": reading["published_ns"], "age_ns": 1000000, "valid": reading["valid"],
                 "value": reading["text"], "verdict": verdict, "timing": "", "late": "", "inputs": []}
         return {"variable": variable, "chain": [link], "verdict": f"{variable} is {verdict}: {producer} is {state}"}

@@ -29,7 +29,8 @@ class Web:
         self.process, self.link, self.port, self.key = None, "", 0, ""
 
     def __enter__(self):
-        environment = dict(os.environ, XDG_RUNTIME_DIR=str(self.runtime), XDG_STATE_HOME=str(self.runtime.parent / "state"))
+        environment = dict(os.environ, XDG_RUNTIME_DIR=str(self.runtime),
+                           XDG_STATE_HOME=str(self.runtime.parent / "state"))
         with open(self.errors, "ab") as errors:
             self.process = subprocess.Popen(
                 [str(BUILD / "bin" / "chimera-web"), "--port", str(self.wanted), *map(str, self.arguments)],
