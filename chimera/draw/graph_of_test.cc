@@ -89,7 +89,7 @@ TEST(GraphOf, CutsALongValueAndNamesWhatTheOperatorGives) {
   const Graph graph = graph_of(legal(
       "subsystem: demo\ntasks:\n  robot: {resources: {device: /dev/serial/by-id/usb-arm-0}}\noperator: {tau: 1}\n"));
   EXPECT_EQ(graph.given, std::vector<std::string>{"tau"});
-  EXPECT_EQ(graph.boxes[0].ports.back().written, "../serial/by-id/usb-arm-0");
+  EXPECT_EQ(graph.boxes[0].ports.back().written, "..serial/by-id/usb-arm-0");
 }
 
 }  // namespace

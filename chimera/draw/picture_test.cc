@@ -27,7 +27,7 @@ std::string words(const Json& all, const char* key, const char* more) {
 TEST(Picture, HasTheKeysOfTheFormat) {
   const Json picture = picture_json(pair());
   EXPECT_EQ(picture["title"], "pair");
-  EXPECT_EQ(words(picture["boxes"], "task", "width"), "gain:99 log:96 ");
+  EXPECT_EQ(words(picture["boxes"], "task", "width"), "gain:101 log:96 ");
   EXPECT_EQ(words(picture["ports"], "port", "variable"), "x:\"u\" y:\"y\" k:null dev:null a:\"y\" b:\"y\" ");
   EXPECT_EQ(words(picture["ports"], "kind", "task"),
             "in-var:\"gain\" out-var:\"gain\" in-const:\"gain\" resource:\"gain\" in-var:\"log\" in-var:\"log\" ");
