@@ -69,7 +69,7 @@ TEST_F(ReadMethodsTest, DescribesOperatorVariablesWithTheRangeThatTheirReadersDe
   for (const Json& each : description["variables"])
     text += each["variable"].as_string() + " " + each["operator"].dump() + " " + each["least"].dump() + " " +
             each["most"].dump() + "\n";
-  EXPECT_EQ(text, "x false null null\ny false null null\nkp true 0.0 5000.0\ntau false null null\n");
+  EXPECT_EQ(text, "kp true 0.0 5000.0\nx false null null\ny false null null\ntau false null null\n");
   EXPECT_EQ(description["tasks"][2]["ports"][0]["frame"], "base");
   EXPECT_EQ(description["tasks"][2]["ports"][1]["frame"], nullptr);
 }
