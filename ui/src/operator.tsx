@@ -48,7 +48,7 @@ function Slider({ machine, variable, why, shown }: FieldProps & { shown: { value
 
 const Field = memo(function Field({ machine, variable, why }: FieldProps) {
   const reading = useReading(machine, variable.variable);
-  const [typed, type] = useState<string | null>(null);
+  const [typed, type] = useState<string | null>(null);  // while the field has the focus its text stands still
   const present = reading?.text ?? "";
   const set = async (value: unknown) => {
     if (await machine.act("set", { values: { [variable.variable]: value } })) type(null);
@@ -64,7 +64,10 @@ const Field = memo(function Field({ machine, variable, why }: FieldProps) {
     <div className="field">
       <label htmlFor={`set-${name}`}>{name} <span className="unit">{variable.type}{variable.shape} {variable.unit}</span></label>
       <input id={`set-${name}`} value={typed ?? present} readOnly={why !== ""} title={why || "Enter sets the value"}
-             className={typed === null ? "" : "edited"} onChange={(event) => type(event.target.value)}
+             className={typed === null || typed === present ? "" : "edited"}
+             onFocus={() => { if (reading) type(present); }}
+             onBlur={() => { if (typed === present) type(null); }}
+             onChange={(event) => type(event.target.value)}
              onKeyDown={(event) => {
                if (event.key === "Enter" && typed !== null) void set(withUnit(typed, present));
                if (event.key === "Escape") type(null);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The picture of what runs: draws the layout that the subsystem gives, with states and values in it.
 import { KeyboardEvent, memo, MouseEvent, useEffect, useRef } from "react";
-import type { Picture, PictureBox, PicturePort, State, TaskStatus } from "./protocol";
+import type { Picture, PictureBox, PictureLabel, PicturePort, State, TaskStatus } from "./protocol";
 import { Arrow, step, toggled } from "./selection";
 import { rate } from "./text";
 import { besidePort, LiveValues } from "./values";
@@ -65,14 +65,17 @@ const Drawing = memo(function Drawing({ picture, variable }: { picture: Picture;
   );
 });
 
+/** Names of variables outside of the boxes lead to the variable; inside of a box every press chooses the task. */
+const isLink = (label: PictureLabel) => label.variable !== null && (label.style === "soft" || label.style === "given");
+
 const Labels = memo(function Labels({ picture, variable, showVariable }:
   { picture: Picture; variable: string; showVariable: (variable: string) => void }) {
   return (
     <g className="labels">
       {picture.labels.filter((l) => l.style !== "title").map((l, i) => (
         <text key={i} x={l.x} y={l.y} textAnchor={l.anchor} data-label={l.variable ?? undefined}
-              className={l.style + (l.variable !== null ? " link" : "") + (l.variable === variable ? " chosen" : "")}
-              onClick={l.variable !== null ? () => showVariable(l.variable as string) : undefined}>{l.text}</text>))}
+              className={l.style + (isLink(l) ? " link" : "") + (l.variable === variable ? " chosen" : "")}
+              onClick={isLink(l) ? () => showVariable(l.variable as string) : undefined}>{l.text}</text>))}
     </g>
   );
 });

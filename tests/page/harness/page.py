@@ -132,6 +132,7 @@ class Page:
     def type_over(self, selector, text, *keys):
         """Types in the place of what a field holds, then presses keys. Returns the field."""
         field = self.one(selector)
+        self.await_that(f"document.querySelector({json.dumps(selector)}).value !== ''", "a value in the field")
         field.send_keys(Keys.CONTROL + "a")
         field.send_keys(text, *keys)
         return field
