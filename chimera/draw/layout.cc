@@ -119,7 +119,8 @@ Layout lay_out(const Graph& graph) {
   std::vector<Placed> boxes;
   for (std::size_t i = 0; i < graph.boxes.size(); ++i) boxes.push_back(measure(graph.boxes[i], columns[i]));
   Routes routes = place(boxes);
-  Layout layout{graph.title, {}, {}, std::move(routes.lines), std::move(routes.dots), {}, 0, routes.height};
+  Layout layout{graph.title, {}, {}, std::move(routes.lines), {}, {}, 0, routes.height};
+  layout.dots = dots_of(layout.lines);
   layout.width = std::max(routes.width, width_of(graph.title) * 3 / 2 + 48);
   layout.labels.push_back({graph.title, 24, 26, "title"});
   for (const Placed& box : boxes) BoxDrawer(layout, graph, box).draw();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <climits>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace chimera::draw {
@@ -15,17 +16,16 @@ constexpr std::size_t kPasses = 16;  // enough for 100 tasks; bounds the time fo
 
 /// A vertical part of a net in a channel, with the heights of its branches.
 struct Track {
-  std::size_t net = 0;
+  std::size_t channel = 0;
   std::vector<int> left, right;  // y of the output; y of inputs
-  bool has_lane = false;         // reaches down to the lane of the net
+  int top = INT_MAX, bottom = INT_MIN;  // bottom of a track that reaches the lane of its net: INT_MAX
   int x = 0;
 
-  int top() const { return std::min(least(left), least(right)); }
-  int bottom() const { return has_lane ? INT_MAX : std::max(most(left), most(right)); }
-
- private:
-  static int least(const std::vector<int>& all) { return all.empty() ? INT_MAX : *std::ranges::min_element(all); }
-  static int most(const std::vector<int>& all) { return all.empty() ? INT_MIN : *std::ranges::max_element(all); }
+  void add(std::vector<int>& side, int y) {
+    side.push_back(y);
+    top = std::min(top, y);
+    bottom = std::max(bottom, y);
+  }
 };
 
 /// Exchanges neighbours as long as that saves crossings. `cost(a, b)`: crossings of a and b if a stands first.
@@ -57,13 +57,12 @@ class Router {
     for (auto& channel : channels_)
       arrange(channel, [&](std::size_t a, std::size_t b) {
         const Track &left = tracks_[a], &right = tracks_[b];
-        return between(left.right, right.top(), right.bottom()) + between(right.left, left.top(), left.bottom());
+        return between(left.right, right.top, right.bottom) + between(right.left, left.top, left.bottom);
       });
     place_columns();
     place_lanes(bottom);
     for (std::size_t n = 0; n < nets_.size(); ++n) draw(n);
     add_inputs_without_net();
-    add_dots();
     return std::move(routes_);
   }
 
@@ -72,27 +71,28 @@ class Router {
   int in_y(const Pin& pin) const { return boxes_[pin.box].in_y(pin.port); }
   std::string_view variable(const Net& net) const { return boxes_[net.from.box].out[net.from.port]->variable; }
 
-  std::size_t add_track(std::size_t net, std::size_t channel) {
+  /// The track of the net in that channel; a new one if there is none.
+  Track& track_in(std::size_t channel, std::size_t net) {
+    std::vector<std::size_t>& mine = tracks_of_[net];
+    const auto found = std::ranges::find(mine, channel, [&](std::size_t track) { return tracks_[track].channel; });
+    if (found != mine.end()) return tracks_[*found];
     channels_[channel].push_back(tracks_.size());
-    tracks_of_[net].push_back(tracks_.size());
-    tracks_.push_back({.net = net, .left = {}, .right = {}});
-    return tracks_.size() - 1;
+    mine.push_back(tracks_.size());
+    return tracks_.emplace_back(Track{.channel = channel, .left = {}, .right = {}});
   }
 
   /// The first track of a net is that of its output; then comes one for each column with distant inputs.
   void add_tracks(std::size_t n) {
     const Net& net = nets_[n];
     if (net.to.empty()) return;
-    const std::size_t next = boxes_[net.from.box].column + 1, own = add_track(n, next);
-    tracks_[own].left = {out_y(net)};
-    std::map<std::size_t, std::size_t> of_column{{next, own}};
+    Track& own = track_in(boxes_[net.from.box].column + 1, n);
+    own.add(own.left, out_y(net));
     for (const Pin& pin : net.to) {
-      const std::size_t column = boxes_[pin.box].column;
-      if (!of_column.contains(column)) of_column[column] = add_track(n, column);
-      tracks_[of_column[column]].right.push_back(in_y(pin));
+      Track& track = track_in(boxes_[pin.box].column, n);
+      track.add(track.right, in_y(pin));
     }
     if (tracks_of_[n].size() == 1) return;
-    for (const std::size_t track : tracks_of_[n]) tracks_[track].has_lane = true;
+    for (const std::size_t track : tracks_of_[n]) tracks_[track].bottom = INT_MAX;
   }
 
   void place_columns() {
@@ -175,57 +175,18 @@ class Router {
     add(variable(net), right, y, tracks_[tracks_of_[n][0]].x, y);
     for (const std::size_t t : tracks_of_[n]) {
       const Track& track = tracks_[t];
-      add(variable(net), track.x, track.top(), track.x, track.has_lane ? lanes_[n] : track.bottom());
+      add(variable(net), track.x, track.top, track.x, track.bottom == INT_MAX ? lanes_[n] : track.bottom);
     }
     if (const std::vector<int> xs = track_places(n); xs.size() > 1)
       add(variable(net), xs.front(), lanes_[n], xs.back(), lanes_[n]);
     for (const Pin& pin : net.to)
-      add(variable(net), track_to(n, pin).x, in_y(pin), boxes_[pin.box].x, in_y(pin), "end");
-  }
-
-  /// The track from which the input branches off: the last one left of it.
-  const Track& track_to(std::size_t n, const Pin& pin) const {
-    const Track* nearest = nullptr;
-    for (const std::size_t t : tracks_of_[n])
-      if (tracks_[t].x < boxes_[pin.box].x && (nearest == nullptr || nearest->x < tracks_[t].x)) nearest = &tracks_[t];
-    return *nearest;
+      add(variable(net), track_in(boxes_[pin.box].column, n).x, in_y(pin), boxes_[pin.box].x, in_y(pin), "end");
   }
 
   void add_inputs_without_net() {
     for (const Placed& box : boxes_)
       for (std::size_t i = 0; i < box.in.size(); ++i)
         if (!box.is_fed[i]) add(box.in[i]->variable, box.x - kStub, box.in_y(i), box.x, box.in_y(i), "end");
-  }
-
-  /// A dot marks each end of a piece at which its variable goes on in at least three directions.
-  void add_dots() {
-    std::map<std::string_view, std::vector<const Piece*>> by_variable;
-    for (const Piece& piece : routes_.lines) by_variable[piece.variable].push_back(&piece);
-    for (const auto& [variable, pieces] : by_variable) {
-      std::vector<std::pair<int, int>> ends;
-      for (const Piece* piece : pieces) {
-        ends.emplace_back(piece->x1, piece->y1);
-        ends.emplace_back(piece->x2, piece->y2);
-      }
-      std::ranges::sort(ends);
-      ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-      for (const auto& [x, y] : ends)
-        if (directions(pieces, x, y) >= 3) routes_.dots.push_back({variable, x, y});
-    }
-  }
-
-  static int directions(const std::vector<const Piece*>& pieces, int x, int y) {
-    bool left = false, right = false, up = false, down = false;
-    for (const Piece* piece : pieces) {
-      const auto [x1, x2] = std::minmax(piece->x1, piece->x2);
-      const auto [y1, y2] = std::minmax(piece->y1, piece->y2);
-      if (x < x1 || x > x2 || y < y1 || y > y2) continue;
-      left |= x1 < x;
-      right |= x < x2;
-      up |= y1 < y;
-      down |= y < y2;
-    }
-    return left + right + up + down;
   }
 
   std::vector<Placed>& boxes_;
@@ -242,6 +203,40 @@ class Router {
 
 Routes route(std::vector<Placed>& boxes, const std::vector<Net>& nets, const std::vector<Column>& columns, int bottom) {
   return Router(boxes, nets, columns).make(bottom);
+}
+
+namespace {
+
+int directions(const std::vector<const Piece*>& pieces, int x, int y) {
+  bool left = false, right = false, up = false, down = false;
+  for (const Piece* piece : pieces) {
+    const auto [x1, x2] = std::minmax(piece->x1, piece->x2);
+    const auto [y1, y2] = std::minmax(piece->y1, piece->y2);
+    if (x < x1 || x > x2 || y < y1 || y > y2) continue;
+    left |= x1 < x;
+    right |= x < x2;
+    up |= y1 < y;
+    down |= y < y2;
+  }
+  return left + right + up + down;
+}
+
+}  // namespace
+
+std::vector<Dot> dots_of(const std::vector<Piece>& lines) {
+  std::vector<Dot> dots;
+  std::map<std::string_view, std::vector<const Piece*>> by_variable;
+  for (const Piece& piece : lines) by_variable[piece.variable].push_back(&piece);
+  for (const auto& [variable, pieces] : by_variable) {
+    std::set<std::pair<int, int>> ends;
+    for (const Piece* piece : pieces) {
+      ends.emplace(piece->x1, piece->y1);
+      ends.emplace(piece->x2, piece->y2);
+    }
+    for (const auto& [x, y] : ends)
+      if (directions(pieces, x, y) >= 3) dots.push_back({variable, x, y});
+  }
+  return dots;
 }
 
 std::size_t crossings(const std::vector<Piece>& lines) {

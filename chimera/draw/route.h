@@ -10,15 +10,17 @@
 
 namespace chimera::draw {
 
-/// Lines with their dots, and the place that they take.
+/// Lines, and the place that they take.
 struct Routes {
   std::vector<Piece> lines;
-  std::vector<Dot> dots;
   int width = 0, height = 0;
 };
 
 /// Sets `x` of all boxes and routes the nets between them; lanes begin at `bottom`. Requires: columns and heights are
 /// final. Context: setup.
 Routes route(std::vector<Placed>& boxes, const std::vector<Net>& nets, const std::vector<Column>& columns, int bottom);
+
+/// A dot for each end of a piece at which its variable goes on in at least three directions. Context: setup.
+std::vector<Dot> dots_of(const std::vector<Piece>& lines);
 
 }  // namespace chimera::draw

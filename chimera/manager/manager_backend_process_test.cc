@@ -180,7 +180,7 @@ TEST_F(ManagerBackendTest, DescribePrintsTheVerifiedApplication) {
   EXPECT_EQ(described["configurations"][1], (Json{{"name", "rest"}, {"tasks", {"sensor"}}}));
   const Json& filter = described["tasks"][1];
   EXPECT_EQ(filter["ports"][0], (Json{{"port", "x"}, {"kind", "in-var"}, {"variable", "x"}, {"type", "float64"},
-                                      {"unit", "rad"}, {"shape", "[2]"}}));
+                                      {"unit", "rad"}, {"shape", "[2]"}, {"frame", nullptr}}));
   for (const Json& variable : described["variables"]) {
     if (variable["variable"] != "y") continue;
     EXPECT_EQ(variable["consumers"], (Json::array({Json{{"task", "law"}, {"port", "y"}}})));

@@ -99,11 +99,16 @@ TEST(SteppedReceipts, ASecondRequestIsRefusedByNameAndTheFirstOneCanBeCancelled)
             std::string::npos)
       << second.message;
   EXPECT_EQ(system.result("plan", to("wild"))["reason"], "under-way");
+  const Json status = system.result("status");
+  EXPECT_EQ(status["switch"]["to"], "quick");
+  EXPECT_EQ(status["switch"]["progress"], "arming");
+  EXPECT_GT(status["switch"]["deadline_ns"].as_int64(), status["now_ns"].as_int64());
   const Json cancelled = system.result("cancel");
   ASSERT_TRUE(first->has_value());
   EXPECT_EQ(SteppedSubsystem::result_of(**first), cancelled);
   EXPECT_EQ(text_at(cancelled, "why").find("cancelled by configure:"), 0u) << cancelled;
   EXPECT_EQ(system.on(), kGentle);
+  EXPECT_EQ(system.result("status")["switch"], nullptr);
   system.set("hold", 0);
   EXPECT_EQ(system.result("switch", to("quick"))["end"], "done");
   EXPECT_EQ(system.on(), kQuick);
