@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// The operator variables: a field each, with its unit; a slider for a number, a check box for true and false.
+import { memo, useEffect, useRef, useState } from "react";
+import { forbidden, Machine, MachineState } from "./machine";
+import type { Reading, Variable } from "./protocol";
+import { scalar, sliderRange, withUnit } from "./text";
+
+/** A slider asks at most this often, in milliseconds; a connection may act 100 times a second. */
+const SLIDER_MS = 120;
+
+/** The reading of an operator variable, drawn again when its text changes. */
+function useReading(machine: Machine, variable: string): Reading | undefined {
+  const [reading, set] = useState(machine.values.reading(variable));
+  useEffect(() => machine.values.watch(variable, (latest) => {
+    set((known) => (known?.text === latest.text ? known : latest));
+  }), [machine, variable]);
+  return reading;
+}
+
+interface FieldProps { machine: Machine; variable: Variable; why: string }
+
+function Slider({ machine, variable, why, shown }: FieldProps & { shown: { value: number; unit: string } }) {
+  // The range of a variable without a declared one stays as it was at first: a slider must not flee from the hand.
+  const [range] = useState(() => sliderRange(shown.value, variable.least, variable.most));
+  // While a hand moves the slider it shows the wish, because the answer comes a little later.
+  const [wish, setWish] = useState<number | null>(null);
+  const waiting = useRef<number | null>(null);
+  const timer = useRef(0);
+  const next = async () => {
+    const wanted = waiting.current;
+    waiting.current = null;
+    timer.current = 0;
+    if (wanted === null) return setWish(null);
+    timer.current = window.setTimeout(() => void next(), SLIDER_MS);
+    await machine.ask("set", { values: { [variable.variable]: shown.unit ? `${wanted} ${shown.unit}` : wanted } });
+  };
+  const send = (value: number) => {
+    setWish(value);
+    waiting.current = value;
+    if (timer.current === 0) void next();
+  };
+  const [low, high, step] = range;
+  return <input type="range" min={Math.min(low, shown.value)} max={Math.max(high, shown.value)} step={step}
+                value={wish ?? shown.value} disabled={why !== ""} title={why || undefined}
+                aria-label={`${variable.variable}, slider`} aria-valuetext={`${shown.value} ${shown.unit}`}
+                onChange={(event) => send(Number(Number(event.target.value).toPrecision(6)))} />;
+}
+
+const Field = memo(function Field({ machine, variable, why }: FieldProps) {
+  const reading = useReading(machine, variable.variable);
+  const [typed, type] = useState<string | null>(null);
+  const present = reading?.text ?? "";
+  const set = async (value: unknown) => {
+    if (await machine.act("set", { values: { [variable.variable]: value } })) type(null);
+  };
+  const name = variable.variable;
+  if (reading && typeof reading.value === "boolean") {
+    return <label className="field">
+      <input type="checkbox" checked={reading.value} disabled={why !== ""} title={why || undefined} aria-label={name}
+             onChange={(event) => void set(event.target.checked)} /> {name}</label>;
+  }
+  const shown = typeof reading?.value === "number" ? scalar(present) : null;
+  return (
+    <div className="field">
+      <label htmlFor={`set-${name}`}>{name} <span className="unit">{variable.type}{variable.shape} {variable.unit}</span></label>
+      <input id={`set-${name}`} value={typed ?? present} readOnly={why !== ""} title={why || "Enter sets the value"}
+             className={typed === null ? "" : "edited"} onChange={(event) => type(event.target.value)}
+             onKeyDown={(event) => {
+               if (event.key === "Enter" && typed !== null) void set(withUnit(typed, present));
+               if (event.key === "Escape") type(null);
+             }} />
+      {shown && Number.isFinite(shown.value) &&
+        <Slider machine={machine} variable={variable} why={why} shown={shown} />}
+    </div>
+  );
+});
+
+export function Operator({ machine, state }: { machine: Machine; state: MachineState }) {
+  const variables = (state.description?.variables ?? []).filter(
+    (v) => !v.constant && (v.operator ?? (v.given && v.producers.length === 0)));
+  if (variables.length === 0) return null;
+  const why = forbidden(state.hello?.role, "operate");
+  return (
+    <section className="panel" aria-label="Operator variables">
+      <h2>Operator</h2>
+      {why !== "" && <p className="hint">{why}</p>}
+      {variables.map((v) => <Field key={`${state.version} ${v.variable}`} machine={machine} variable={v} why={why} />)}
+    </section>
+  );
+}
