@@ -44,6 +44,13 @@ TEST_F(SubscriptionFeedsTest, EventsComeFromTheOpeningOnWithoutSince) {
   EXPECT_EQ(pull(1), Json()) << "each of them once";
 }
 
+TEST_F(SubscriptionFeedsTest, MachinesAreRefusedBecauseChimeraWebKnowsThem) {
+  const control::RpcResponse answer = feeds_.open(1, {{"to", "machines"}});
+  EXPECT_EQ(answer.code, control::kRefused);
+  EXPECT_EQ(answer.detail("kind"), "bench");
+  EXPECT_EQ(answer.detail("remedy"), "ask the server of the page: `chimera web`");
+}
+
 TEST_F(SubscriptionFeedsTest, EventsComeFromANumberOn) {
   tell(3);
   open(1, {{"to", "events"}, {"since", 2}});

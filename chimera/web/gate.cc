@@ -153,9 +153,11 @@ GateVerdict judge_target(const Head& head) {
   } else {
     return refused(404, "there is no " + quoted(head.target) + " here");
   }
+  const auto keys = values(head, "Sec-WebSocket-Key");
   const bool is_upgrade =
       lists(values(head, "Connection"), "upgrade") && is_all(values(head, "Upgrade"), "websocket") &&
-      is_all(values(head, "Sec-WebSocket-Version"), "13") && values(head, "Sec-WebSocket-Key").size() == 1;
+      is_all(values(head, "Sec-WebSocket-Version"), "13") && keys.size() == 1 && keys[0].size() == 24;
+  if (is_upgrade) door.socket_key = keys[0];
   return is_upgrade ? door : refused(426, quoted(head.target) + " opens as a WebSocket, version 13");
 }
 
@@ -170,8 +172,10 @@ GateVerdict judge(std::string_view bytes) {
   if (head.version != "HTTP/1.1")
     return head.version.starts_with("HTTP/") ? refused(505, "the version is " + quoted(head.version) + ", not HTTP/1.1")
                                              : refused(400, "this is no HTTP request; the link begins with http://");
-  GateVerdict sender = judge_sender(head);
-  return sender.kind == Kind::kRefused ? sender : judge_target(head);
+  GateVerdict verdict = judge_sender(head);
+  if (verdict.kind != Kind::kRefused) verdict = judge_target(head);
+  verdict.size = size;
+  return verdict;
 }
 
 std::string answer(int status, const char* type, std::string_view body) {

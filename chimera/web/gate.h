@@ -22,8 +22,9 @@ struct GateVerdict {
     kRefused   ///< answer with `status` and `sentence`
   };
   Kind kind = Kind::kMore;
-  std::size_t file = 0;  ///< index in kPageFiles
-  std::string machine{};
+  std::size_t file = 0;                 ///< index in kPageFiles
+  std::string machine{}, socket_key{};  ///< of a WebSocket: Sec-WebSocket-Key
+  std::size_t size = 0;                 ///< bytes of the head that was let in
   int status = 0;
   std::string sentence{};
 };

@@ -29,6 +29,7 @@ std::string lower(std::string_view text) {
 /// Read in another way than the gate reads: by searches in the whole head.
 void check_admitted(std::string_view bytes, const GateVerdict& verdict) {
   const std::string head(bytes.substr(0, bytes.find("\r\n\r\n") + 2)), low = lower(head);
+  require(verdict.size == head.size() + 2, "the head ends at the first empty line");
   require(head.starts_with("GET /") && head.size() <= kMaxHead, "GET, within the limit");
   const std::size_t end = head.find("\r\n");
   require(head.substr(0, end).ends_with(" HTTP/1.1"), "the version is 1.1");

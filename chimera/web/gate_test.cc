@@ -52,6 +52,9 @@ TEST(Gate, OpensWebSocketsToTheBenchAndToAMachine) {
   const GateVerdict machine = judge(head("/machine/puma_pid", kSocket));
   EXPECT_EQ(machine.kind, Kind::kMachine);
   EXPECT_EQ(machine.machine, "puma_pid");
+  EXPECT_EQ(machine.socket_key, kSocket.at("Sec-WebSocket-Key"));
+  const std::string bytes = head("/bench", kSocket);
+  EXPECT_EQ(judge(bytes + "more").size, bytes.size());
 }
 
 TEST(Gate, RefusesAWebSocketThatIsNone) {
@@ -62,6 +65,7 @@ TEST(Gate, RefusesAWebSocketThatIsNone) {
     EXPECT_EQ(status(head("/bench", less)), 426) << name;
   }
   EXPECT_EQ(status(head("/bench", with(kSocket, {{"Upgrade", "h2c"}}))), 426);
+  EXPECT_EQ(status(head("/bench", with(kSocket, {{"Sec-WebSocket-Key", std::string(25, 'A')}}))), 426);
   EXPECT_EQ(status(head("/machine/a", with(kSocket, {{"Sec-WebSocket-Version", "8"}}))), 426);
   EXPECT_EQ(status(head("/", kSocket)), 0);  // a file is sent as one
 }

@@ -16,7 +16,7 @@ inline constexpr std::ptrdiff_t kMaxPages = 12;   ///< WebSockets to /bench
 inline constexpr std::size_t kMaxKeyFrame = 128, kMaxReason = 123;
 inline constexpr std::size_t kChunk = std::size_t{1} << 14;  ///< bytes that wait in this process, in each direction
 inline constexpr int kSendBuffer = 1 << 16;                  ///< bytes that wait in the kernel, about
-inline constexpr Nanoseconds kHeadLimit = seconds(10), kKeyLimit = seconds(5), kAnswerLimit = seconds(5);
+inline constexpr Nanoseconds kHeadLimit = seconds(10), kKeyLimit = seconds(5), kAnswerLimit = seconds(60);
 inline constexpr Nanoseconds kPingAfter = seconds(5), kSilenceLimit = seconds(15), kStuckLimit = seconds(5);
 inline constexpr Nanoseconds kCloseLimit = seconds(2);
 /// Time that a connection without a key has for its request before another one may take its place.

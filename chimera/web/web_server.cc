@@ -108,7 +108,6 @@ class WebServer::Connection : public std::enable_shared_from_this<WebServer::Con
     stage_ = stage;
     due_ = now() + limit;
   }
-
   void take_head(Code error, std::size_t n);
   void refuse(int status, const std::string& sentence);
   void send_answer(std::string text);
@@ -151,16 +150,13 @@ void WebServer::Connection::take_head(Code error, std::size_t n) {
   if (error) return drop();
   in_size_ += n;
   verdict_ = judge({in_.data(), in_size_});
-  switch (verdict_.kind) {
-    case GateVerdict::Kind::kMore:
-      return read_head();
-    case GateVerdict::Kind::kFile:
-      return send_answer(answer(200, kPageFiles[verdict_.file].type, loop_.page()[verdict_.file]));
-    case GateVerdict::Kind::kRefused:
-      return refuse(verdict_.status, verdict_.sentence);
-    default:
-      return upgrade();
-  }
+  using Kind = GateVerdict::Kind;
+  if (verdict_.kind == Kind::kMore) return read_head();
+  if (verdict_.kind == Kind::kRefused) return refuse(verdict_.status, verdict_.sentence);
+  if (verdict_.kind == Kind::kFile)
+    return send_answer(answer(200, kPageFiles[verdict_.file].type, loop_.page()[verdict_.file]));
+  if (verdict_.size != in_size_) return refuse(400, "bytes came before the WebSocket was open");
+  upgrade();
 }
 
 void WebServer::Connection::refuse(int status, const std::string& sentence) {
@@ -173,8 +169,8 @@ void WebServer::Connection::send_answer(std::string text) {
   answer_ = std::move(text);
   asio::async_write(tcp_socket(), asio::buffer(answer_), [self = shared_from_this()](Code error, std::size_t n) {
     if (self->stage_ == Stage::kGone) return;
-    Code ignored;
-    self->tcp_socket().shutdown(tcp::socket::shutdown_send, ignored);
+    if (!error) self->tcp_socket().shutdown(tcp::socket::shutdown_send, error);
+    self->enter(Stage::kAnswer, kCloseLimit);
     self->drain(error, n);
   });
 }
@@ -194,7 +190,13 @@ void WebServer::Connection::upgrade() {
     for (const auto& [name, value] : kSafetyFields) response.set(name, value);
   }));
   socket_.control_callback([this](websocket::frame_type, boost::beast::string_view) { heard_ = now(); });
-  socket_.async_accept(asio::buffer(in_.data(), in_size_), then(&Connection::read_key));
+  // Not the bytes of the browser: Beast takes a head of at most 1536 bytes, and the cookies of other ports are longer.
+  websocket::request_type request(boost::beast::http::verb::get, "/", 11);
+  request.set("Connection", "Upgrade");
+  request.set("Upgrade", "websocket");
+  request.set("Sec-WebSocket-Version", "13");
+  request.set("Sec-WebSocket-Key", verdict_.socket_key);
+  socket_.async_accept(request, then(&Connection::read_key));
 }
 
 void WebServer::Connection::read_key(Code error, std::size_t) {
@@ -365,8 +367,7 @@ void WebServer::Loop::run() {
 std::string WebServer::Loop::admit(bool is_bench) {
   if (all_.size() - strangers().size() >= kMaxSockets) return "64 WebSockets are open, and no more are allowed";
   const auto pages = std::count_if(all_.begin(), all_.end(), [](const auto& one) { return one->is_page(); });
-  const bool is_full = is_bench && pages >= kMaxPages;
-  return is_full ? "12 pages are open, and no more are allowed: close one" : "";
+  return is_bench && pages >= kMaxPages ? "12 pages are open, and no more are allowed: close one" : "";
 }
 
 std::optional<LocalSocket> WebServer::Loop::door_to(const GateVerdict& verdict, websocket::close_reason& why) {

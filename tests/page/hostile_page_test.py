@@ -54,7 +54,8 @@ class Hostile(unittest.TestCase):
                      "0.0.0.0", "127.0.0.2", f"127.0.0.1:{port}\r\nHost: 127.0.0.1:{port}"):
             with self.subTest(host):
                 self.assertEqual(self.server.get("/", {"Host": host})[0], 421)
-                self.assertEqual(self.server.get("/bench", {**FIELDS, "Host": host, "Sec-WebSocket-Key": "a"})[0], 421)
+                fields = {**FIELDS, "Host": host, "Sec-WebSocket-Key": "A" * 24}
+                self.assertEqual(self.server.get("/bench", fields)[0], 421)
 
     def test_pages_of_other_origins_are_refused(self):
         port = self.server.port
@@ -89,13 +90,21 @@ class Hostile(unittest.TestCase):
                              (b"GET / HTTP/1.1\r\n" + host + b" folded: x\r\n\r\n", 400),
                              (b"GET / HTTP/1.1\r\nA: \0\r\n", 400), (b"GET / HTTP/1.0\r\n\r\n", 505),
                              (b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", 505), (b"A" * 8192, 431),
-                             (b"GET / HTTP/1.1\r\n" + b"A: b\r\n" * 5000, 431), (os.urandom(64) + b"\n", 400)):
+                             (b"GET / HTTP/1.1\r\n" + b"A: b\r\n" * 5000, 431), (b"\0" * 64, 400)):
             with self.subTest(data[:40]):
                 self.assertEqual(self.server.answer(data)[0], status)
 
     def test_a_second_request_on_a_connection_is_not_answered(self):
         answer = self.server.answer(self.server.request("/icon.svg") * 3)[1]
         self.assertEqual(answer.count(b"HTTP/1.1"), 1)
+
+    def test_cookies_of_other_ports_are_no_hindrance(self):
+        with self.server.open(Cookie="a=" + "b" * 7000) as page:
+            self.assertEqual(page.call("hello")["protocol"], 1)
+
+    def test_a_key_before_the_websocket_is_open_is_refused(self):
+        head = self.server.request("/bench", {**FIELDS, "Sec-WebSocket-Key": "A" * 22 + "=="})
+        self.assertEqual(self.server.answer(head + head_of_frame(1) + b"\0\0\0\0x")[0], 400)
 
     def test_a_websocket_without_upgrade_is_refused(self):
         self.assertEqual(self.server.get("/bench")[0], 426)
