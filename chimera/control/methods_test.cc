@@ -42,7 +42,8 @@ TEST(Methods, NameTheErrorInAParameter) {
   EXPECT_EQ(judged("events", {{"limit", 1001}}), "limit: 'limit' must be from 1 to 1000");
   EXPECT_EQ(judged("subscribe", {{"to", "status"}, {"period_ms", 19}}),
             "period_ms: 'period_ms' must be from 20 to 60000");
-  EXPECT_EQ(judged("subscribe", {{"to", "valeus"}}), "to: 'to' must be status, events, values or tap (values)");
+  EXPECT_EQ(judged("subscribe", {{"to", "valeus"}}),
+            "to: 'to' must be status, events, values, tap or machines (values)");
   EXPECT_EQ(judged("signal", {{"signal", "spwan"}, {"tasks", {"a"}}}),
             "signal: 'signal' must be spawn, on, off, kill, clear or reinit (spawn)");
 }

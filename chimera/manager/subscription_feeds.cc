@@ -21,12 +21,15 @@ std::shared_ptr<const Json> shared(Json json) { return std::make_shared<const Js
 
 }  // namespace
 
+RpcResponse bench_alone() {
+  return RpcResponse::refused("bench", "a subsystem does not know which others run", "",
+                              "ask the server of the page: `chimera web`");
+}
+
 RpcResponse SubscriptionFeeds::open(std::uint64_t subscription, const Json& parameters) {
   using To = Feed::To;
   const std::string to = parameters.at("to").as_string();
-  if (to == "machines")
-    return RpcResponse::error(control::kBadParameters, "a subsystem knows no other machines; chimera-web does",
-                              {{"where", "to"}});
+  if (to == "machines") return bench_alone();
   const auto names = control::texts(parameters, "variables");
   auto variables = variables_named(state_, names);
   if (const auto* refused = std::get_if<RpcResponse>(&variables)) return *refused;

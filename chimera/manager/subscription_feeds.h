@@ -16,6 +16,9 @@ namespace chimera::manager {
 /// Most events in one answer or notification.
 inline constexpr std::size_t kEventsAtOnce = 1000;
 
+/// The refusal of `machines`, which only chimera-web answers.
+control::RpcResponse bench_alone();
+
 /// Context: setup. The functions are those of control::ControlBackend with these names.
 class SubscriptionFeeds {
  public:

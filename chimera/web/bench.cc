@@ -29,7 +29,8 @@ void Bench::call(const control::MethodRule& method, const Json&, const control::
   if (method.id == MethodId::kHello) return reply(RpcResponse::good(hello(caller.role)));
   if (method.id == MethodId::kMachines) return reply(RpcResponse::good(*machines()));
   reply(RpcResponse::error(control::kNoMethod,
-                           "'" + std::string(method.name) + "' is a method of a subsystem: connect to /machine/NAME"));
+                           "'" + std::string(method.name) + "' is a method of a subsystem: connect to /machine/NAME",
+                           {{"where", "method"}}));
 }
 
 RpcResponse Bench::open(std::uint64_t subscription, const Json& parameters) {

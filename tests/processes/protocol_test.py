@@ -121,7 +121,7 @@ GOOD = {"hello": {}, "status": {}, "describe": {}, "get": {"variables": ["count"
         "signal": {"signal": "on", "tasks": ["steady"]}, "ring": {"tasks": ["steady"]},
         "set": {"values": {"level": 2}}, "flag": {"up": False},
         "switch": {"configuration": "all", "wait_ms": 1000}, "cancel": {}, "drill": {"wait_ms": 100}, "save": {},
-        "end": {"code": 0}}
+        "end": {"code": 0}, "machines": {}}
 VALUES = [None, True, "", "nothing", [], ["count", 1], {}, -1, 0, 1, 1.5, 19, 20, 255, 256, 1000, 1001, 60000, 60001,
           2 ** 63 - 1]
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """What other sites, other users and broken browsers may send to chimera-web: each is refused by a status or a close
 code, and a browser with the key gets in afterwards."""
+import json
 import os
 import pathlib
 import resource
-import signal
 import socket
 import struct
 import subprocess
@@ -13,6 +13,7 @@ import threading
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "processes"))
+from protocol_test import JUDGES  # noqa: E402
 from system import TWO_RTPUS, System, await_that  # noqa: E402
 from wire import BINARY, CLOSE, FIELDS, PING, Machine, Server, echo, head_of_frame, read_all  # noqa: E402
 
@@ -84,7 +85,8 @@ class Hostile(unittest.TestCase):
     def test_bytes_that_are_no_request_are_refused(self):
         host = f"Host: 127.0.0.1:{self.server.port}\r\n".encode()
         for data, status in ((b"\x16\x03\x01\x02\x00\x01", 400), (b"GET / HTTP/1.1\n", 400),
-                             (b"GET / HTTP/1.1\rH", 400), (b"\r\n\r\n", 400), (b"GET / HTTP/1.1\r\n" + host + b" folded: x\r\n\r\n", 400),
+                             (b"GET / HTTP/1.1\rH", 400), (b"\r\n\r\n", 400),
+                             (b"GET / HTTP/1.1\r\n" + host + b" folded: x\r\n\r\n", 400),
                              (b"GET / HTTP/1.1\r\nA: \0\r\n", 400), (b"GET / HTTP/1.0\r\n\r\n", 505),
                              (b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n", 505), (b"A" * 8192, 431),
                              (b"GET / HTTP/1.1\r\n" + b"A: b\r\n" * 5000, 431), (os.urandom(64) + b"\n", 400)):
@@ -315,12 +317,21 @@ class Hostile(unittest.TestCase):
             with server.open("/machine/subject") as page:
                 hello = page.call("hello")
                 page.call("subscribe", to="status")
-                os.kill(hello["manager"]["pid"], signal.SIGKILL)
+                self.assertTrue(system.kill(hello["manager"]["pid"]))
                 self.assertEqual(page.code(), 4502)
             with server.open("/machine/subject") as page:
                 self.assertGreater(page.call("hello")["manager"]["starts"], hello["manager"]["starts"])
             with server.open() as page:
                 self.assertEqual(page.call("machines"), {"machines": [{"name": "subject", "service": False}]})
+                JUDGES["bench_hello"].validate(page.call("hello"))
+                page.call("subscribe", to="machines")
+                JUDGES["notification"].validate(json.loads(page.message()))
+                page.send(json.dumps({"jsonrpc": "2.0", "id": 9, "method": "status"}))
+                JUDGES["answer"].validate(json.loads(page.message()))
+                system.client.close()
+                self.assertEqual(system.process.send_signal(2), None)
+                note = json.loads(page.message())
+                self.assertEqual(note["params"]["machines"], [])
 
 
 def descriptors(pid):
