@@ -40,7 +40,8 @@ constexpr auto kSignals = [] {
 constexpr MethodRule kMethods[] = {
     question(MethodId::kHello, "hello"),
     question(MethodId::kStatus, "status"),
-    question(MethodId::kDescribe, "describe"),
+    {MethodId::kDescribe, "describe", Role::kObserve, false, false,
+     {{"picture", Kind::kBool, false}, {"configuration", Kind::kText, false}}},
     {MethodId::kGet, "get", Role::kObserve, false, false, {{"variables", Kind::kTexts, false}}},
     question(MethodId::kProfile, "profile"),
     {MethodId::kEvents, "events", Role::kObserve, false, false,

@@ -24,9 +24,10 @@ RpcResponse RpcResponse::error(int code, std::string message, const Json& data) 
 }
 
 RpcResponse RpcResponse::refused(const char* kind, std::string message, const std::string& where,
-                                 const std::string& remedy) {
+                                 const std::string& remedy, const std::vector<std::string>& tasks) {
   Json data{{"kind", kind}, {"where", where}};
   if (!remedy.empty()) data["remedy"] = remedy;
+  if (!tasks.empty()) data["tasks"] = tasks;
   return error(kRefused, std::move(message), data);
 }
 

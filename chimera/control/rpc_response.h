@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "chimera/control/pieces.h"
 #include "chimera/text/json.h"
@@ -47,9 +48,9 @@ struct RpcResponse {
   static RpcResponse error(int code, std::string message);
   static RpcResponse error(int code, std::string message, const Json& data);
   /// Error kRefused. `kind` is a word for programs (docs/formats/control.md), `where` names a task, a variable or
-  /// nothing, `remedy` says what to do; "": nothing is known.
+  /// nothing, `remedy` says what to do; "": nothing is known. `tasks`: which `on` would be legal; may be empty.
   static RpcResponse refused(const char* kind, std::string message, const std::string& where,
-                             const std::string& remedy = {});
+                             const std::string& remedy = {}, const std::vector<std::string>& tasks = {});
   /// "no task 'pod'" with the nearest of `names` in the data, if one is near.
   static RpcResponse unknown(std::string message, const std::string& where, const std::string& nearest);
   /// "no task 'pod'; did you mean 'pid'?" in the words of chimera::no_such.

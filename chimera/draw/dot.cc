@@ -62,7 +62,7 @@ std::string dot(const Graph& graph) {
     for (const Port& port : box.ports) {
       if (port.kind != PortKind::kResource) continue;
       const std::string node = backslashed(box.name + " resource " + port.name);
-      out += "  " + node + " [shape=plaintext, label=" + backslashed(port.variable) + "];\n";
+      out += "  " + node + " [shape=plaintext, label=" + backslashed(port.written) + "];\n";
       out += "  " + backslashed(box.name) + " -> " + node +
              " [dir=both, constraint=false, label=" + backslashed(port.name) + "];\n";
     }

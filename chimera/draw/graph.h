@@ -15,7 +15,8 @@ enum class PortKind : std::uint8_t { kIn, kOut, kInConst, kOutConst, kResource }
 struct Port {
   PortKind kind = PortKind::kIn;
   std::string name;
-  std::string variable;  ///< of a resource: its text; empty: not linked
+  std::string variable;      ///< empty: not linked; a resource never is
+  std::string written = {};  ///< value in the file, of a resource or an unlinked constant; may be empty
 };
 
 /// A task.
@@ -30,7 +31,7 @@ struct Box {
 struct Graph {
   std::string title;
   std::vector<Box> boxes;
-  std::vector<std::string> given;  ///< variables without a box that produces them: from the operator or the file
+  std::vector<std::string> given;  ///< variables from the operator or the file
 };
 
 /// The graph for Graphviz. Context: setup.

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <random>
-#include <set>
 
 #include "chimera/draw/layout.h"
 
@@ -25,8 +25,9 @@ Graph figure4() {
              {kInConst, "ndof", "ndof"}, {kInConst, "limit", "tau_max"}, {kOut, "tau", "tau"}}},
            {"arm", "puma_torque", "1 kHz", "ON",
             {{kIn, "tau", "tau"}, {kOut, "q", "q"}, {kOut, "qd", "qd"}, {kOutConst, "ndof", "ndof"},
-             {kResource, "model", "puma560.xml"}}},
-           {"log", "csv_log", "10 Hz", "OFF", {{kIn, "a", "q"}, {kIn, "b", "q_d"}, {kResource, "file", "out.csv"}}}},
+             {kResource, "model", "", "puma560.xml"}}},
+           {"log", "csv_log", "10 Hz", "OFF",
+            {{kIn, "a", "q"}, {kIn, "b", "q_d"}, {kResource, "file", "", "out.csv"}}}},
           {"kp"}};
 }
 
@@ -46,34 +47,105 @@ TEST(Graph, ALoopWithoutSourceStillHasColumns) {
   EXPECT_EQ(columns_of(loop), (std::vector<std::size_t>{0, 1}));
 }
 
-/// Checks properties of every picture.
-void expect_sound(const Graph& graph) {
-  const Layout layout = lay_out(graph);
-  std::set<int> tracks;
-  for (const Piece& piece : layout.pieces) {
-    EXPECT_TRUE(piece.x1 == piece.x2 || piece.y1 == piece.y2);
-    EXPECT_TRUE(std::min(piece.x1, piece.x2) >= 0 && std::max(piece.x1, piece.x2) <= layout.width);
-    EXPECT_TRUE(std::min(piece.y1, piece.y2) >= 0 && std::max(piece.y1, piece.y2) <= layout.height);
-    if (piece.x1 == piece.x2 && !piece.is_dot) {
-      EXPECT_TRUE(tracks.insert(piece.x1).second) << "two lines share the track at " << piece.x1;
-    }
-    for (const Placed& box : layout.boxes) {
-      const bool beside = std::max(piece.x1, piece.x2) <= box.x || std::min(piece.x1, piece.x2) >= box.x + box.width;
-      const bool over = std::max(piece.y1, piece.y2) <= box.y || std::min(piece.y1, piece.y2) >= box.y + box.height;
-      EXPECT_TRUE(beside || over) << "a line crosses " << graph.boxes[box.box].name;
-    }
+struct Area {
+  int left, top, right, bottom;
+  bool meets(const Area& other) const {
+    return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
   }
-  for (const Placed& a : layout.boxes) {
-    EXPECT_LE(a.x + a.width, layout.width);
-    EXPECT_LE(a.y + a.height, layout.height);
-    for (const Placed& b : layout.boxes) {
-      const bool apart = a.x + a.width <= b.x || b.x + b.width <= a.x || a.y + a.height <= b.y || b.y + b.height <= a.y;
-      EXPECT_TRUE(&a == &b || apart) << graph.boxes[a.box].name << " lies on " << graph.boxes[b.box].name;
+};
+
+Area area(const PlacedBox& box) { return {box.x, box.y, box.x + box.width, box.y + box.height}; }
+
+/// The letters of a label stand on its base line; those of the title are larger.
+Area area(const Label& label) {
+  const bool is_title = std::string_view(label.style) == "title";
+  const int width = width_of(label.text) * (is_title ? 3 : 2) / 2;
+  const int begin = std::string_view(label.anchor) == "start" ? 0 : std::string_view(label.anchor) == "end" ? 2 : 1;
+  return {label.x - width * begin / 2, label.y - 9, label.x + width - width * begin / 2, label.y + 2};
+}
+
+Area area(const Piece& piece) {
+  const auto [left, right] = std::minmax(piece.x1, piece.x2);
+  const auto [top, bottom] = std::minmax(piece.y1, piece.y2);
+  return {left, top, right, bottom};
+}
+
+/// True if the pieces have more than a point in common.
+bool lies_on(const Piece& a, const Piece& b) {
+  const Area one = area(a), two = area(b);
+  const int width = std::min(one.right, two.right) - std::max(one.left, two.left);
+  const int height = std::min(one.bottom, two.bottom) - std::max(one.top, two.top);
+  return width >= 0 && height >= 0 && width + height > 0;
+}
+
+void expect_lines_apart(const Layout& layout) {
+  for (const Piece& piece : layout.lines) {
+    const Area line = area(piece);
+    EXPECT_TRUE(piece.x1 == piece.x2 || piece.y1 == piece.y2);
+    EXPECT_TRUE(line.left >= 0 && line.right <= layout.width && line.top >= 0 && line.bottom <= layout.height);
+    for (const PlacedBox& box : layout.boxes) EXPECT_FALSE(area(piece).meets(area(box))) << "crosses " << box.task;
+    for (const Piece& other : layout.lines)
+      EXPECT_FALSE(piece.variable != other.variable && lies_on(piece, other))
+          << piece.variable << " lies on " << other.variable;
+  }
+}
+
+void expect_words_apart(const Layout& layout) {
+  for (const Label& a : layout.labels) {
+    EXPECT_TRUE(area(a).left >= 0 && area(a).right <= layout.width) << a.text;
+    for (const Label& b : layout.labels)
+      EXPECT_FALSE(&a < &b && std::string_view(a.style) == b.style && area(a).meets(area(b)))
+          << a.text << " lies on " << b.text;
+  }
+  for (const PlacedPort& port : layout.ports) {
+    if (port.port->kind != kOut || port.port->variable.empty()) continue;
+    const Area value{port.x + 4, port.y + 1, port.x + kValueRoom, port.y + 11};
+    for (const Label& label : layout.labels) EXPECT_FALSE(area(label).meets(value)) << label.text;
+    for (const Piece& piece : layout.lines) EXPECT_FALSE(area(piece).meets(value)) << piece.variable;
+  }
+}
+
+/// The lines of a variable join each of its inputs to each of its outputs.
+void expect_joined(const Layout& layout) {
+  for (const PlacedPort& from : layout.ports) {
+    if (from.port->kind != kOut || from.port->variable.empty()) continue;
+    std::vector<Piece> left;
+    for (const Piece& piece : layout.lines)
+      if (piece.variable == from.port->variable) left.push_back(piece);
+    std::vector<Area> reached{{from.x, from.y, from.x, from.y}};
+    const auto touches = [](const Area& a, const Area& b) {
+      return a.left <= b.right && b.left <= a.right && a.top <= b.bottom && b.top <= a.bottom;
+    };
+    for (std::size_t i = 0; i < reached.size(); ++i)
+      std::erase_if(left, [&](const Piece& piece) {
+        if (!touches(area(piece), reached[i])) return false;
+        reached.push_back(area(piece));
+        return true;
+      });
+    for (const PlacedPort& to : layout.ports) {
+      if (to.port->kind != kIn || to.port->variable != from.port->variable) continue;
+      const Area end{to.x, to.y, to.x, to.y};
+      EXPECT_TRUE(std::ranges::any_of(reached, [&](const Area& one) { return touches(one, end); })) << to.task;
     }
   }
 }
 
-TEST(Graph, LinesCrossNoBoxAndShareNoTrack) { expect_sound(figure4()); }
+/// Checks properties of every picture.
+void expect_sound(const Graph& graph) {
+  const Layout layout = lay_out(graph);
+  EXPECT_EQ(layout.boxes.size(), graph.boxes.size());
+  for (const PlacedBox& a : layout.boxes) {
+    EXPECT_LE(a.x + a.width, layout.width);
+    EXPECT_LE(a.y + a.height, layout.height);
+    for (const PlacedBox& b : layout.boxes)
+      EXPECT_TRUE(&a == &b || !area(a).meets(area(b))) << a.task << " lies on " << b.task;
+  }
+  expect_lines_apart(layout);
+  expect_words_apart(layout);
+  expect_joined(layout);
+}
+
+TEST(Graph, LinesCrossNoBoxAndNoWords) { expect_sound(figure4()); }
 
 TEST(Graph, AnyGraphIsDrawnSoundly) {
   for (unsigned seed = 1; seed <= 200 && !::testing::Test::HasFailure(); ++seed) {
@@ -106,16 +178,31 @@ TEST(Graph, TheLargestApplicationIsDrawn) {
 
 TEST(Graph, ADotMarksEveryFan) {
   Graph graph = figure4();
-  const auto dots = [&graph] {
-    std::size_t n = 0;
-    const Layout layout = lay_out(graph);
-    for (const Piece& piece : layout.pieces) n += piece.is_dot ? 1 : 0;
-    return n;
-  };
-  const std::size_t with_log = dots();
+  EXPECT_GE(lay_out(graph).dots.size(), 2u);
   graph.boxes.pop_back();
-  EXPECT_GE(with_log, 2u);
-  EXPECT_EQ(dots(), 0u);
+  EXPECT_EQ(lay_out(graph).dots.size(), 0u);
+}
+
+TEST(Graph, BoxesStandInTheOrderInWhichNoLinesCross) {
+  Graph graph{"pairs", {}, {}};
+  const std::string names = "abcdef";
+  for (const char name : names)
+    graph.boxes.push_back({std::string("from_") + name, "", "", "", {{kOut, "y", std::string(1, name)}}});
+  for (const char name : {'d', 'a', 'f', 'c', 'e', 'b'})
+    graph.boxes.push_back({std::string("to_") + name, "", "", "", {{kIn, "x", std::string(1, name)}}});
+  EXPECT_EQ(crossings(lay_out(graph).lines), 0u);
+}
+
+TEST(Graph, TracksStandInTheOrderInWhichNoLinesCross) {
+  Graph graph{"down", {{"from", "", "", "", {{kOut, "a", "a"}, {kOut, "b", "b"}, {kOut, "c", "c"}}},
+                       {"to", "", "", "", {{kIn, "p", "p"}, {kIn, "q", "q"}, {kIn, "r", "r"}, {kIn, "a", "a"},
+                                           {kIn, "b", "b"}, {kIn, "c", "c"}}}}, {"p", "q", "r"}};
+  EXPECT_EQ(crossings(lay_out(graph).lines), 0u);
+}
+
+TEST(Graph, CrossingsAreCountedBetweenVariablesOnly) {
+  const std::vector<Piece> lines{{"a", 0, 5, 10, 5}, {"b", 5, 0, 5, 10}, {"a", 6, 0, 6, 10}, {"b", 10, 0, 10, 10}};
+  EXPECT_EQ(crossings(lines), 1u);
 }
 
 TEST(Svg, ShowsEveryNameAndEscapesIt) {
@@ -142,7 +229,7 @@ TEST(Dot, JoinsPairsDirectlyAndFansThroughADot) {
 TEST(Text, DrawsInputsLeftAndOutputsRight) {
   const Graph graph{"tiny",
                     {{"gain", "gain", "1 kHz", "",
-                      {{kIn, "x", "u"}, {kOut, "y", "y"}, {kInConst, "k", "k"}, {kResource, "dev", "/dev/x"}}},
+                      {{kIn, "x", "u"}, {kOut, "y", "y"}, {kInConst, "k", "k"}, {kResource, "dev", "", "/dev/x"}}},
                      {"log", "csv_log", "", "", {{kIn, "a", "y"}}}},
                     {"u"}};
   std::string bar;

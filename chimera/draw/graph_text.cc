@@ -53,9 +53,7 @@ std::string output_text(const Graph& graph, const Port& port) {
   return port.variable + (to.empty() ? "" : " (" + to + ")");
 }
 
-std::string link_text(const Port& port) {
-  return port.variable.empty() || port.variable == port.name ? port.name : port.name + " = " + port.variable;
-}
+std::string shown(const Port& port) { return cut(link_text(port, " = "), kInner + kRight); }
 
 void append_sides(std::string& out, const Graph& graph, const Box& box) {
   std::vector<const Port*> ins, outs;
@@ -77,14 +75,14 @@ void append_sides(std::string& out, const Graph& graph, const Box& box) {
 void append_box(std::string& out, const Graph& graph, const Box& box) {
   const std::string indent(kSide + 3, ' ');
   for (const Port& port : box.ports) {
-    if (port.kind == PortKind::kInConst) out += indent + "  " + cut(link_text(port), kInner + kRight) + " \u25bc\n";
-    if (port.kind == PortKind::kOutConst) out += indent + "  " + cut(link_text(port), kInner + kRight) + " \u25b2\n";
+    if (port.kind == PortKind::kInConst) out += indent + "  " + shown(port) + " \u25bc\n";
+    if (port.kind == PortKind::kOutConst) out += indent + "  " + shown(port) + " \u25b2\n";
   }
   out += indent + "\u256d" + bar(kInner + 2) + "\u256e\n";
   append_sides(out, graph, box);
   out += indent + "\u2570" + bar(kInner + 2) + "\u256f\n";
   for (const Port& port : box.ports) {
-    if (port.kind == PortKind::kResource) out += indent + "  \u2195 " + cut(link_text(port), kInner + kRight) + "\n";
+    if (port.kind == PortKind::kResource) out += indent + "  \u2195 " + shown(port) + "\n";
   }
 }
 

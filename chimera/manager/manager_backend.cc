@@ -89,11 +89,12 @@ RpcResponse signal_answer(const ManagerState& state, const subsystem::CommandAns
     }
     return RpcResponse::good({{"tasks", std::move(tasks)}});
   }
-  const auto& [kind, reason, remedy] = answer.refusal;
+  const auto& [kind, reason, remedy, to_turn_on] = answer.refusal;
   if (kind == RefusalKind::kNoAnswer && answer.at.is_valid())
     return no_answer(state, state.spec().tasks[answer.at.index].rtpu, answer.refusal.text());
   return RpcResponse::refused(subsystem::refusal_kind_name(kind), answer.refusal.text(),
-                              answer.at.is_valid() ? state.name(answer.at) : "", remedy);
+                              answer.at.is_valid() ? state.name(answer.at) : "", remedy,
+                              names_of(to_turn_on, [&state](TaskId task) { return state.name(task); }));
 }
 
 RpcResponse switch_answer(const ManagerState& state, const SwitchOutcome& outcome) {

@@ -362,6 +362,16 @@ TEST_F(ManagerBackendTest, ARefusedSignalHasKindPlaceAndRemedy) {
             R"(-32000 the smallest legal set is: empty {"kind":"fault","where":"law"})");
 }
 
+TEST_F(ManagerBackendTest, OnOfTheTasksOfARefusedSetIsAccepted) {
+  (void)good("signal", {{"signal", "off"}, {"tasks", {"law", "sensor"}}});
+  const control::RpcResponse refused = ask("signal", {{"signal", "on"}, {"tasks", {"law"}}});
+  ASSERT_FALSE(refused.is_good());
+  EXPECT_EQ(refused.detail("kind"), "set") << text_of(refused);
+  const Json tasks = (*refused.data)["tasks"];
+  EXPECT_GE(tasks.size(), 2u) << text_of(refused);
+  EXPECT_EQ(good("signal", {{"signal", "on"}, {"tasks", tasks}})["tasks"].size(), tasks.size());
+}
+
 TEST_F(ManagerBackendTest, AnswersForAnRtpuThatIsSilentWithItsName) {
   EXPECT_EQ(answer_to(RefusalKind::kNoAnswer, "silence", ""),
             R"(-32006 silence {"rtpu":"spare","running":null})");

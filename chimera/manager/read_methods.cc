@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "chimera/base/hosted/wording.h"
+#include "chimera/draw/graph_of.h"
+#include "chimera/draw/picture.h"
 #include "chimera/manager/act/operator_acts.h"
 #include "chimera/manager/answer/large_readings.h"
 #include "chimera/manager/answer/status_json.h"
@@ -25,6 +28,13 @@ std::string working_folder() {
   return std::filesystem::current_path(error).string();
 }
 
+/// Makes an answer once: the bundle does not change while the manager lives.
+template <class Make>
+RpcResponse made_once(std::shared_ptr<const std::string>& text, Make make) {
+  if (text == nullptr) text = std::make_shared<const std::string>(make().dump());
+  return RpcResponse::ready(text);
+}
+
 }  // namespace
 
 std::optional<RpcResponse> ReadMethods::answer(MethodId method, const Json& parameters, control::Role role) {
@@ -34,7 +44,7 @@ std::optional<RpcResponse> ReadMethods::answer(MethodId method, const Json& para
     case MethodId::kStatus:
       return RpcResponse::good(status_json(state_, now()));
     case MethodId::kDescribe:
-      return made_once(description_, describe_json);
+      return describe(parameters);
     case MethodId::kGet:
       return get(parameters);
     case MethodId::kProfile:
@@ -44,16 +54,34 @@ std::optional<RpcResponse> ReadMethods::answer(MethodId method, const Json& para
     case MethodId::kWhy:
       return why(parameters);
     case MethodId::kLibrary:
-      return made_once(library_, library_json);
+      return made_once(library_, [&] { return library_json(state_); });
     default:
       return std::nullopt;
   }
 }
 
-/// Makes an answer once: the bundle does not change while the manager lives.
-RpcResponse ReadMethods::made_once(std::shared_ptr<const std::string>& text, Json (*make)(const ManagerState&)) const {
-  if (text == nullptr) text = std::make_shared<const std::string>(make(state_).dump());
-  return RpcResponse::ready(text);
+RpcResponse ReadMethods::describe(const Json& parameters) {
+  const Json* name = parameters.find("configuration");
+  if (!truth_at(parameters, "picture")) {
+    if (name != nullptr)
+      return RpcResponse::error(control::kBadParameters, "'configuration' needs 'picture'",
+                                {{"where", "configuration"}});
+    return made_once(descriptions_[""], [&] { return describe_json(state_); });
+  }
+  const ConfiguredSet* set = nullptr;
+  if (name != nullptr) {
+    const auto sets = state_.configuration ? state_.configuration->sets() : std::span<const ConfiguredSet>();
+    const auto at = std::ranges::find(sets, name->as_string(), &ConfiguredSet::name);
+    if (at == sets.end())
+      return RpcResponse::no_such("configuration", name->as_string(), names_of(sets, &ConfiguredSet::name));
+    set = &*at;
+  }
+  return made_once(descriptions_[set == nullptr ? "picture" : "picture " + set->name], [&] {
+    Json description = describe_json(state_);
+    description["picture"] =
+        draw::picture_json(state_.configuration ? draw::graph_of(*state_.configuration, set) : draw::Graph{});
+    return description;
+  });
 }
 
 RpcResponse ReadMethods::hello(control::Role role) const {

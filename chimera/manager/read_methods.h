@@ -2,6 +2,7 @@
 // The methods of the control protocol that change nothing and are answered at once. docs/formats/control.md.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,10 +27,12 @@ class ReadMethods {
   control::RpcResponse get(const Json& parameters) const;
   control::RpcResponse events(const Json& parameters) const;
   control::RpcResponse why(const Json& parameters) const;
-  control::RpcResponse made_once(std::shared_ptr<const std::string>& text, Json (*make)(const ManagerState&)) const;
+  control::RpcResponse describe(const Json& parameters);
 
   const ManagerState& state_;
-  std::shared_ptr<const std::string> library_, description_;  // answers that never change, made at the first request
+  // Answers that never change, made at the first request.
+  std::shared_ptr<const std::string> library_;
+  std::map<std::string, std::shared_ptr<const std::string>> descriptions_;  // by "", "picture" or "picture NAME"
 };
 
 }  // namespace chimera::manager

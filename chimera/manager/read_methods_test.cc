@@ -43,6 +43,37 @@ TEST_F(ReadMethodsTest, BuildsEachTextOfTheBundleOnce) {
   EXPECT_EQ(ask(MethodId::kLibrary)->text, library);
 }
 
+TEST_F(ReadMethodsTest, DrawsEachPictureOnce) {
+  const auto all = ask(MethodId::kDescribe, {{"picture", true}})->text;
+  const auto rest = ask(MethodId::kDescribe, {{"picture", true}, {"configuration", "rest"}})->text;
+  EXPECT_EQ(Json::parse(*all)["picture"]["boxes"].size(), 3u);
+  EXPECT_EQ(Json::parse(*rest)["picture"]["boxes"].size(), 1u);
+  EXPECT_EQ(Json::parse(*rest)["tasks"].size(), 3u);
+  EXPECT_EQ(ask(MethodId::kDescribe, {{"picture", true}})->text, all);
+  EXPECT_EQ(ask(MethodId::kDescribe, {{"picture", true}, {"configuration", "rest"}})->text, rest);
+  EXPECT_FALSE(Json::parse(*ask(MethodId::kDescribe, {{"picture", false}})->text).contains("picture"));
+}
+
+TEST_F(ReadMethodsTest, RefusesAnUnknownConfigurationAndOneWithoutPicture) {
+  const RpcResponse unknown = *ask(MethodId::kDescribe, {{"picture", true}, {"configuration", "rst"}});
+  EXPECT_EQ(unknown.code, control::kUnknown);
+  EXPECT_EQ(unknown.detail("nearest"), "rest");
+  const RpcResponse alone = *ask(MethodId::kDescribe, {{"configuration", "rest"}});
+  EXPECT_EQ(alone.code, control::kBadParameters);
+  EXPECT_EQ(alone.detail("where"), "configuration");
+}
+
+TEST_F(ReadMethodsTest, DescribesOperatorVariablesWithTheRangeThatTheirReadersDeclare) {
+  std::string text;
+  const Json description = Json::parse(*ask(MethodId::kDescribe)->text);
+  for (const Json& each : description["variables"])
+    text += each["variable"].as_string() + " " + each["operator"].dump() + " " + each["least"].dump() + " " +
+            each["most"].dump() + "\n";
+  EXPECT_EQ(text, "kp true 0.0 5000.0\nx false null null\ny false null null\ntau false null null\n");
+  EXPECT_EQ(description["tasks"][2]["ports"][0]["frame"], "base");
+  EXPECT_EQ(description["tasks"][2]["ports"][1]["frame"], nullptr);
+}
+
 TEST_F(ReadMethodsTest, AnUnknownVariableIsRefusedWithTheNearest) {
   const RpcResponse got = *ask(MethodId::kGet, {{"variables", {"kq"}}});
   EXPECT_EQ(got.code, control::kUnknown);

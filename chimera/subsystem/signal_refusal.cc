@@ -13,7 +13,7 @@ const char* refusal_kind_name(RefusalKind kind) noexcept {
 }
 
 SignalRefusal SignalRefusal::behind(const std::string& words) const {
-  return {kind, reason.empty() ? reason : words + reason, remedy};
+  return {kind, reason.empty() ? reason : words + reason, remedy, tasks};
 }
 
 bool SignalRefusal::add(SignalRefusal later) {

@@ -4,6 +4,9 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
+
+#include "chimera/base/ids.h"
 
 namespace chimera::subsystem {
 
@@ -28,6 +31,7 @@ struct SignalRefusal {
   RefusalKind kind = RefusalKind::kNone;
   std::string reason;  ///< "pi is in state ERROR, where on is not legal"; "" of kOther
   std::string remedy;  ///< "type `chimera clear pi`", for the present state; "": none is known
+  std::vector<TaskId> tasks = {};  ///< of kSet: those whose `on` in one command makes a legal set; empty: none is known
 
   bool is_refused() const noexcept { return kind != RefusalKind::kNone; }
   /// Reason and remedy in one sentence, for a message.

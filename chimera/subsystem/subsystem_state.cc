@@ -93,8 +93,15 @@ SignalRefusal SubsystemState::judge_on(std::span<const TaskId> tasks) const {
   std::vector<bool> on(spec.tasks.size());
   for (std::size_t t = 0; t < on.size(); ++t) on[t] = may_be_on(TaskId(t));
   for (TaskId task : tasks) on[task.index] = true;
-  if (!variables.is_legal(on))
-    return {RefusalKind::kSet, variables.fault(on, spec.tasks), variables.remedy(on, spec.tasks)};
+  if (!variables.is_legal(on)) {
+    const std::vector<bool> smallest = variables.smallest_legal(on);
+    SignalRefusal refusal{RefusalKind::kSet, variables.fault(on, spec.tasks), Variables::remedy(smallest, spec.tasks)};
+    for (const TaskId task : spec.on_order) {
+      const bool is_needed = !smallest.empty() && smallest[task.index];
+      if (is_needed && observed.state(task) != State::kOn) refusal.tasks.push_back(task);
+    }
+    return refusal;
+  }
   std::vector<TaskId> set;
   for (const TaskId task : spec.on_order)
     if (observed.state(task) == State::kOn || pending.is_possible(task, Signal::kOn) ||

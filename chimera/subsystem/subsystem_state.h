@@ -104,7 +104,7 @@ struct SubsystemState {
   SignalRefusal rivalry(TaskId task, TaskId rival) const;
 
   /// Reason why the present ON tasks and `tasks` together are not a legal set or take too much of a CPU; otherwise
-  /// kNone.
+  /// kNone. For an illegal set it has the tasks to turn ON instead of `tasks`, if a legal set holds them.
   SignalRefusal judge_on(std::span<const TaskId> tasks) const;
   /// Refusal of a signal for `tasks`, because `task` is in the wrong state: "pi is in state ERROR, where on is not
   /// legal", "type `chimera clear pi`, then `chimera on pi`".

@@ -124,6 +124,24 @@ TEST_F(SubsystemTest, AKillWaitsForAnInitNoLongerThanItsLimitEither) {
   EXPECT_NE(said.find("answer 3 no: no answer from rtpu spare"), std::string::npos) << said;
 }
 
+TEST_F(SubsystemTest, OnOfTheTasksOfAnIllegalSetIsAccepted) {
+  command(Signal::kOff, {kTraj, kPid});
+  for (TaskId task : {kPid, kTraj}) report(task, State::kOff);
+  const auto tasks_of = [this](TaskId task) {
+    std::vector<Action> actions;
+    subsystem->step(Commanded{++commands, Signal::kOn, {task}}, now, actions);
+    const auto* answer = std::get_if<CommandAnswer>(&actions.back());
+    EXPECT_TRUE(answer != nullptr && answer->refusal.kind == RefusalKind::kSet) << lines(actions);
+    return answer == nullptr ? std::vector<TaskId>() : answer->refusal.tasks;
+  };
+  const std::vector<TaskId> tasks = tasks_of(kPid);
+  EXPECT_EQ(tasks, (std::vector{kTraj, kPid})) << "arm is ON";
+  EXPECT_EQ(command(Signal::kOn, tasks), "goal traj 2\ngoal pid 2\nsend spare: on traj\n");
+  report(kTraj, State::kOn);
+  report(kPid, State::kOn);
+  EXPECT_EQ(tasks_of(kReserve), std::vector<TaskId>()) << "tau would have two producers";
+}
+
 TEST_F(SubsystemTest, ARequestOfATaskIsJudgedAndItsRefusalReported) {
   EXPECT_EQ(step(Requested{kReserve, Signal::kOn, kTraj}),
             "refused: on sent by traj: tau would have two producers: pid and reserve\n");

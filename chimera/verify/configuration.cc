@@ -50,6 +50,7 @@ ConfiguredPort configured(const LinkedPort& port) {
   out.kind = port.declared->kind;
   out.name = port.name;
   out.variable = port.variable;
+  out.frame = port.declared->frame;
   out.at = port.at;
   if (port.is(CHIMERA_RESOURCE)) return out;
   out.type = type_text(port);

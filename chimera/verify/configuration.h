@@ -27,6 +27,7 @@ struct ConfiguredPort {
   std::string type;        ///< "float64", "Pose"
   std::string unit;        ///< solved; "1" for none
   std::string shape;       ///< "" scalar, "[6]", "[ndof<=10]"
+  std::string frame;       ///< as declared: the coordinate frame; may be empty
   Place at;                ///< of the alias, otherwise of the task
 };
 

@@ -5,9 +5,8 @@
 #include "chimera/analysis/link_age.h"
 #include "chimera/analysis/mode_report.h"
 #include "chimera/base/hosted/wording.h"
-#include "chimera/cli/files/graph_of.h"
 #include "chimera/cli/files/modes_text.h"
-#include "chimera/draw/graph.h"
+#include "chimera/draw/graph_of.h"
 #include "chimera/runtime/hosted/together.h"
 
 namespace chimera::cli {
@@ -117,7 +116,7 @@ CommandResult check(const CheckOptions& options, const Workplace& workplace) {
     output.out = verdict_text(*verdict.configuration, true);
     return output;
   }
-  const draw::Graph graph = graph_of(*verdict.configuration);
+  const draw::Graph graph = draw::graph_of(*verdict.configuration);
   output.out = options.graph == "dot"   ? draw::dot(graph)
                : options.graph == "svg" ? draw::svg(graph)
                                         : draw::text(graph);

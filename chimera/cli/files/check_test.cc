@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/cli/files/check.h"
 
-#include "chimera/cli/files/graph_of.h"
 #include "chimera/cli/files/testing/test_place.h"
 
 namespace chimera::cli {
@@ -187,25 +186,6 @@ TEST(CheckModes, AsJsonHasEveryKey) {
   EXPECT_EQ(output.out.substr(0, begin.size()), begin);
   const std::string end = "],\"by_operator_only\":[\"late\"],\"warnings\":[]}\n";
   EXPECT_EQ(output.out.substr(output.out.size() - end.size()), end);
-}
-
-TEST(GraphOf, HasEveryTaskWithItsPortsAndRate) {
-  const Library library = test_library();
-  const Configuration configuration = test_configuration(
-      "subsystem: s\ntasks:\n  a: {component: t_counter, rate: 50 Hz}\n  b: "
-      "{component: t_counter, rate: 1 kHz, alias: {count: n, dt: d, now: w, deadline: l, cycles: c, "
-      "dropped: o, illegal: i}}\n",
-      library);
-  const draw::Graph graph = graph_of(configuration);
-  EXPECT_EQ(graph.title, "s");
-  ASSERT_EQ(graph.boxes.size(), 2u);
-  EXPECT_EQ(graph.boxes[0].rate, "50 Hz");
-  EXPECT_EQ(graph.boxes[1].rate, "1 kHz");
-  EXPECT_EQ(graph.boxes[1].component, "t_counter");
-  ASSERT_EQ(graph.boxes[1].ports.size(), 7u);
-  EXPECT_EQ(graph.boxes[1].ports[0].name, "count");
-  EXPECT_EQ(graph.boxes[1].ports[0].variable, "n");
-  EXPECT_EQ(graph.boxes[1].ports[0].kind, draw::PortKind::kOut);
 }
 
 }  // namespace

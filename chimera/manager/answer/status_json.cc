@@ -161,7 +161,7 @@ Json task_json(const ManagerState& state, TaskId task, Nanoseconds at) {
 
 Json port_json(const ConfiguredPort& port) {
   return {{"port", port.name}, {"kind", kind_name(port.kind)}, {"variable", port.variable}, {"type", port.type},
-          {"unit", port.unit}, {"shape", port.shape}};
+          {"unit", port.unit}, {"shape", port.shape}, {"frame", or_null(port.frame)}};
 }
 
 Json described_task(const ManagerState& state, const ConfiguredTask& task) {
@@ -180,6 +180,18 @@ Json described_task(const ManagerState& state, const ConfiguredTask& task) {
           {"ports", std::move(ports)}};
 }
 
+/// The range that all consumers of the variable declare together; each limit is null if none declares it.
+std::pair<Json, Json> range_of(const Configuration& configuration, const ConfiguredVariable& variable) {
+  Json least, most;
+  for (const PortRef& ref : variable.consumers) {
+    const PortSpec& port = configuration.spec().tasks[ref.task].ports[ref.port];
+    if (!port.has_range) continue;
+    least = least.is_null() ? port.min : std::max(port.min, least.as_double());
+    most = most.is_null() ? port.max : std::min(port.max, most.as_double());
+  }
+  return {std::move(least), std::move(most)};
+}
+
 Json described_variable(const Configuration& configuration, const ConfiguredVariable& variable) {
   const auto names = [&](const std::vector<PortRef>& refs) {
     Json all = Json::array();
@@ -189,14 +201,31 @@ Json described_variable(const Configuration& configuration, const ConfiguredVari
     }
     return all;
   };
+  const bool is_operators = variable.is_given && !variable.is_constant && !variable.consumers.empty();
+  auto [least, most] = is_operators ? range_of(configuration, variable) : std::pair<Json, Json>();
   return {{"variable", variable.name},
           {"constant", variable.is_constant},
           {"given", variable.is_given},
+          {"operator", is_operators},
+          {"least", std::move(least)},
+          {"most", std::move(most)},
           {"type", variable.type},
           {"unit", variable.unit},
           {"shape", variable.shape},
           {"producers", names(variable.producers)},
           {"consumers", names(variable.consumers)}};
+}
+
+/// The switch that is not decided yet; null if there is none.
+Json switch_json(const ManagerState& state) {
+  const SwitchAgreement agreement(state.page.switching, state.keeper.origin);
+  const PlanWord plan = agreement.plan();
+  const ApplicationSpec& spec = state.spec();
+  const auto order = plan.is_open() ? agreement.order(plan, spec.sets.size(), spec.tasks.size()) : std::nullopt;
+  if (!order) return nullptr;
+  return {{"to", order->after == kNoSet ? Json() : Json(spec.sets[order->after].name)},
+          {"progress", phase_word(plan.phase)},
+          {"deadline_ns", order->until.count}};
 }
 
 }  // namespace
@@ -218,6 +247,11 @@ std::string fault_text(const ManagerState& state, TaskId task) {
   const FaultRecord fault = state.fault(task);
   if (fault.count == 0) return "";
   return std::string(method_name(fault.method)) + ": " + fault.last.text;
+}
+
+const char* phase_word(SwitchPhase phase) {
+  constexpr const char* kWords[] = {"aborted", "arming", "agreeing", "committed"};
+  return kWords[static_cast<unsigned>(phase)];
 }
 
 std::string configuration_name(const ManagerState& state) {
@@ -242,6 +276,7 @@ Json status_json(const ManagerState& state, Nanoseconds at) {
           {"started_ns", started == 0 ? Json() : Json(started)},
           {"ending", state.is_ending()},
           {"flag", flag_json(state)},
+          {"switch", switch_json(state)},
           {"keeper", {{"pid", state.keeper_pid}, {"hang", or_null(state.keeper_hang)}}},
           {"guard", guard_json(state)},
           {"face", face_json(state)},

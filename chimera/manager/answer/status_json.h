@@ -21,6 +21,8 @@ Json events_json(const ManagerState& state, std::uint64_t since, std::size_t lim
 Json library_json(const ManagerState& state);
 /// The last fault of a task as "cycle: its words"; "" if there was none.
 std::string fault_text(const ManagerState& state, TaskId task);
+/// "arming", "agreeing", "committed" or "aborted".
+const char* phase_word(SwitchPhase phase);
 /// Name of the configuration whose tasks are ON, exactly; "" if it has no name.
 std::string configuration_name(const ManagerState& state);
 

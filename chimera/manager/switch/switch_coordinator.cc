@@ -9,6 +9,7 @@
 #include "chimera/control/receipt/receipt_json.h"
 #include "chimera/control/receipt/receipt_text.h"
 #include "chimera/control/receipt/switch_reason.h"
+#include "chimera/manager/answer/status_json.h"
 
 namespace chimera::manager {
 namespace {
@@ -163,14 +164,9 @@ std::string SwitchCoordinator::under_way() const {
 }
 
 std::string SwitchCoordinator::progress() const {
-  const std::string until = ", until " + time_of_day(present_->begun.order.until);
-  switch (agreement().plan().phase) {
-    case SwitchPhase::kPrepared: return "arming" + until;
-    case SwitchPhase::kProposed: return "agreeing" + until;
-    case SwitchPhase::kCommitted: return "committed";
-    case SwitchPhase::kAborted: return "aborted";
-  }
-  return "?";
+  const PlanWord plan = agreement().plan();
+  const std::string until = plan.is_open() ? ", until " + time_of_day(present_->begun.order.until) : "";
+  return phase_word(plan.phase) + until;
 }
 
 bool SwitchCoordinator::is_free() const noexcept {

@@ -87,11 +87,14 @@ inline PortDescriptor device_port(const std::string& name, std::uint32_t kind, b
 inline Bundle fake_bundle(const std::string& text = kFakeText) {
   Descriptor lamp = test_component("lamp", {test_port("lit", CHIMERA_OUT_VAR)});
   lamp.methods[CHIMERA_SYNC] = true;
+  PortDescriptor kp = test_port("kp", CHIMERA_IN_VAR, "N.m/rad", "[2]"), angle = test_port("y", CHIMERA_IN_VAR, "rad");
+  kp.has_range = true;
+  kp.max = 5000;
+  angle.frame = "base";
   Library library = Library::of(
       {test_component("sensor", {test_port("x", CHIMERA_OUT_VAR, "rad", "[2]")}),
        test_component("filter", {test_port("x", CHIMERA_IN_VAR, "rad", "[2]"), test_port("y", CHIMERA_OUT_VAR, "rad")}),
-       test_component("law", {test_port("y", CHIMERA_IN_VAR, "rad"), test_port("kp", CHIMERA_IN_VAR, "N.m/rad", "[2]"),
-                              test_port("tau", CHIMERA_OUT_VAR, "N.m")}),
+       test_component("law", {angle, kp, test_port("tau", CHIMERA_OUT_VAR, "N.m")}),
        lamp,
        test_component("arm", {test_port("q", CHIMERA_OUT_VAR, "rad"), device_port("held", CHIMERA_OUT_VAR, true),
                               device_port("device", CHIMERA_RESOURCE, false)}),

@@ -31,7 +31,7 @@ std::size_t Variables::find(std::string_view name) const noexcept {
 bool Variables::is_legal(const std::vector<bool>& on) const noexcept { return is_legal_set(variables_, on); }
 
 std::string Variables::explain(const std::vector<bool>& on, std::span<const TaskSpec> tasks) const {
-  const std::string text = fault(on, tasks), help = text.empty() ? "" : remedy(on, tasks);
+  const std::string text = fault(on, tasks), help = text.empty() ? "" : remedy(smallest_legal(on), tasks);
   return text + (help.empty() ? "" : "; " + help);
 }
 
@@ -52,9 +52,8 @@ std::string Variables::fault(const std::vector<bool>& on, std::span<const TaskSp
   return text;
 }
 
-std::string Variables::remedy(const std::vector<bool>& on, std::span<const TaskSpec> tasks) const {
-  const std::string names = smallest_legal(on, tasks);
-  return names.empty() ? "" : "the smallest legal set is: " + names;
+std::string Variables::remedy(const std::vector<bool>& smallest, std::span<const TaskSpec> tasks) {
+  return smallest.empty() ? "" : "the smallest legal set is: " + names_in(smallest, tasks);
 }
 
 namespace {
@@ -65,11 +64,11 @@ constexpr int kTries = 20'000;  // sets looked at: more than any application has
 
 // Adds a producer of each missing variable until nothing is missing, any of them where there are several: the
 // smallest of the sets found, the first in the order of the description among equals.
-std::string Variables::smallest_legal(std::vector<bool> on, std::span<const TaskSpec> tasks) const {
+std::vector<bool> Variables::smallest_legal(std::vector<bool> on) const {
   std::vector<bool> best;
   int tries = kTries;
   complete(on, best, tries);
-  return names_in(best, tasks);
+  return best;
 }
 
 // Leaves `on` as it was, and in `best` the smallest legal set that holds it; gives up after `tries`.

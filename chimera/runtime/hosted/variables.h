@@ -31,12 +31,14 @@ class Variables {
   /// Says what is illegal and names the smallest legal set that holds `on`, where there is one. Empty when `on` is
   /// legal.
   std::string explain(const std::vector<bool>& on, std::span<const TaskSpec> tasks) const;
-  /// The two halves of explain(): what is illegal, and "the smallest legal set is: servo hold". Each may be empty.
+  /// The first half of explain(): what is illegal. Empty when `on` is legal.
   std::string fault(const std::vector<bool>& on, std::span<const TaskSpec> tasks) const;
-  std::string remedy(const std::vector<bool>& on, std::span<const TaskSpec> tasks) const;
+  /// The smallest legal set that holds `on`; empty: none was found.
+  std::vector<bool> smallest_legal(std::vector<bool> on) const;
+  /// The second half of explain(): "the smallest legal set is: servo hold"; "" for an empty set.
+  static std::string remedy(const std::vector<bool>& smallest, std::span<const TaskSpec> tasks);
 
  private:
-  std::string smallest_legal(std::vector<bool> on, std::span<const TaskSpec> tasks) const;
   void complete(std::vector<bool>& on, std::vector<bool>& best, int& tries) const;
 
   std::span<const Variable> variables_;
