@@ -164,8 +164,9 @@ class AccessTest(PageTest):
         self.page.choose("task0")
         self.page.script("document.activeElement.blur()")
         wanted = ("select[aria-label=Subsystem]", self.page.button("Switch configuration"),
-                  self.page.button("More acts"), self.page.button("Raise the FLAG"), "g.box", "#set-wish", "input[aria-label='wish, slider']",
-                  self.page.button("off task0"), "#tab-events", "input[aria-label='Filter of events']")
+                  self.page.button("More acts"), self.page.button("Raise the FLAG"), "g.box", "#set-wish",
+                  "input[aria-label='wish, slider']", self.page.button("off task0"), "#tab-events",
+                  "input[aria-label='Filter of events']")
         for selector in wanted:
             self.page.tab_to(selector)
             shown = self.page.script(

@@ -228,10 +228,13 @@ class Observer(PageTest):
         self.page.press_with(Keys.SHIFT, "F")
         self.assertEqual(self.page.attribute("#set-wish", "readOnly"), "true")
         self.assertFalse(self.page.one("input[aria-label='wish, slider']").is_enabled())
+        self.page.click(self.page.button("Switch configuration"))
+        self.page.await_text("[data-plan=first]", "OFF")
+        self.page.click(self.page.button("Switch to first"))
         self.page.click(self.page.button("More acts"))
         self.assertIn("role 'configure'", self.page.attribute(self.page.button("End the subsystem"), "title"))
         self.assertEqual([request["method"] for request in door.requests if request["method"] not in
-                          ("hello", "status", "describe", "subscribe")], [])
+                          ("hello", "status", "describe", "subscribe", "plan")], [])
 
     def test_what_is_refused_for_a_role_says_so(self):
         subject = Subject.chain()

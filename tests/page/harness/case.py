@@ -152,6 +152,7 @@ def main():
             PageTest.browser.close()
         kind, _, path = os.environ.get("GTEST_OUTPUT", "").partition(":")
         if kind == "xml" and path:
+            pathlib.Path(path).parent.mkdir(parents=True, exist_ok=True)
             xml.ElementTree(root).write(path)
     print(f"{result.testsRun} tests, {len(result.failures) + len(result.errors)} failed")
     return 0 if result.testsRun and result.wasSuccessful() else 1
