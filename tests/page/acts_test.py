@@ -218,7 +218,7 @@ class Observer(PageTest):
         subject.role = "observe"
         door = self.look_at(Door(self.runtime, subject))
         self.page.choose("task1")
-        self.assertEqual(self.page.root("role"), "observe")
+        self.page.await_root("role", "observe")
         for label in ("off task1", "kill task1", "Raise the FLAG"):
             button = self.page.button(label)
             self.assertEqual(self.page.attribute(button, "aria-disabled"), "true", label)

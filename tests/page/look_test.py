@@ -139,7 +139,7 @@ class LookTest(PageTest):
         with door.change() as subject:
             subject.flag_by = ["servo"]
         self.page.await_text("[data-flag-by]", "servo")
-        self.assertEqual(self.page.root("flag"), "up")
+        self.page.await_root("flag", "up")
         self.assertEqual(self.page.all(self.page.button("Lower the FLAG")), [])
 
     def test_the_last_event_comes_first_and_the_filter_finds_words(self):

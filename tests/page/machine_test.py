@@ -178,8 +178,9 @@ class Losses(MachineTest):
         self.page.await_root("manager", str(before["starts"] + 1))
         self.machine.signal("off", "shown")
         self.page.await_state("shown", "OFF")
-        self.await_event(self.machine.call("events")["last"])
-        self.assertEqual(self.shown_events(), [event["number"] for event in self.machine.events()])
+        numbers = [event["number"] for event in self.machine.events()]
+        self.await_event(numbers[-1])
+        self.assertEqual([number for number in self.shown_events() if number <= numbers[-1]], numbers)
         self.assertEqual(self.page.root("gaps"), "0")
 
     def test_a_killed_process_is_said_and_its_values_come_back(self):
@@ -189,8 +190,9 @@ class Losses(MachineTest):
         before = self.machine.rtpu("back")
         self.assertTrue(self.machine.kill(before["pid"]))
         self.machine.await_restart("back", before)
-        ended = self.machine.await_event(since, "rtpu-ended", rtpu="back")
-        self.page.await_one(f"[data-event='{ended['number']}']")
+        for kind in ("rtpu-ended", "rtpu-restarted"):
+            event = self.machine.await_event(since, kind, rtpu="back")
+            self.page.await_one(f"[data-event='{event['number']}']")
         self.page.await_state("strong", "ON")
         self.page.await_one("text.value[data-value=torque]:not(.old)")
         self.assertEqual(self.machine.state("source"), "ON")
@@ -202,11 +204,10 @@ class Losses(MachineTest):
             self.assertTrue(self.machine.kill(before["pid"]))
             await_that(lambda: (now := self.machine.rtpu("back"))["given_up"]
                        or now["alive"] and now["incarnation"] > before["incarnation"], "the next incarnation")
-        self.page.await_text(".banner.error", "rtpu back has ended")
+        self.page.await_text(".banner.error", "It is not started again")
         self.page.await_one(f"{self.page.box('strong')}.dead")
         self.page.await_one("text.value[data-value=torque].old")
         self.page.await_one("text.value[data-value=total]:not(.old)")
-        self.assertIn("It is not started again", self.page.text(".banner.error"))
 
     def test_a_new_link_goes_on_where_the_page_was(self):
         self.look()
@@ -231,11 +232,15 @@ class Losses(MachineTest):
     def test_the_end_of_a_page_changes_nothing(self):
         self.look()
         self.await_event(self.machine.call("events")["last"])
-        before = (self.machine.on(), self.machine.events())
+        before = (self.machine.on(), self.acts())
         self.browser.close_tabs()
         self.browser.new_tab()
         self.machine.await_cycles("source")
-        self.assertEqual((self.machine.on(), self.machine.events()), before)
+        self.assertEqual((self.machine.on(), self.acts()), before)
+
+    def acts(self):
+        """The events without those of a busy CPU, which come at any time."""
+        return [event for event in self.machine.events() if event["kind"] not in ("miss", "blame", "demoted", "stale")]
 
     def test_a_subsystem_that_ends_is_said_and_shown_when_it_runs_again(self):
         self.look()

@@ -32,17 +32,18 @@ class Page:
 
     def one(self, selector):
         """The element, once it is there."""
-        self.await_that(f"document.querySelector({quoted(selector)})", selector)
-        return self.driver.find_element(By.CSS_SELECTOR, selector)
+        return self.await_that(f"document.querySelector({quoted(selector)})", selector)
 
     def text(self, selector):
-        return self.one(selector).get_property("textContent")
+        return self.await_that(f"[document.querySelector({quoted(selector)}).textContent]", selector)[0]
 
     def texts(self, selector):
         return self.script("return [...document.querySelectorAll(arguments[0])].map(e => e.textContent)", selector)
 
     def attribute(self, selector, name):
-        return self.one(selector).get_attribute(name)
+        """The property of that name as text, or else the attribute."""
+        return self.await_that(f"((e, name) => [name in e ? String(e[name]) : e.getAttribute(name)])"
+                               f"(document.querySelector({quoted(selector)}), {quoted(name)})", selector)[0]
 
     def root(self, name):
         """An attribute data-NAME of the root."""
