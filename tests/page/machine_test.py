@@ -56,6 +56,19 @@ class Looking(MachineTest):
         for text in drawn["texts"]:
             self.assertIn(text, texts)
 
+    def test_no_text_of_the_picture_covers_another(self):
+        self.look()
+        self.page.await_one("text.value[data-value=smooth]:not(:empty)")
+        self.page.await_one("text.value[data-value=bias]:not(:empty)")
+        covered = self.page.script("""
+          const place = (e) => {
+            const box = e.getBBox(), size = parseFloat(getComputedStyle(e).fontSize), base = e.y.baseVal[0].value;
+            return [e.textContent, box.x, box.x + box.width, base - 0.75 * size, base + 0.1 * size]; };
+          const all = [...document.querySelectorAll('svg.picture text')].filter((e) => e.textContent).map(place);
+          return all.flatMap((a, i) => all.slice(i + 1)
+            .filter((b) => a[1] < b[2] && b[1] < a[2] && a[3] < b[4] && b[3] < a[4]).map((b) => [a[0], b[0]]));""")
+        self.assertEqual(covered, [])
+
     def test_off_and_on_are_shown_and_reach_the_tasks(self):
         self.look()
         self.assertEqual(self.page.states(), {"source": "ON", "trim": "ON", "strong": "ON", "gentle": "OFF",

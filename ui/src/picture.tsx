@@ -7,7 +7,7 @@ import { rate } from "./text";
 import { besidePort, LiveValues } from "./values";
 
 /** Room right of a port for its value, and places of texts around it: docs/formats/web.md, "The picture". */
-const BELOW = 9, RIGHT = 4, STUB = 20;
+const BELOW = 9, BELOW_NAME = 15, RIGHT = 4, STUB = 20;
 
 interface ValueProps { port: PicturePort; values: LiveValues }
 
@@ -24,7 +24,7 @@ const PortValue = memo(function PortValue({ port, values }: ValueProps) {
     element.classList.toggle("invalid", !reading.valid);
   }), [values, port.variable]);
   return <text ref={text} className="value" data-value={port.variable} x={port.x + (isOut ? RIGHT : -STUB)}
-               y={port.y + BELOW} textAnchor={isOut ? "start" : "end"} />;
+               y={port.y + (isOut ? BELOW : BELOW_NAME)} textAnchor={isOut ? "start" : "end"} />;
 });
 
 interface BoxProps {
