@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # Needs: demo chimera-web component_gain_files
 """Row 22, the page on a subsystem of 100 tasks, with 200 values in its picture ten times a second, in Debian's Chromium
-without a GPU: time from the request to the first box; its files, compressed; mean time of a frame, at rest and while
-the picture is panned, beside an empty page in the same browser, in turn; processor time of the manager and of chimera-web;
-time from the death of the manager to the page with the next one."""
+without a GPU. Figures: time from the request to the first box; its files, compressed; mean time of a frame at rest and
+while the picture is panned, beside an empty page in the same browser, in turn; processor time of the manager and of
+chimera-web; time from the death of the manager to the page with the next one."""
 import gzip
 import json
 import os

@@ -31,7 +31,8 @@ export function machineBanners(state: MachineState, isBenchOpen: boolean): Banne
   for (const rtpu of status.rtpus) {
     if (!rtpu.alive && rtpu.phase !== "starting")
       banners.push({ kind: "error", text: `rtpu ${rtpu.name} has ended${rtpu.last_end ? `: ${rtpu.last_end}` : ""}. ` +
-        `Its values are old.${rtpu.given_up ? ` It is not started again${rtpu.remedy ? `: ${rtpu.remedy}` : ""}.` : ""}` });
+        "Its values are old." +
+        (rtpu.given_up ? ` It is not started again${rtpu.remedy ? `: ${rtpu.remedy}` : ""}.` : "") });
     if (rtpu.hang) banners.push({ kind: "error", text: `rtpu ${rtpu.name} hangs: ${rtpu.hang}` });
     if (rtpu.unguarded) banners.push({ kind: "error", text: rtpu.unguarded });
     if (rtpu.lost_rights) banners.push({ kind: "warning", text: `rtpu ${rtpu.name}: ${rtpu.lost_rights}` });

@@ -110,7 +110,8 @@ const status = (now: number, tasks: TaskStatus[]): Status => ({
   subsystem: "s", configuration: "", now_ns: now, origin_ns: 1, started_ns: 1, ending: false,
   flag: { up: false, by: [] }, keeper: { pid: 1, hang: null }, guard: null,
   rtpus: [{ name: "servo", cpu: 1, policy: "muf", executor: "executive", pid: 2, alive: true, phase: "serving",
-    hang: null, restarts: 0, last_end: null, given_up: false, remedy: null, running: null, not_real_time: null, lost_rights: null,
+    hang: null, restarts: 0,
+    last_end: null, given_up: false, remedy: null, running: null, not_real_time: null, lost_rights: null,
     unguarded: null, flag: false }], tasks,
 });
 
