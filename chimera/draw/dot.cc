@@ -29,7 +29,7 @@ std::map<std::string, VariableLine> lines_of(const Graph& graph) {
   std::map<std::string, VariableLine> lines;
   for (const Box& box : graph.boxes) {
     for (const Port& port : box.ports) {
-      if (port.kind == PortKind::kResource || port.variable.empty()) continue;
+      if (port.kind == PortKind::kResource || port.variable.empty() || !port.is_drawn) continue;
       VariableLine& line = lines[port.variable];
       (is_output(port.kind) ? line.from : line.to).push_back(backslashed(box.name));
       line.is_constant = is_constant(port.kind);

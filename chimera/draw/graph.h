@@ -17,6 +17,7 @@ struct Port {
   std::string name;
   std::string variable;      ///< empty: not linked; a resource never is
   std::string written = {};  ///< value in the file, of a resource or an unlinked constant; may be empty
+  bool is_drawn = true;      ///< false: only text() has it
 };
 
 /// A task.

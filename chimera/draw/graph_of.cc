@@ -52,12 +52,14 @@ Box box_of(const ConfiguredTask& task, const DraftTask& draft, const Names& read
   box.rate = rate_text(task.rate_hz);
   for (const ConfiguredPort& port : task.ports) {
     const auto kind = kind_of(port.kind);
-    if (!kind || (*kind == PortKind::kOutConst && !read_constants.contains(port.variable))) continue;
+    if (!kind) continue;
     const bool is_resource = *kind == PortKind::kResource;
     const auto written = written_at(is_resource ? draft.resources : draft.constants, port.name);
-    if (*kind == PortKind::kInConst && port.variable.empty() && !written) continue;  // a default of the component
-    const bool shows_value = is_resource || *kind == PortKind::kInConst;
-    box.ports.push_back({*kind, port.name, port.variable, shows_value ? written.value_or("") : ""});
+    const bool is_read = *kind != PortKind::kOutConst || read_constants.contains(port.variable);
+    const bool is_default = *kind == PortKind::kInConst && port.variable.empty() && !written;
+    const bool has_value = is_resource || *kind == PortKind::kInConst;
+    box.ports.push_back(
+        {*kind, port.name, port.variable, has_value ? written.value_or("") : "", is_read && !is_default});
   }
   return box;
 }

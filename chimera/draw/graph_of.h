@@ -8,7 +8,7 @@
 namespace chimera::draw {
 
 /// Every task with its ports, or the tasks of `set` alone; variables that the file or the operator gives are named as
-/// such. A constant is there if the file writes its value, if it is linked, or if another of the tasks reads it.
+/// such. A constant is drawn if the file writes its value, if it is linked, or if another of the tasks reads it.
 /// Context: setup.
 Graph graph_of(const Configuration& configuration, const ConfiguredSet* set = nullptr);
 

@@ -60,20 +60,23 @@ std::string text_of(const Graph& graph) {
   for (const Box& box : graph.boxes) {
     text += box.name + " " + box.component + " " + box.rate + ":";
     for (const Port& each : box.ports)
-      text += std::string(" ") + kKinds[static_cast<int>(each.kind)] + " " + each.name + "=" + each.variable +
-              each.written;
+      if (each.is_drawn)
+        text += std::string(" ") + kKinds[static_cast<int>(each.kind)] + " " + each.name + "=" + each.variable +
+                each.written;
     text += "\n";
   }
   return text;
 }
 
-TEST(GraphOf, LeavesOutDefaultsAndConstantsThatNoTaskReads) {
+TEST(GraphOf, DrawsNoDefaultsAndNoConstantsThatNoTaskReads) {
   const Graph graph = graph_of(legal(kText));
   EXPECT_EQ(graph.title, "demo");
   EXPECT_EQ(text_of(graph),
             "robot robot 1 kHz: in tau=tau out q=q out-const gear=gear resource device=/dev/robot\n"
             "law law 50 Hz: in q=q out tau=tau in-const gear=gear in-const limit=2\n"
             "push push 1 kHz: out tau=tau\n");
+  EXPECT_EQ(graph.boxes[0].ports.size(), 5u) << "the text lists all of them";
+  EXPECT_EQ(graph.boxes[1].ports.size(), 5u);
 }
 
 TEST(GraphOf, DrawsTheTasksOfOneConfiguration) {

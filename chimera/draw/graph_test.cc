@@ -241,7 +241,7 @@ TEST(Text, DrawsInputsLeftAndOutputsRight) {
             "                       u (given) \u2500\u25b6\u2502 gain                     \u2502\u2500\u25b6 y (log)\n"
             "                                   \u2502 1 kHz                    \u2502\n"
             "                                   \u2570" + bar + "\u256f\n"
-            "                                     \u2195 dev = /dev/x\n"
+            "                                     \u2195 dev\n"
             "                                   \u256d" + bar + "\u256e\n"
             "                        y (gain) \u2500\u25b6\u2502 log                      \u2502\n"
             "                                   \u2502 csv_log                  \u2502\n"

@@ -53,7 +53,10 @@ std::string output_text(const Graph& graph, const Port& port) {
   return port.variable + (to.empty() ? "" : " (" + to + ")");
 }
 
-std::string shown(const Port& port) { return cut(link_text(port, " = "), kInner + kRight); }
+std::string link_text(const Port& port) {
+  const bool has_other = !port.variable.empty() && port.variable != port.name;
+  return cut(has_other ? port.name + " = " + port.variable : port.name, kInner + kRight);
+}
 
 void append_sides(std::string& out, const Graph& graph, const Box& box) {
   std::vector<const Port*> ins, outs;
@@ -75,14 +78,14 @@ void append_sides(std::string& out, const Graph& graph, const Box& box) {
 void append_box(std::string& out, const Graph& graph, const Box& box) {
   const std::string indent(kSide + 3, ' ');
   for (const Port& port : box.ports) {
-    if (port.kind == PortKind::kInConst) out += indent + "  " + shown(port) + " \u25bc\n";
-    if (port.kind == PortKind::kOutConst) out += indent + "  " + shown(port) + " \u25b2\n";
+    if (port.kind == PortKind::kInConst) out += indent + "  " + link_text(port) + " \u25bc\n";
+    if (port.kind == PortKind::kOutConst) out += indent + "  " + link_text(port) + " \u25b2\n";
   }
   out += indent + "\u256d" + bar(kInner + 2) + "\u256e\n";
   append_sides(out, graph, box);
   out += indent + "\u2570" + bar(kInner + 2) + "\u256f\n";
   for (const Port& port : box.ports) {
-    if (port.kind == PortKind::kResource) out += indent + "  \u2195 " + shown(port) + "\n";
+    if (port.kind == PortKind::kResource) out += indent + "  \u2195 " + link_text(port) + "\n";
   }
 }
 

@@ -10,6 +10,12 @@
 namespace chimera::draw {
 namespace {
 
+/// The name of a port and, if it differs, its link or its written value.
+std::string link_text(const Port& port, const char* between) {
+  const std::string& to = port.variable.empty() ? port.written : port.variable;
+  return to.empty() || to == port.name ? port.name : port.name + between + to;
+}
+
 Placed measure(const Box& box, std::size_t column) {
   Placed placed;
   placed.box = &box;
@@ -17,6 +23,7 @@ Placed measure(const Box& box, std::size_t column) {
   placed.head = head_of(box);
   int left = 0, right = 0;
   for (const Port& port : box.ports) {
+    if (!port.is_drawn) continue;
     if (port.kind == PortKind::kIn) placed.in.push_back(&port), left = std::max(left, width_of(port.name));
     if (port.kind == PortKind::kOut) placed.out.push_back(&port), right = std::max(right, width_of(port.name));
     if (port.kind == PortKind::kInConst || port.kind == PortKind::kOutConst) placed.above.push_back(&port);
@@ -107,11 +114,6 @@ std::vector<std::string> head_of(const Box& box) {
   if (!box.state.empty()) append_joined(state, " ", box.state);
   if (!state.empty()) lines.push_back(state);
   return lines;
-}
-
-std::string link_text(const Port& port, const char* between) {
-  const std::string& to = port.variable.empty() ? port.written : port.variable;
-  return to.empty() || to == port.name ? port.name : port.name + between + to;
 }
 
 Layout lay_out(const Graph& graph) {

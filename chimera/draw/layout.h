@@ -74,7 +74,5 @@ std::size_t crossings(const std::vector<Piece>& lines);
 
 /// The lines of text inside a box: name, component if it differs, rate and state.
 std::vector<std::string> head_of(const Box& box);
-/// The name of a port and, if it differs, its link or its written value.
-std::string link_text(const Port& port, const char* between);
 
 }  // namespace chimera::draw

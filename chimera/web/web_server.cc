@@ -150,10 +150,9 @@ void WebServer::Connection::take_head(Code error, std::size_t n) {
   if (error) return drop();
   in_size_ += n;
   verdict_ = judge({in_.data(), in_size_});
-  using Kind = GateVerdict::Kind;
-  if (verdict_.kind == Kind::kMore) return read_head();
-  if (verdict_.kind == Kind::kRefused) return refuse(verdict_.status, verdict_.sentence);
-  if (verdict_.kind == Kind::kFile)
+  if (verdict_.kind == GateVerdict::Kind::kMore) return read_head();
+  if (verdict_.kind == GateVerdict::Kind::kRefused) return refuse(verdict_.status, verdict_.sentence);
+  if (verdict_.kind == GateVerdict::Kind::kFile)
     return send_answer(answer(200, kPageFiles[verdict_.file].type, loop_.page()[verdict_.file]));
   if (verdict_.size != in_size_) return refuse(400, "bytes came before the WebSocket was open");
   upgrade();
@@ -192,6 +191,7 @@ void WebServer::Connection::upgrade() {
   socket_.control_callback([this](websocket::frame_type, boost::beast::string_view) { heard_ = now(); });
   // Not the bytes of the browser: Beast takes a head of at most 1536 bytes, and the cookies of other ports are longer.
   websocket::request_type request(boost::beast::http::verb::get, "/", 11);
+  request.set("Host", "localhost");
   request.set("Connection", "Upgrade");
   request.set("Upgrade", "websocket");
   request.set("Sec-WebSocket-Version", "13");

@@ -12,7 +12,7 @@ export function benchBanner(door: DoorState, sentence: string): Banner | null {
     return { kind: "error", text: "This link is old: chimera-web was started anew. What runs goes on. Open the link " +
       "that `chimera web` printed last; the page goes on where it was." };
   if (door === "lost")
-    return { kind: "lost", text: `No connection to chimera-web${sentence ? ` (${sentence})` : ""}. What runs goes on; ` +
+    return { kind: "lost", text: `No connection to chimera-web${sentence && ` (${sentence})`}. What runs goes on; ` +
       "the values below are old. If chimera-web has ended, type `chimera web` and open its link: the page goes on " +
       "where it was." };
   return null;
@@ -30,8 +30,9 @@ export function machineBanners(state: MachineState, isBenchOpen: boolean): Banne
   if (!status || door === "gone") return banners;
   for (const rtpu of status.rtpus) {
     if (!rtpu.alive && rtpu.phase !== "starting")
-      banners.push({ kind: "error", text: `rtpu ${rtpu.name} has ended${rtpu.last_end ? `: ${rtpu.last_end}` : ""}. Its ` +
-        `values are old.${rtpu.given_up ? ` It is not started again${rtpu.remedy ? `: ${rtpu.remedy}` : ""}.` : ""}` });
+      banners.push({ kind: "error", text: `rtpu ${rtpu.name} has ended${rtpu.last_end ? `: ${rtpu.last_end}` : ""}. ` +
+        "Its values are old." +
+        (rtpu.given_up ? ` It is not started again${rtpu.remedy ? `: ${rtpu.remedy}` : ""}.` : "") });
     if (rtpu.hang) banners.push({ kind: "error", text: `rtpu ${rtpu.name} hangs: ${rtpu.hang}` });
     if (rtpu.unguarded) banners.push({ kind: "error", text: rtpu.unguarded });
     if (rtpu.lost_rights) banners.push({ kind: "warning", text: `rtpu ${rtpu.name}: ${rtpu.lost_rights}` });
@@ -43,8 +44,8 @@ export function machineBanners(state: MachineState, isBenchOpen: boolean): Banne
   if (status.ending) banners.push({ kind: "warning", text: `${name} is ending.` });
   const faulty = status.tasks.filter((task) => task.state === "ERROR");
   if (faulty.length > 0)
-    banners.push({ kind: "error", text: `In ERROR: ${faulty.map((task) => task.task + (task.fault ? ` (${task.fault})` : ""))
-      .join(", ")}` });
+    banners.push({ kind: "error", text: `In ERROR: ${faulty.map(
+      (task) => task.task + (task.fault ? ` (${task.fault})` : "")).join(", ")}` });
   return banners;
 }
 

@@ -44,7 +44,8 @@ export function Finder({ state, machines }: { state: MachineState | null; machin
              }} />
       <ul id="found" role="listbox" aria-label="Found">
         {list.map((one, i) => (
-          <li key={one.kind + one.name} id={`found-${i}`} role="option" aria-selected={i === at} onClick={() => take(one)}>
+          <li key={one.kind + one.name} id={`found-${i}`} role="option" aria-selected={i === at}
+              onClick={() => take(one)}>
             {one.name} <span className="soft">{one.kind}</span></li>))}
       </ul>
       {list.length === 0 && <p className="hint">Nothing has that name.</p>}

@@ -59,7 +59,8 @@ function MoreMenu({ machine, state }: { machine: Machine; state: MachineState })
     const answer = await machine.act("drill", {});
     if (!answer) return;
     const tasks = (answer.tasks as { task: string; verdict: string }[]).map((one) => `${one.task} ${one.verdict}`);
-    machine.say(`Drill: ${answer.safe ? "safe" : "NOT safe"} after ${Math.round(answer.flag_ns / 1e6)} ms: ${tasks.join(", ")}.`);
+    const after = Math.round(answer.flag_ns / 1e6);
+    machine.say(`Drill: ${answer.safe ? "safe" : "NOT safe"} after ${after} ms: ${tasks.join(", ")}.`);
   };
   return (
     <div className="menu" onKeyDown={onEscape(() => open(false))}>

@@ -25,7 +25,8 @@ function Acts({ machine, state, tasks }: { machine: Machine; state: MachineState
   return (
     <div className="acts" role="toolbar" aria-label={`Acts on ${names.join(", ")}`}>
       {ACTS.map((act) => {
-        const useless = tasks.some(act.fits) ? "" : `of no use: ${names.join(", ")} ${names.length > 1 ? "are" : "is"} ` +
+        const are = `${names.join(", ")} ${names.length > 1 ? "are" : "is"}`;
+        const useless = tasks.some(act.fits) ? "" : `of no use: ${are} ` +
           [...new Set(tasks.map((task) => task.state))].join(" and ");
         return (
           <Button key={act.name} label={`${act.name} ${names.join(", ")}`} title={`${act.help} (key ${act.key})`}
@@ -84,7 +85,8 @@ function Ports({ task, ports, values }: { task: string; ports: Port[]; values: L
 function Figures({ task }: { task: TaskStatus }) {
   const load = task.on_ns > 0 ? (100 * task.busy_ns) / task.on_ns : 0;
   const figures: [string, string][] = [
-    ["rate", rate(task.rate_hz)], ["rtpu", task.rtpu], ["budget", task.budget_ns > 0 ? duration(task.budget_ns) : "none"],
+    ["rate", rate(task.rate_hz)], ["rtpu", task.rtpu],
+    ["budget", task.budget_ns > 0 ? duration(task.budget_ns) : "none"],
     ["cycle, mean", duration(task.execution_ns.mean)], ["cycle, longest", duration(task.execution_ns.max)],
     ["response, longest", duration(task.response_ns.max)], ["load", `${load.toFixed(1)} %`],
     ["cycles", count(task.cycles)], ["missed", count(task.missed)], ["over budget", count(task.overrun)],
@@ -94,7 +96,8 @@ function Figures({ task }: { task: TaskStatus }) {
     <div key={name}><dt>{name}</dt><dd>{value}</dd></div>))}</dl>;
 }
 
-function OneTask({ described, task, values }: { described: DescribedTask | undefined; task: TaskStatus; values: LiveValues }) {
+function OneTask({ described, task, values }:
+  { described: DescribedTask | undefined; task: TaskStatus; values: LiveValues }) {
   return (
     <article aria-label={`Task ${task.task}`}>
       <h3>{task.task} <span className={`word state-${task.state}`}>{task.state}</span></h3>

@@ -7,7 +7,8 @@ import type { Machine } from "./machine";
 import { choose, view, zoomBy } from "./view";
 
 function isTypedInto(target: EventTarget | null): boolean {
-  return target instanceof HTMLElement && target.matches("input:not([type=checkbox]):not([type=range]), textarea, select");
+  return target instanceof HTMLElement &&
+    target.matches("input:not([type=checkbox]):not([type=range]), textarea, select");
 }
 
 /** The keys with Ctrl: true if the key was one of them. */

@@ -57,7 +57,8 @@ function useChoice(): void {
     const isThere = machines.some((one) => one.name === known);
     if (wished !== undefined) view.set({ machine: decodeURIComponent(wished) });
     else if (hello.file !== null && !isThere)
-      void machineOf(hello.file, machines).then((name) => { if (name !== "") view.set({ machine: name, chosen: [] }); });
+      void machineOf(hello.file, machines)
+        .then((name) => { if (name !== "") view.set({ machine: name, chosen: [] }); });
     else if (!isThere && machines.length > 0) view.set({ machine: machines[0]!.name, chosen: [] });
     if (machines.length > 0 || wished !== undefined) done(true);
   }, [machines, hello, isDone]);
@@ -66,7 +67,8 @@ function useChoice(): void {
 /** Tests and style sheets read the state of the page from its root element. */
 function mark(names: Record<string, string | number>): void {
   for (const [name, value] of Object.entries(names)) {
-    if (document.documentElement.dataset[name] !== String(value)) document.documentElement.dataset[name] = String(value);
+    const { dataset } = document.documentElement;
+    if (dataset[name] !== String(value)) dataset[name] = String(value);
   }
 }
 
@@ -171,7 +173,8 @@ function NoMachine({ hello, machines }: { hello: BenchHello | null; machines: Ma
 
 function HeaderOf({ machine, name }: { machine: Machine; name: string }) {
   const { machines, hello } = useStore(bench);
-  return <Header machine={machine} state={useStore(machine.state)} machines={machines ?? []} bench={hello} name={name} />;
+  const state = useStore(machine.state);
+  return <Header machine={machine} state={state} machines={machines ?? []} bench={hello} name={name} />;
 }
 
 function FinderOf({ machine }: { machine: Machine | null }) {

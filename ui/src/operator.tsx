@@ -62,7 +62,8 @@ const Field = memo(function Field({ machine, variable, why }: FieldProps) {
   const shown = typeof reading?.value === "number" ? scalar(present) : null;
   return (
     <div className="field">
-      <label htmlFor={`set-${name}`}>{name} <span className="unit">{variable.type}{variable.shape} {variable.unit}</span></label>
+      <label htmlFor={`set-${name}`}>{name}{" "}
+        <span className="unit">{variable.type}{variable.shape} {variable.unit}</span></label>
       <input id={`set-${name}`} value={typed ?? present} readOnly={why !== ""} title={why || "Enter sets the value"}
              className={typed === null || typed === present ? "" : "edited"}
              onFocus={() => { if (reading) type(present); }}

@@ -18,7 +18,8 @@ function EventLine({ event }: { event: Event }) {
       <span className="number">{event.number}</span> <time>{clock(event.wall_ns)}</time>{" "}
       <span className="kind">{event.kind}</span>{" "}
       {event.task !== undefined
-        ? <button type="button" className="link" onClick={() => choose([event.task as string])}>{where}</button> : where}{" "}
+        ? <button type="button" className="link" onClick={() => choose([event.task as string])}>{where}</button>
+        : where}{" "}
       {event.text}{event.by !== undefined && <span className="by"> by {event.by}</span>}
     </li>
   );
@@ -28,12 +29,15 @@ function Events({ state, chosen }: { state: MachineState; chosen: string[] }) {
   const [words, filter] = useState("");
   const found = useMemo(() => {
     const wanted = words.toLowerCase();
-    return state.events.filter((event) => (chosen.length === 0 || event.task === undefined || chosen.includes(event.task)) &&
-      (wanted === "" || `${event.kind} ${event.task ?? ""} ${event.rtpu ?? ""} ${event.text}`.toLowerCase().includes(wanted)));
+    const concerns = (event: Event) => chosen.length === 0 || event.task === undefined || chosen.includes(event.task);
+    const says = ({ kind, task, rtpu, text }: Event) =>
+      `${kind} ${task ?? ""} ${rtpu ?? ""} ${text}`.toLowerCase().includes(wanted);
+    return state.events.filter((event) => concerns(event) && (wanted === "" || says(event)));
   }, [state.events, words, chosen]);
   return (
     <>
-      <label>Filter <input value={words} onChange={(event) => filter(event.target.value)} aria-label="Filter of events" /></label>
+      <label>Filter <input value={words} onChange={(event) => filter(event.target.value)}
+                           aria-label="Filter of events" /></label>
       <span className="hint"> {found.length} of {state.events.length}
         {chosen.length > 0 && `, of ${chosen.join(", ")}`}
         {state.gaps > 0 && `; ${state.gaps} events are lost`}</span>
@@ -67,9 +71,11 @@ function ReceiptDetails({ receipt }: { receipt: Receipt }) {
   return (
     <details>
       <summary>{receipt.number}. {receiptText(receipt)} {receipt.wall_ns ? clock(receipt.wall_ns) : ""}</summary>
-      <p>{Object.entries(took).filter(([, ns]) => ns !== null).map(([part, ns]) => `${part} ${duration(ns)}`).join(", ")}
+      <p>{Object.entries(took).filter(([, ns]) => ns !== null)
+        .map(([part, ns]) => `${part} ${duration(ns)}`).join(", ")}
         {receipt.slow_why ? `; slow: ${receipt.slow_why}` : ""}</p>
-      <Table label="Tasks" heading={["task", "move", "lost", "longest delay"]} rows={(receipt.tasks ?? []).map((task) => [
+      <Table label="Tasks" heading={["task", "move", "lost", "longest delay"]}
+             rows={(receipt.tasks ?? []).map((task) => [
         task.task, task.move, count(task.lost), task.delay_ns === null ? "" : duration(task.delay_ns)])} />
       {(receipt.variables ?? []).length > 0 &&
         <Table label="Variables" heading={["variable", "from", "to", "step", "limit"]}
@@ -82,13 +88,15 @@ function ReceiptDetails({ receipt }: { receipt: Receipt }) {
 
 function Receipts({ machine, state }: { machine: Machine; state: MachineState }) {
   const switches = state.events.filter((event) => event.kind === "switch" || event.kind === "takeover").length;
-  const answer = useAnswer<{ receipts: Receipt[]; fault: string | null }>(machine, "receipts", '{"last": 50}', 0, switches);
+  const answer = useAnswer<{ receipts: Receipt[]; fault: string | null }>(
+    machine, "receipts", '{"last": 50}', 0, switches);
   const receipts = answer?.receipts ?? [];
   return (
     <>
       {answer?.fault && <p className="fault">Receipts are not filed: {answer.fault}</p>}
       {receipts.length === 0 && <p className="hint">No switch was asked for yet.</p>}
-      {[...receipts].reverse().map((one, i) => <ReceiptDetails key={`${one.wall_ns} ${one.number} ${i}`} receipt={one} />)}
+      {[...receipts].reverse().map((one, i) =>
+        <ReceiptDetails key={`${one.wall_ns} ${one.number} ${i}`} receipt={one} />)}
     </>
   );
 }
@@ -99,7 +107,8 @@ function Profile({ machine }: { machine: Machine }) {
     !spread || spread.count === 0 ? "" : duration(spread[key]);
   return <Table label="Profile" heading={["task", "state", "rtpu", "cycles", "mean", "longest", "response", "missed",
     "over budget", "dropped", "stale", "rejected", "faults"]} rows={(answer?.tasks ?? []).map((task) => [
-    <button type="button" className="link" onClick={() => choose([task.task])}>{task.task}</button>, task.state, task.rtpu,
+    <button type="button" className="link" onClick={() => choose([task.task])}>{task.task}</button>,
+    task.state, task.rtpu,
     count(task.cycles), time(task.execution_ns["cycle"], "mean"), time(task.execution_ns["cycle"], "max"),
     time(task.response_ns, "max"), count(task.missed), count(task.overrun), count(task.dropped), count(task.stale),
     count(task.rejected), count(task.faults)])} />;
@@ -107,8 +116,10 @@ function Profile({ machine }: { machine: Machine }) {
 
 /** The variables that a person may ask about: of the chosen tasks, outputs first. */
 function questionsOf(state: MachineState, chosen: string[]): string[] {
-  const ports = (state.description?.tasks ?? []).filter((task) => chosen.includes(task.task)).flatMap((task) => task.ports);
-  const of = (kind: string) => ports.filter((port) => port.kind === kind && port.variable !== "").map((p) => p.variable);
+  const ports = (state.description?.tasks ?? [])
+    .filter((task) => chosen.includes(task.task)).flatMap((task) => task.ports);
+  const of = (kind: string) => ports
+    .filter((port) => port.kind === kind && port.variable !== "").map((p) => p.variable);
   return [...new Set([...of("out-var"), ...of("in-var")])];
 }
 
@@ -119,7 +130,8 @@ function WhyRow({ link }: { link: WhyLink }) {
       <button type="button" className="link" onClick={() => showVariable(link.variable)}>{link.variable}</button>
       {" from "}
       {link.producer
-        ? <button type="button" className="link" onClick={() => choose([link.producer as string])}>{link.producer}</button>
+        ? <button type="button" className="link" onClick={() => choose([link.producer as string])}>
+            {link.producer}</button>
         : "no task"}
       {link.state ? ` (${link.state}, ${link.rtpu ?? ""})` : ""}: <strong>{link.verdict}</strong>
       {link.age_ns !== null ? `, ${duration(link.age_ns)} old` : ""} <span className="soft">{link.value}</span>
@@ -154,7 +166,8 @@ function Why({ machine, state, chosen, variable }:
   );
 }
 
-const NAMES: [Panel, string][] = [["events", "Events"], ["receipts", "Receipts"], ["profile", "Profile"], ["why", "Why"]];
+const NAMES: [Panel, string][] = [
+  ["events", "Events"], ["receipts", "Receipts"], ["profile", "Profile"], ["why", "Why"]];
 
 export function Panels({ machine, state, panel, chosen, variable }:
   { machine: Machine; state: MachineState; panel: Panel; chosen: string[]; variable: string }) {

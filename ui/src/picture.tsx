@@ -33,7 +33,8 @@ interface BoxProps {
   move: (event: KeyboardEvent, task: string) => void;
 }
 
-const TaskBox = memo(function TaskBox({ box, rateHz, state, isDead, isMissing, isChosen, isFirst, choose, move }: BoxProps) {
+const TaskBox = memo(function TaskBox(
+  { box, rateHz, state, isDead, isMissing, isChosen, isFirst, choose, move }: BoxProps) {
   const { x, y, width, height } = box;
   const words = `${box.task}, ${state}${isDead ? ", its rtpu has ended" : ""}, ${rate(rateHz)}`;
   const tag = isMissing ? `missed, ${state}` : state;
@@ -45,7 +46,8 @@ const TaskBox = memo(function TaskBox({ box, rateHz, state, isDead, isMissing, i
       <rect className="frame" x={x} y={y} width={width} height={height} rx={12} />
       {state === "ERROR" && <rect className="hatch" x={x} y={y} width={width} height={height} rx={12} />}
       {state === "ON" && <rect className="bar" x={x + 3} y={y + 12} width={4} height={height - 24} rx={2} />}
-      <rect className="tag" x={x + width - 8 - tag.length * 6.1} y={y - 8} width={tag.length * 6.1 + 4} height={14} rx={4} />
+      <rect className="tag" x={x + width - 8 - tag.length * 6.1} y={y - 8} width={tag.length * 6.1 + 4} height={14}
+            rx={4} />
       <text className={isMissing ? "state missing" : "state"} x={x + width - 6} y={y + 3} textAnchor="end">{tag}</text>
     </g>
   );
@@ -96,7 +98,8 @@ interface Props {
   chosen: string[]; variable: string; choose: (tasks: string[]) => void; showVariable: (variable: string) => void;
 }
 
-export function PictureView({ picture, tasks, before, dead, values, zoom, chosen, variable, choose, showVariable }: Props) {
+export function PictureView(
+  { picture, tasks, before, dead, values, zoom, chosen, variable, choose, showVariable }: Props) {
   const root = useRef<SVGSVGElement>(null);
   const latest = useRef({ chosen, picture });
   latest.current = { chosen, picture };

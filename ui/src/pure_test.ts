@@ -17,13 +17,15 @@ test("a number has three significant digits and at most seven characters", () =>
   for (let i = 0; i < 2000; ++i) {
     const value = (Math.random() - 0.5) * 10 ** (Math.random() * 18 - 9);
     assert.ok(short(value).length <= 7, `${value} became ${short(value)}`);
-    assert.ok(Math.abs(Number(short(value)) - value) <= Math.abs(value) * (short(value).includes("e") ? 0.5 : 0.06), `${value} became ${short(value)}`);
+    const least = Math.abs(value) * (short(value).includes("e") ? 0.5 : 0.06);
+    assert.ok(Math.abs(Number(short(value)) - value) <= least, `${value} became ${short(value)}`);
   }
 });
 
 test("a time has at most five characters up to a hundred days", () => {
   const cases: [number, string][] = [[0, "0ns"], [850, "850ns"], [1000, "1us"], [12_000, "12us"], [3.2e6, "3.2ms"],
-    [999_400, "999us"], [999_999, "1ms"], [1.2e9, "1.2s"], [45e9, "45s"], [120e9, "2min"], [7200e9, "2h"], [172800e9, "2d"]];
+    [999_400, "999us"], [999_999, "1ms"], [1.2e9, "1.2s"], [45e9, "45s"], [120e9, "2min"],
+    [7200e9, "2h"], [172800e9, "2d"]];
   for (const [ns, words] of cases) assert.equal(duration(ns), words);
   for (let ns = 1; ns < 8e15; ns *= 1.37) assert.ok(duration(ns).length <= 5, `${ns} became ${duration(ns)}`);
 });
@@ -40,7 +42,8 @@ test("rates, counts and paths are texts of people", () => {
 });
 
 test("a value beside its port is short, whatever its type", () => {
-  const cases: [unknown, string][] = [[null, "never"], [undefined, "never"], [true, "true"], [[1, 2], "1…"], [[], "[]"],
+  const cases: [unknown, string][] = [[null, "never"], [undefined, "never"], [true, "true"],
+    [[1, 2], "1…"], [[], "[]"],
     ["<b>bold</b>", "<b>bol…"], [{ position: [1] }, "{…}"], [[[0.25, 1]], "0.25……"]];
   for (const [value, words] of cases) assert.equal(valueText(value), words);
 });
@@ -106,8 +109,9 @@ const task = (name: string, change: Partial<TaskStatus>): TaskStatus => ({
 const status = (now: number, tasks: TaskStatus[]): Status => ({
   subsystem: "s", configuration: "", now_ns: now, origin_ns: 1, started_ns: 1, ending: false,
   flag: { up: false, by: [] }, keeper: { pid: 1, hang: null }, guard: null,
-  rtpus: [{ name: "servo", cpu: 1, policy: "muf", executor: "executive", pid: 2, alive: true, phase: "serving", hang: null,
-    restarts: 0, last_end: null, given_up: false, remedy: null, running: null, not_real_time: null, lost_rights: null,
+  rtpus: [{ name: "servo", cpu: 1, policy: "muf", executor: "executive", pid: 2, alive: true, phase: "serving",
+    hang: null, restarts: 0,
+    last_end: null, given_up: false, remedy: null, running: null, not_real_time: null, lost_rights: null,
     unguarded: null, flag: false }], tasks,
 });
 

@@ -25,7 +25,8 @@ export function receiptText(receipt: Receipt): string {
   const lost = (receipt.tasks ?? []).reduce((sum, task) => sum + task.lost, 0);
   const way = `${receipt.from ?? "?"} → ${receipt.to ?? "?"}`;
   if (receipt.end !== "done") return `${way}: ${receipt.end}${receipt.why ? `, ${receipt.why}` : ""}.`;
-  return `${way}: done in ${duration(took)}, ${receipt.way ?? ""}, ${lost === 0 ? "no cycle lost" : `${lost} cycles lost`}.`;
+  const cycles = lost === 0 ? "no cycle lost" : `${lost} cycles lost`;
+  return `${way}: done in ${duration(took)}, ${receipt.way ?? ""}, ${cycles}.`;
 }
 
 async function carryOut(machine: Machine, configuration: string): Promise<void> {
@@ -76,7 +77,10 @@ export function SwitchMenu({ machine, state }: { machine: Machine; state: Machin
                         press={() => { open(false); press(machine, name, plan); }}>{name}</Button>
                 <span className="plan" data-plan={name}>{plan ? planText(plan) : "…"}</span>
                 <Button label={`Draw only ${name}`} isPressed={state.drawn === name}
-                        press={() => { view.set({ chosen: [] }); void machine.draw(state.drawn === name ? "" : name); }}>
+                        press={() => {
+                          view.set({ chosen: [] });
+                          void machine.draw(state.drawn === name ? "" : name);
+                        }}>
                   draw only this</Button>
               </li>
             );

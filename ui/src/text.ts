@@ -24,7 +24,8 @@ export function duration(ns: number): string {
   for (const [limit, unit] of units) {
     if (ns < limit * 0.9995) {
       const value = ns / size;
-      return (value < 9.95 && unit.endsWith("s") && unit !== "ns" ? trimmed(value.toFixed(1)) : value.toFixed(0)) + unit;
+      const hasTenths = value < 9.95 && unit.endsWith("s") && unit !== "ns";
+      return (hasTenths ? trimmed(value.toFixed(1)) : value.toFixed(0)) + unit;
     }
     size = limit;
   }

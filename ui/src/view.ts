@@ -45,4 +45,5 @@ view.subscribe(() => {
 export const choose = (chosen: string[]): void => view.set({ chosen, variable: "" });
 export const showVariable = (variable: string): void => view.set({ variable, panel: "why" });
 export const ask = (question: Question | null): void => view.set({ question });
-export const zoomBy = (factor: number): void => view.set({ zoom: Math.min(4, Math.max(0.2, view.get().zoom * factor)) });
+export const zoomBy = (factor: number): void =>
+  view.set({ zoom: Math.min(4, Math.max(0.2, view.get().zoom * factor)) });

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+# Needs: demo chimera-web component_gain_files
+"""Row 22, the page on a subsystem of 100 tasks, with 200 values in its picture ten times a second, in Debian's Chromium
+without a GPU. Figures: time from the request to the first box; its files, compressed; mean time of a frame at rest and
+while the picture is panned, beside an empty page in the same browser, in turn; processor time of the manager and of
+chimera-web; time from the death of the manager to the page with the next one."""
+import gzip
+import json
+import os
+import pathlib
+import signal
+import statistics
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, str(pathlib.Path(os.environ["CHIMERA_SOURCE"]) / "tests" / "page" / "harness"))
+from browser import Browser  # noqa: E402
+from machine import Machine  # noqa: E402
+from page import Page  # noqa: E402
+from web import BUILD, Web  # noqa: E402
+
+N, TURNS, LOADS, SECONDS, CPU_SECONDS = 100, 5, 5, 3, 10
+TASKS = "".join(f"  t{n}: {{component: gain, rtpu: unit, rate: 1 kHz, alias: {{x: x, y: y{n}}}}}\n" for n in range(N))
+TEXT = (f"subsystem: subject\nrtpus: {{unit: {{cpu: 1, policy: edf}}}}\ntasks:\n{TASKS}operator: {{x: 1}}\n"
+        f"configurations: {{all: [{', '.join(f't{n}' for n in range(N))}]}}\nstart: all\n")
+FRAMES = """
+    const done = arguments[0], times = [], place = document.querySelector('.canvas'), end = performance.now() + %d;
+    const frame = now => {
+      times.push(now);
+      if (place && %s) place.scrollBy(0, times.length %% 200 < 100 ? 9 : -9);
+      if (now < end) requestAnimationFrame(frame);
+      else done((times[times.length - 1] - times[0]) / (times.length - 1));
+    };
+    requestAnimationFrame(frame);"""
+FIRST_BOX = """new MutationObserver((_, observer) => {
+  if (!document.querySelector('g.box')) return;
+  observer.disconnect();
+  window.firstBox = performance.now();
+}).observe(document, {childList: true, subtree: true});"""
+BACK = """
+    const done = arguments[0], began = performance.now(), root = document.documentElement, old = root.dataset.manager;
+    const look = () => root.dataset.manager !== old && root.dataset.door === 'open' ? done(performance.now() - began)
+      : setTimeout(look, 5);
+    look();"""
+
+
+def tell(what, figure, unit, goal, met, n, **more):
+    print(json.dumps({"row": 22, "what": what, "unit": unit, "figure": round(figure, 3), "goal": goal, "met": met,
+                      "n": n, **more}))
+
+
+def frames(page, link, browser):
+    """Mean time of a frame in ms: of the page at rest, of the page while it is panned, of an empty page; in turn."""
+    found = {"rest": [], "panned": [], "empty": []}
+    for _ in range(TURNS):
+        page.open(link)
+        page.await_open()
+        for what, moves in (("rest", "false"), ("panned", "true")):
+            found[what].append(browser.driver.execute_async_script(FRAMES % (SECONDS * 1000, moves)))
+        browser.driver.get("data:text/html,<p>empty")
+        found["empty"].append(browser.driver.execute_async_script(FRAMES % (SECONDS * 1000, "false")))
+    empty = statistics.median(found["empty"])
+    for what, most in (("rest", 1.2), ("panned", 1.3)):
+        ratio = statistics.median(one / other for one, other in zip(found[what], found["empty"]))
+        tell(f"mean frame, {what}", statistics.median(found[what]), "ms", f"<= {most} of an empty page", ratio <= most,
+             TURNS, baseline=round(empty, 3), baseline_name="empty page", ratio=round(ratio, 3))
+
+
+def loads(page, link, browser):
+    browser.command("Page.addScriptToEvaluateOnNewDocument", source=FIRST_BOX)
+    times = []
+    for _ in range(LOADS):
+        browser.command("Network.clearBrowserCache")
+        page.open(link)
+        page.await_open()
+        times.append(page.script("return window.firstBox"))
+    tell("first box of a cold load, worst", max(times), "ms", "<= 1000 ms", max(times) <= 1000, LOADS)
+
+
+def files():
+    size = sum(len(gzip.compress(path.read_bytes(), 9)) for path in sorted((BUILD / "page").iterdir()))
+    tell("files of the page, compressed", size / 1e3, "KB", "<= 120 KB", size <= 120_000, 1)
+
+
+def cpu_seconds(pid):
+    """Processor time of a process in s."""
+    fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def load_of(pids):
+    before = {name: cpu_seconds(pid) for name, pid in pids.items()}
+    time.sleep(CPU_SECONDS)
+    for name, most in (("manager", 5), ("chimera-web", 3)):
+        share = 100 * (cpu_seconds(pids[name]) - before[name]) / CPU_SECONDS
+        tell(f"{name} under one page", share, "% of a CPU", f"<= {most} %", share <= most, 1)
+
+
+def back(machine, browser):
+    times = []
+    for _ in range(3):
+        os.kill(machine.call("hello")["manager"]["pid"], signal.SIGKILL)
+        times.append(browser.driver.execute_async_script(BACK))
+    tell("back after the death of the manager, worst", max(times), "ms", "<= 2000 ms", max(times) <= 2000, 3)
+
+
+def main():
+    with tempfile.TemporaryDirectory() as home:
+        runtime = pathlib.Path(home) / "run"
+        runtime.mkdir(mode=0o700)
+        with Machine(runtime, TEXT, "subject") as machine, Web(runtime) as web:
+            browser = Browser()
+            try:
+                browser.new_tab()
+                page = Page(browser)
+                files()
+                loads(page, web.link, browser)
+                frames(page, web.link, browser)
+                page.open(web.link)
+                page.await_open()
+                load_of({"manager": machine.call("hello")["manager"]["pid"], "chimera-web": web.process.pid})
+                back(machine, browser)
+            finally:
+                browser.close()
+
+
+main()
