@@ -39,7 +39,7 @@ FIRST_BOX = """new MutationObserver((_, observer) => {
   window.firstBox = performance.now();
 }).observe(document, {childList: true, subtree: true});"""
 BACK = """
-    const done = arguments[0], began = performance.now(), root = document.documentElement, old = root.dataset.manager;
+    const [began, old, done] = arguments, root = document.documentElement;
     const look = () => root.dataset.manager !== old && root.dataset.door === 'open' ? done(performance.now() - began)
       : setTimeout(look, 5);
     look();"""
@@ -97,11 +97,13 @@ def load_of(pids):
         tell(f"{name} under one page", share, "% of a CPU", f"<= {most} %", share <= most, 1)
 
 
-def back(machine, browser):
+def back(machine, page, browser):
     times = []
     for _ in range(3):
-        os.kill(machine.call("hello")["manager"]["pid"], signal.SIGKILL)
-        times.append(browser.driver.execute_async_script(BACK))
+        pid = machine.call("hello")["manager"]["pid"]
+        began, old = page.script("return [performance.now(), document.documentElement.dataset.manager]")
+        os.kill(pid, signal.SIGKILL)
+        times.append(browser.driver.execute_async_script(BACK, began, old))
     tell("back after the death of the manager, worst", max(times), "ms", "<= 2000 ms", max(times) <= 2000, 3)
 
 
@@ -109,7 +111,7 @@ def main():
     with tempfile.TemporaryDirectory() as home:
         runtime = pathlib.Path(home) / "run"
         runtime.mkdir(mode=0o700)
-        with Machine(runtime, TEXT, "subject") as machine, Web(runtime) as web:
+        with Machine(runtime, TEXT, "subject", ("--priority", "50")) as machine, Web(runtime) as web:
             browser = Browser()
             try:
                 browser.new_tab()
@@ -120,7 +122,7 @@ def main():
                 page.open(web.link)
                 page.await_open()
                 load_of({"manager": machine.call("hello")["manager"]["pid"], "chimera-web": web.process.pid})
-                back(machine, browser)
+                back(machine, page, browser)
             finally:
                 browser.close()
 

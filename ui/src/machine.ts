@@ -8,6 +8,7 @@ import { LiveValues } from "./values";
 
 const STATUS_MS = 200, VALUES_MS = 100;
 const MOST_EVENTS = 2000;
+const EVENTS_MS = 250;  // events of this time are drawn together: there may be hundreds in a second
 const MOST_ELEMENTS = 16, MOST_VALUES = 600;
 
 /** What a person is to know now: an act that was refused, or one whose answer was lost. */
@@ -59,6 +60,9 @@ export class Machine {
   readonly values = new LiveValues();
   private door: Door;
   private run = "";  // start of the run whose events are kept
+  private fresh: Event[] = [];
+  private lost = 0;
+  private timer = 0;  // of the next drawing of events; 0: none waits
 
   constructor(readonly name: string, key: string) {
     this.state = new Store<MachineState>({ ...EMPTY, name });
@@ -70,6 +74,7 @@ export class Machine {
   }
 
   close(): void {
+    window.clearTimeout(this.timer);
     this.door.close();
   }
 
@@ -120,6 +125,7 @@ export class Machine {
       const hello: Hello = await door.call("hello");
       const status: Status = await door.call("status");
       const run = `${hello.keeper_pid} ${status.origin_ns}`;
+      if (this.timer !== 0) this.showEvents();
       if (run !== this.run) this.state.set({ events: [], gaps: 0, drawn: "", message: null });
       this.run = run;
       const { drawn } = this.state.get();
@@ -148,9 +154,16 @@ export class Machine {
   }
 
   private takeEvents(events: Event[], lost: number): void {
+    this.fresh.push(...events);
+    this.lost += lost;
+    if (this.timer === 0) this.timer = window.setTimeout(() => this.showEvents(), EVENTS_MS);
+  }
+
+  private showEvents(): void {
     const { events: known, gaps } = this.state.get();
     const last = known.length > 0 ? known[known.length - 1]!.number : 0;
-    const fresh = events.filter((event) => event.number > last);
-    this.state.set({ events: [...known, ...fresh].slice(-MOST_EVENTS), gaps: gaps + (last > 0 ? lost : 0) });
+    const fresh = this.fresh.filter((event) => event.number > last);
+    this.state.set({ events: [...known, ...fresh].slice(-MOST_EVENTS), gaps: gaps + (last > 0 ? this.lost : 0) });
+    [this.fresh, this.lost, this.timer] = [[], 0, 0];
   }
 }

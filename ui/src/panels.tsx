@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The panels below the picture: events, receipts, profile, why.
-import { useEffect, useMemo, useState } from "react";
+import { memo, useEffect, useMemo, useState } from "react";
 import { Button, Table } from "./controls";
 import type { Machine, MachineState } from "./machine";
 import type { Event, Receipt, TaskProfile, WhyLink } from "./protocol";
@@ -9,9 +9,9 @@ import { clock, count, duration, short } from "./text";
 import { choose, Panel, showVariable, view } from "./view";
 
 /** Events drawn at once; the filter looks at all that are kept. */
-const SHOWN_EVENTS = 300;
+const SHOWN_EVENTS = 200;
 
-function EventLine({ event }: { event: Event }) {
+const EventLine = memo(function EventLine({ event }: { event: Event }) {
   const where = event.task ?? event.rtpu ?? "";
   return (
     <li data-event={event.number} className={`kind-${event.kind}`}>
@@ -23,7 +23,7 @@ function EventLine({ event }: { event: Event }) {
       {event.text}{event.by !== undefined && <span className="by"> by {event.by}</span>}
     </li>
   );
-}
+});
 
 function Events({ state, chosen }: { state: MachineState; chosen: string[] }) {
   const [words, filter] = useState("");

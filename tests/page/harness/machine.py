@@ -13,9 +13,9 @@ PLANT = pathlib.Path(__file__).parent / "plant.yaml"
 class Machine(System):
     """The subsystem of plant.yaml, or of `text`. Its acts and questions are those of System."""
 
-    def __init__(self, runtime, text=None, name="plant"):
+    def __init__(self, runtime, text=None, name="plant", arguments=()):
         self.shared = runtime
-        super().__init__(text or PLANT.read_text(), name=name)
+        super().__init__(text or PLANT.read_text(), arguments, name=name)
 
     def start(self, arguments, popen):
         self.runtime = self.shared
