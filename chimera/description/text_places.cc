@@ -143,6 +143,7 @@ std::size_t TextPlaces::content_of(Place place) const noexcept {
 
 std::optional<std::size_t> TextPlaces::scalar_end(std::size_t at, std::string_view value) const noexcept {
   if (at >= text_.size()) return std::nullopt;
+  if (text_[at] == '|' || text_[at] == '>') return line_end(at);  // no edit touches a block scalar
   return text_[at] == '"' || text_[at] == '\'' ? quoted_end(text_, at) : plain_end(text_, at, value);
 }
 
