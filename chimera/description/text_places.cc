@@ -44,8 +44,9 @@ std::optional<std::size_t> plain_end(std::string_view text, std::size_t at, std:
   return at;
 }
 
-/// Behind the word for nothing (`~`, `null`) that may stand at `at`.
+/// Behind the word for nothing (`~`, `null`) or the YAML alias (`*name`) that may stand at `at`.
 std::size_t nothing_end(std::string_view text, std::size_t at) {
+  if (text.substr(at).starts_with('*')) return std::min(text.find_first_of(" \t\r\n,]}", at), text.size());
   for (const std::string_view word : {"~", "null", "Null", "NULL"}) {
     if (!text.substr(at).starts_with(word)) continue;
     const std::size_t end = at + word.size();

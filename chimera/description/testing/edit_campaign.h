@@ -315,6 +315,7 @@ class EditCampaign {
     if (had_alias && old_.flat[top + "/alias"] != "{}") return stay();
     if (!edit({LinkPort{task, "zz_port", "zz_variable", {}}}, "link " + task)) return;
     FlatTree wanted = old_.flat;
+    std::erase_if(wanted, [&](const auto& one) { return is_within(one.first, top + "/alias/zz_port"); });
     wanted[top] = wanted[top + "/alias"] = "{}";
     wanted[top + "/alias/zz_port"] = "zz_variable";
     expect_tree(wanted);
