@@ -26,30 +26,35 @@ std::vector<std::string_view> rules_of(const Report& report) {
   return rules;
 }
 
-}  // namespace
-
-Result<std::string> edit_text(std::string_view text, std::span<const EditAct> acts) {
+Result<std::string> edited(const std::string& text, const EditAct& act) {
   Report faults;
   const std::optional<Node> old = read_yaml(text, faults);
   for (const Fault& fault : faults.faults())
     if (!old || fault.rule == "key-twice") return refusal(fault);
   if (!old) return Error{ErrorCode::kRefused, {"the text cannot be read"}, {}};
   Node now = *old;
-  for (const EditAct& act : acts)
-    if (const auto done = act_on(now, act); !done) return done.error();
+  if (const auto done = act_on(now, act); !done) return done.error();
+  if (is_same(*old, now)) return text;
   auto made = spliced(text, faults, *old, now);
   if (!made) return made;
   Report left;
   const std::optional<Node> read = read_yaml(*made, left);
   const auto before = rules_of(faults), after = rules_of(left);
-  const bool has_new_fault = !std::includes(before.begin(), before.end(), after.begin(), after.end());
-  if (!read || has_new_fault)
-    for (const Fault& fault : left.faults())
-      if (!std::binary_search(before.begin(), before.end(), fault.rule))
-        return Error{ErrorCode::kRefused, {"after this edit: " + sentence(fault)}, {}};
-  if (!read || has_new_fault || !is_same(*read, now))
-    return Error{ErrorCode::kRefused, {"this edit cannot be proved in the form of this text: edit it by hand"}, {}};
-  return made;
+  if (read && is_same(*read, now) && std::includes(before.begin(), before.end(), after.begin(), after.end()))
+    return made;
+  for (const Fault& fault : left.faults())
+    if (!std::binary_search(before.begin(), before.end(), fault.rule))
+      return Error{ErrorCode::kRefused, {"after this edit: " + sentence(fault)}, {}};
+  return Error{ErrorCode::kRefused, {"this edit cannot be proved in the form of this text: edit it by hand"}, {}};
+}
+
+}  // namespace
+
+Result<std::string> edit_text(std::string_view text, std::span<const EditAct> acts) {
+  Result<std::string> now = std::string(text);
+  for (const EditAct& act : acts)
+    if (now) now = edited(*now, act);
+  return now;
 }
 
 }  // namespace chimera

@@ -17,7 +17,7 @@ namespace chimera {
 /// are copied. To undo, keep the old text.
 /// Refuses all or none, with the place in the text ("12:8") or in the tree ("tasks/pid"): a text that is no YAML or has
 /// a key twice; what act_on() refuses; an edit over an anchor, alias, tag or block scalar; an edit whose proof fails.
-/// Context: setup; takes the time of two readings.
+/// Context: setup; takes the time of two readings for each act.
 Result<std::string> edit_text(std::string_view text, std::span<const EditAct> acts);
 
 }  // namespace chimera

@@ -158,6 +158,8 @@ TEST(TextEdit, WritesANewTaskAsTheOthersAre) {
       replaced(kBlock, "component: puma\n", "component: puma\n    monitor:\n        component: tracking_monitor\n"));
   expect_edit(kFlow, {add("eye", "eye"), set("tasks/eye/rate", "30 Hz")},
               replaced(kFlow, "rtpu: servo}\n", "rtpu: servo}\n  eye: {rate: 30 Hz}\n"));
+  expect_edit(kBlock, {add("eye", "eye"), set("tasks/eye/rate", "30 Hz")},
+              replaced(kBlock, "component: puma\n", "component: puma\n    eye:\n        rate: 30 Hz\n"));
   EXPECT_EQ(edited(kFlow, {add("pid", "x")}), "tasks/pid: there is a task 'pid' already");
   EXPECT_EQ(edited(kFlow, {add("a b", "x")}),
             "tasks/a b: the name is 'a b'; expected a letter or '_', then letters, digits and '_', at most 64");

@@ -135,16 +135,20 @@ class Splicer {
   // ---- values ----
 
   void value(const Node& old, const Node& now, const TextPart& part, const Style& style) {
-    if (old.kind != now.kind || old.is_scalar() || old.items.empty() || now.items.empty())
-      return replace(old, now, part, style);
+    if (old.kind != now.kind || old.is_scalar() || old.items.empty()) return replace(old, now, part, style);
     auto parts = places_.parts_of(old);
     if (!parts) return refuse_form(old.at);
     PartsChange change{old, now, *std::move(parts), paired(old, now), std::vector<bool>(old.items.size(), false)};
     for (const std::size_t from : change.from)
       if (from != kNone) change.stays[from] = true;
-    if (std::none_of(change.stays.begin(), change.stays.end(), [](bool stays) { return stays; }))
-      return style.is_root ? refuse_form(old.at) : replace(old, now, part, style);
-    change_parts(change, style);
+    if (std::find(change.stays.begin(), change.stays.end(), true) != change.stays.end())
+      return change_parts(change, style);
+    if (style.is_root) return refuse_form(old.at);
+    if (!now.items.empty()) return replace(old, now, part, style);
+    if (places_.has_brackets(old)) return remove_in_brackets(change, 0, change.parts.size() - 1);
+    if (places_.is_same_line(part.value, part.after)) return replace(old, now, part, style);
+    splice(part.after, part.after, " " + written_text(now));
+    remove_block(change, 0, change.parts.size() - 1);
   }
 
   void change_parts(const PartsChange& change, const Style& style) {
@@ -205,6 +209,10 @@ class Splicer {
       const bool keeps_quote = quote == '\'' && now.is_scalar() && now.quoted;
       return splice(part.value, part.end, keeps_quote ? quoted_words(now.text, quote) : words);
     }
+    if (old.items.empty() && has_lines) {  // empty brackets have no style
+      splice(part.after, part.end, "");
+      return splice(end_of_line, end_of_line, lines_of(now, style, places_.line_break(part.after)));
+    }
     if (old.items.empty() && old.kind == now.kind)
       return splice(part.value + 1, part.value + 1, words.substr(1, words.size() - 2));
     if (places_.has_brackets(old) || places_.is_same_line(part.value, part.after))
@@ -232,12 +240,13 @@ class Splicer {
     const std::optional<std::size_t> comma = places_.after_comma(end);
     const std::size_t behind = comma.value_or(end);
     const bool has_lines = places_.is_first_on_line(begin) && places_.is_last_on_line(behind);
-    if (last + 1 < change.parts.size()) {
+    if (first == 0 || last + 1 < change.parts.size()) {
       if (has_lines) return remove_lines(begin, behind);
       return splice(begin, places_.skip_blanks(behind), "");
     }
     const std::size_t before = change.parts[first - 1].end;  // one part stays
-    if (places_.is_same_line(before, begin)) return splice(before, end, "");
+    const bool has_comment = places_.text().substr(before, begin - before).find('#') != std::string_view::npos;
+    if (!has_lines && !has_comment) return splice(before, end, "");
     if (const auto last_comma = places_.after_comma(before); last_comma && !comma)
       splice(*last_comma - 1, *last_comma, "");
     if (has_lines) return remove_lines(begin, behind);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "chimera/base/testing/tree_path.h"
+#include "chimera/description/testing/styled_text.h"
 #include "chimera/description/text_edit.h"
 #include "chimera/description/yaml_reader.h"
 
@@ -82,14 +83,18 @@ class EditCampaign {
   }
 
  private:
-  // As it is, with other line ends, without the last line end.
+  // As it is, with other line ends, without the last line end, in other styles.
   void begin(std::size_t round) {
     std::string text = original_;
+    if (const auto read = ReadText::of(text); read && round % 2 == 1) text = StyledText(random_).of(read->root);
     if (round % 3 == 1) {
-      text.clear();
-      for (const char c : original_) text += c == '\n' ? "\r\n" : std::string(1, c);
+      std::string lines;
+      for (const char c : text) lines += c == '\n' ? "\r\n" : std::string(1, c);
+      text = lines;
     }
     if (round % 3 == 2 && text.ends_with('\n')) text.pop_back();
+    said_ = "begin";
+    old_.text = text;
     auto read = ReadText::of(text);
     if (!read) return complain("the text is not legal");
     old_ = *std::move(read);
@@ -128,10 +133,26 @@ class EditCampaign {
     for (const auto& [path, value] : now_.flat)
       if (!wanted.contains(path)) return complain("'" + path + "' is new: " + value);
   }
+  /// All comments stay but those of these lines.
+  void expect_comments(std::size_t from, std::size_t to) {
+    for (std::size_t i = 0; i < old_.lines.size(); ++i) {
+      const std::size_t at = old_.lines[i].find("# c");
+      const std::size_t end = at == std::string::npos ? at : old_.lines[i].find('.', at);
+      if ((i + 1 >= from && i + 1 <= to) || end == std::string::npos) continue;
+      const std::string comment = old_.lines[i].substr(at, end + 1 - at);
+      if (now_.text.find(comment) == std::string::npos) complain("lost: " + comment);
+    }
+  }
   void expect_lines(std::size_t from, std::size_t to) {
     const ChangedLines changed(old_, now_);
     if (!changed.are_within(from, to))
       complain("lines " + std::to_string(changed.first) + " to " + std::to_string(changed.last) + " changed");
+    expect_comments(from, to);
+  }
+  /// At most one line changed; all comments stay.
+  void expect_one_line() {
+    if (ChangedLines(old_, now_).count() > 1) complain("more than one line changed");
+    expect_comments(1, 0);
   }
 
   void one_edit() {
@@ -193,6 +214,16 @@ class EditCampaign {
     }
     return node.is_none() ? line : std::max<std::size_t>(line, node.at.line);
   }
+  /// The line of the bracket that closes a value over several lines, else `last`.
+  std::size_t closing_line(const Node& value, std::size_t last) const {
+    if (value.items.empty() || value.at.line == last) return last;
+    for (std::size_t line = last + 1; line <= old_.lines.size(); ++line) {
+      const std::size_t at = old_.lines[line - 1].find_first_not_of(" \t\r");
+      if (at == std::string::npos || old_.lines[line - 1][at] == '#') continue;
+      return old_.lines[line - 1][at] == ']' || old_.lines[line - 1][at] == '}' ? line : last;
+    }
+    return last;
+  }
   std::vector<std::string> names(const char* section) const {
     std::vector<std::string> all;
     if (const Node* map = old_.root.find(section))
@@ -236,7 +267,7 @@ class EditCampaign {
     FlatTree wanted = old_.flat;
     for (EditPath part = path; !part.empty(); part.pop_back()) wanted[flat_path(part)] = part == path ? "5 m" : "{}";
     expect_tree(wanted);
-    if (ChangedLines(old_, now_).count() > 1) complain("more than one line changed");
+    expect_one_line();
   }
 
   void remove_part() {
@@ -251,7 +282,7 @@ class EditCampaign {
     const std::size_t before = spot.parent->items.size() == 1 ? spot.parent_line
                                : is_last                      ? last_line(spot.parent->items[spot.index - 1], 1)
                                                               : spot.line();
-    expect_lines(std::min(before, spot.line()), last_line(spot.value(), spot.line()));
+    expect_lines(std::min(before, spot.line()), closing_line(spot.value(), last_line(spot.value(), spot.line())));
   }
 
   /// True if `path` is a place where names of that section stand.
@@ -303,7 +334,7 @@ class EditCampaign {
     wanted["/tasks/" + name] = "{}";
     wanted["/tasks/" + name + "/component"] = "part";
     expect_tree(wanted);
-    if (ChangedLines(old_, now_).count() > 1) complain("more than one line changed");
+    expect_one_line();
     expect_back({RemoveValue{{"tasks", name}}});
   }
 
@@ -319,7 +350,7 @@ class EditCampaign {
     wanted[top] = wanted[top + "/alias"] = "{}";
     wanted[top + "/alias/zz_port"] = "zz_variable";
     expect_tree(wanted);
-    if (ChangedLines(old_, now_).count() > 1) complain("more than one line changed");
+    expect_one_line();
     const Node* map = old_.root.find("tasks")->find(task)->find("alias");
     const bool is_new = !old_.flat.contains(top + "/alias/zz_port");
     if (is_new && had_map && (map == nullptr || !map->items.empty()))
