@@ -342,7 +342,7 @@ class EditCampaign {
     const std::vector<std::string> tasks = names("tasks");
     const std::string task = tasks[pick(tasks.size())], top = "/tasks/" + task;
     if (old_.flat[top] != "{}" && old_.flat[top] != "-") return stay();
-    const bool had_map = old_.flat[top] == "{}", had_alias = old_.flat.contains(top + "/alias");
+    const bool had_alias = old_.flat.contains(top + "/alias");
     if (had_alias && old_.flat[top + "/alias"] != "{}") return stay();
     if (!edit({LinkPort{task, "zz_port", "zz_variable", {}}}, "link " + task)) return;
     FlatTree wanted = old_.flat;
@@ -351,10 +351,12 @@ class EditCampaign {
     wanted[top + "/alias/zz_port"] = "zz_variable";
     expect_tree(wanted);
     expect_one_line();
-    const Node* map = old_.root.find("tasks")->find(task)->find("alias");
+    // Brackets that the inverse leaves empty are written anew.
+    const Node* old_task = old_.root.find("tasks")->find(task);
+    const Node* alias = old_task->find("alias");
+    const bool leaves_parts = !old_task->items.empty() && (alias == nullptr || !alias->items.empty());
     const bool is_new = !old_.flat.contains(top + "/alias/zz_port");
-    if (is_new && had_map && (map == nullptr || !map->items.empty()))
-      expect_back({LinkPort{task, "zz_port", "zz_port", {}}});
+    if (is_new && leaves_parts) expect_back({LinkPort{task, "zz_port", "zz_port", {}}});
   }
 
   void join_two() {
