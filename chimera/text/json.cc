@@ -202,7 +202,7 @@ Json::Members Json::items() const noexcept {
 }
 
 bool operator==(const Json& a, const Json& b) noexcept {
-  using Kind = JsonKind::Kind;
+  using Kind = Json::Kind;
   if (a.kind_ != b.kind_)
     return (a.kind_ == Kind::kDouble || b.kind_ == Kind::kDouble) && a.is_number() && b.is_number() &&
            a.as_double() == b.as_double();
