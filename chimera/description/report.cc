@@ -6,6 +6,8 @@
 
 #include "chimera/base/assert.h"
 #include "chimera/base/hosted/terminal_text.h"
+#include "chimera/base/hosted/wording.h"
+#include "chimera/description/key_paths.h"
 #include "chimera/description/rule_ids.h"
 #include "chimera/text/json_text.h"
 #include "chimera/text/nearest.h"
@@ -20,6 +22,13 @@ std::string remedy(const Fault& fault) {
   return fault.nearest.empty() ? std::string{} : did_you_mean(fault.nearest).substr(2);
 }
 
+/// The port that tasks/TASK/KEY/PORT names; an item of a list under `alias` is an instance.
+std::string port_of(std::span<const std::string> names) {
+  constexpr std::string_view kKeys[] = {"alias", "constants", "resources", "initial", "max_step"};
+  if (names.size() < 4 || std::ranges::find(kKeys, names[2]) == std::end(kKeys)) return {};
+  return names.size() > 4 && names[2] == "alias" ? names[3] + '[' + names[4] + ']' : names[3];
+}
+
 }  // namespace
 
 std::string sentence(const Fault& fault) {
@@ -27,9 +36,31 @@ std::string sentence(const Fault& fault) {
   return help.empty() ? fault.message : fault.message + " (" + help + ")";
 }
 
+void Report::locate(Fault& fault) const {
+  if (keys_ == nullptr) return;
+  const std::vector<std::string> names = keys_->names(fault.at.key);
+  for (const std::string& name : names) append_joined(fault.path, "/", name);
+  if (names.size() < 2) return;
+  if (fault.set.empty() && names[0] == "configurations") fault.set = names[1];
+  if (!fault.task.empty() || names[0] != "tasks") return;
+  fault.task = names[1];
+  if (fault.port.empty()) fault.port = port_of(names);
+}
+
+void Report::use(std::shared_ptr<const KeyPaths> keys) {
+  if (keys == nullptr || keys == keys_) return;
+  keys_ = std::move(keys);
+  for (Fault& fault : faults_) {
+    fault.at.key = keys_->key_at(fault.at);
+    locate(fault);
+  }
+}
+
 void Report::add(Fault fault) {
   CHIMERA_ASSERT(is_rule(fault.rule));
-  for (std::string* part : {&fault.message, &fault.found, &fault.expected, &fault.nearest, &fault.remedy})
+  locate(fault);
+  for (std::string* part : {&fault.message, &fault.found, &fault.expected, &fault.nearest, &fault.remedy, &fault.set,
+                            &fault.task, &fault.port, &fault.path})
     *part = plain_line(*part);  // one fault, one line
   for (const Fault& known : faults_)
     if (known.at == fault.at && known.rule == fault.rule && known.message == fault.message) return;
@@ -89,7 +120,11 @@ std::string Report::json() const {
                       {"expected", fault.expected},
                       {"nearest", fault.nearest},
                       {"message", fault.message},
-                      {"remedy", remedy(fault)}});
+                      {"remedy", remedy(fault)},
+                      {"set", fault.set},
+                      {"task", fault.task},
+                      {"port", fault.port},
+                      {"path", fault.path}});
   return spaced_json({{"file", file_},
                       {"legal", is_legal()},
                       {"errors", errors_},
