@@ -10,6 +10,7 @@
 #include "chimera/base/hosted/wording.h"
 #include "chimera/catalogue/library.h"
 #include "chimera/description/yaml_reader.h"
+#include "chimera/description/yaml_words.h"
 #include "chimera/text/json_text.h"
 #include "chimera/text/nearest.h"
 #include "chimera/units/quantity.h"
@@ -282,14 +283,6 @@ Result<Node> in_unit(Node value, const std::string& unit, const UnitSystem& unit
   char* const end = std::to_chars(digits, digits + sizeof digits, number ? *number : INFINITY).ptr;
   value.text = with_unit(std::string(digits, end), unit);
   return value;
-}
-
-std::string written_text(const Node& value) {
-  if (value.is_scalar()) return value.quoted ? json_string(value.text) : value.text;
-  const std::string words = join_n(value.items.size(), ", ", [&value](std::size_t i) {
-    return (value.is_map() ? value.keys[i].text + ": " : "") + written_text(value.items[i]);
-  });
-  return value.is_map() ? "{" + words + "}" : "[" + words + "]";
 }
 
 std::string in_words_of(const Node& written, const std::string& now, const UnitSystem& units) {

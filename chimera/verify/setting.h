@@ -44,9 +44,6 @@ Result<void> knows(const Configuration& configuration, std::span<const Setting> 
 /// another dimension; what is no quantity stays, and the rules refuse it. Context: setup.
 Result<Node> in_unit(Node value, const std::string& unit, const UnitSystem& units);
 
-/// A value as a description writes it in one line: "5 m", "[1, 2]", "{x: 1 m}". Context: setup.
-std::string written_text(const Node& value);
-
 /// The value `now`, a text of a description, with each number in the unit of the number at its place in `written`.
 /// Context: setup.
 std::string in_words_of(const Node& written, const std::string& now, const UnitSystem& units);

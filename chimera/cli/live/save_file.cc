@@ -2,18 +2,21 @@
 // Writes the present operator values into the description that the subsystem was started from.
 #include "chimera/cli/live/save_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <climits>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <vector>
 
 #include "chimera/base/hosted/ordinary_file.h"
-#include "chimera/cli/live/operator_text.h"
 #include "chimera/cli/print/answer_text.h"
 #include "chimera/cli/print/fields.h"
 #include "chimera/control/state_folder.h"
+#include "chimera/description/draft.h"
+#include "chimera/description/text_edit.h"
 #include "chimera/platform/clock.h"
 #include "chimera/platform/file.h"
 #include "chimera/text/json.h"
@@ -82,9 +85,15 @@ std::string first_fault(const Json& report) {
 Result<std::string> edited(Session& session, const DescriptionFile& file, const Json& values) {
   const auto units = UnitSystem::load(session.surroundings().unit_files);
   if (!units) return units.error();
-  std::map<std::string, std::string> words;
-  for (const auto& [name, value] : values.items()) words[name] = text_of(values, name);
-  auto text = with_operator_values(file.text, words, units.value());
+  const ReadDescription reading = read_description(file.text, "");
+  if (!reading.draft) return refusal("the description cannot be read");
+  std::vector<EditAct> acts;
+  for (const auto& [name, value] : values.items()) {
+    const auto is_given = [&key = name](const NamedNode& node) { return node.name.text == key; };
+    if (std::ranges::none_of(reading.draft->operators, is_given)) return refusal("is not under `operator:`", name);
+    acts.emplace_back(SetValue{{"operator", name}, text_of(values, name), &units.value()});
+  }
+  auto text = edit_text(file.text, acts);
   if (!text || text.value() == file.text) return text;
   const control::RpcResponse checked = session.ask("check", {{"text", text.value()}, {"file", file.path}});
   if (!checked.is_good()) return refusal(checked.message);
