@@ -7,6 +7,7 @@
 #include "chimera/base/assert.h"
 #include "chimera/base/hosted/terminal_text.h"
 #include "chimera/base/hosted/wording.h"
+#include "chimera/description/edit_json.h"
 #include "chimera/description/key_paths.h"
 #include "chimera/description/rule_ids.h"
 #include "chimera/text/json_text.h"
@@ -27,6 +28,16 @@ std::string port_of(std::span<const std::string> names) {
   constexpr std::string_view kKeys[] = {"alias", "constants", "resources", "initial", "max_step"};
   if (names.size() < 4 || std::ranges::find(kKeys, names[2]) == std::end(kKeys)) return {};
   return names.size() > 4 && names[2] == "alias" ? names[3] + '[' + names[4] + ']' : names[3];
+}
+
+Json offers_json(const Fault& fault) {
+  Json all = Json::array();
+  for (const Offer& offer : fault.offers) {
+    Json acts = Json::array();
+    for (const EditAct& act : offer.acts) acts.push_back(edit_json(act));
+    all.push_back({{"label", offer.label}, {"acts", std::move(acts)}});
+  }
+  return all;
 }
 
 }  // namespace
@@ -82,6 +93,11 @@ void Report::add_all(const Report& other) {
   warnings_ += other.warnings_ - (other.faults_.size() - kept_errors);
 }
 
+void Report::offer(std::size_t fault, Offer offer) {
+  offer.label = plain_line(offer.label);
+  faults_[fault].offers.push_back(std::move(offer));
+}
+
 void Report::sort() {
   std::stable_sort(faults_.begin(), faults_.end(), [](const Fault& a, const Fault& b) { return a.at < b.at; });
 }
@@ -124,7 +140,8 @@ std::string Report::json() const {
                       {"set", fault.set},
                       {"task", fault.task},
                       {"port", fault.port},
-                      {"path", fault.path}});
+                      {"path", fault.path},
+                      {"offers", offers_json(fault)}});
   return spaced_json({{"file", file_},
                       {"legal", is_legal()},
                       {"errors", errors_},

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <vector>
 
+#include "chimera/description/edit_act.h"
+
 namespace chimera {
 
 class KeyPaths;
@@ -30,6 +32,12 @@ struct Place {
 
 enum class Severity : std::uint8_t { kError, kWarning };
 
+/// Edits that remedy a fault, by one press of a person.
+struct Offer {
+  std::string label;  ///< "link to 'q_ref'"
+  std::vector<EditAct> acts;
+};
+
 /// A breach of a rule.
 struct Fault {
   std::string_view rule;  ///< one of kRules (description/rule_ids.h); points at static text
@@ -44,6 +52,7 @@ struct Fault {
   std::string task = {};  ///< the task at which it stands; empty: none
   std::string port = {};  ///< of the task: "x", "in[2]"; a repeated port without instances as "in"; empty: none
   std::string path = {};  ///< of the key at `at`: "tasks/pid/alias/q_ref"; empty: none
+  std::vector<Offer> offers = {};  ///< only offer_edits() (verify/offers.h) fills it
 };
 
 /// The message followed by the remedy, in one line. Context: setup.
@@ -63,6 +72,8 @@ class Report {
   void note(std::string text);
   /// Adds all faults and notes of `other`.
   void add_all(const Report& other);
+  /// Adds an offer to the fault with that number.
+  void offer(std::size_t fault, Offer offer);
   /// Sorts the faults by place.
   void sort();
 

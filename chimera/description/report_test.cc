@@ -68,7 +68,7 @@ TEST(Report, IsOneJsonObject) {
             R"({"file": "a \"b\"", "legal": false, "errors": 1, "warnings": 0, "faults": [{"rule": "key-unknown", )"
             R"("severity": "error", "file": "a \"b\"", "line": 2, "column": 3, "found": "rat", "expected": "'rate'", )"
             R"("nearest": "rate", "message": "back\\slash", "remedy": "did you mean 'rate'?", "set": "", "task": "", )"
-            R"("port": "", "path": ""}], "notes": []})");
+            R"("port": "", "path": "", "offers": []}], "notes": []})");
   EXPECT_EQ(Report("a").json(),
             R"({"file": "a", "legal": true, "errors": 0, "warnings": 0, "faults": [], "notes": []})");
 }
@@ -88,6 +88,24 @@ TEST(Report, FillsPathAndBoxFromThePlace) {
   EXPECT_EQ(box(head + "rate: 1 Hz\nconfigurations: {run: [1 m]}\n"), "configurations/run/0 set=run task= port=");
   EXPECT_EQ(box(head + "resources: {port: &a x}\n"), "tasks/pid/resources/port set= task=pid port=port");
   EXPECT_EQ(box("subsystem: a\n"), " set= task= port=");
+}
+
+TEST(Report, WritesEachKindOfActThatItOffers) {
+  Report report("a");
+  report.add(fault({1, 1}, "wrong"));
+  report.offer(0, {"press", {SetValue{{"tasks", "pid", "rate"}, "1 kHz"}, RemoveValue{{"operator", "x"}},
+                             RenameKey{{"tasks", "a"}, "b", {{"c", "d"}}}, AddTask{"e", "f"},
+                             LinkPort{"g", "h", "i", 2}, LinkPort{"g", "h", "i", std::nullopt},
+                             JoinProducers{"j", JoinBy::kPriority, {{"k", "l"}}}}});
+  const std::string expected =
+      R"("offers": [{"label": "press", "acts": [{"act": "set", "path": "tasks/pid/rate", "value": "1 kHz"}, )"
+      R"({"act": "remove", "path": "operator/x"}, )"
+      R"({"act": "rename", "path": "tasks/a", "to": "b", "ports": [{"task": "c", "port": "d"}]}, )"
+      R"({"act": "add_task", "name": "e", "component": "f"}, )"
+      R"({"act": "link", "task": "g", "port": "h", "variable": "i", "instance": 2}, )"
+      R"({"act": "link", "task": "g", "port": "h", "variable": "i", "instance": null}, )"
+      R"({"act": "join", "variable": "j", "by": "priority", "producers": [{"task": "k", "port": "l"}]}]}])";
+  EXPECT_NE(report.json().find(expected), std::string::npos) << report.json();
 }
 
 TEST(Report, HasNotesThatAreNoFaults) {

@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "chimera/description/criticality.h"
+#include "chimera/description/yaml_words.h"
 #include "chimera/text/value_text.h"
 #include "chimera/verify/model.h"
-#include "chimera/verify/setting.h"
 #include "chimera/verify/values.h"
 
 namespace chimera {

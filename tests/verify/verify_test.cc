@@ -15,9 +15,10 @@
 #include "chimera/analysis/schedule_report.h"
 #include "chimera/base/testing/tree_path.h"
 #include "chimera/catalogue/library.h"
+#include "chimera/description/text_edit.h"
 #include "chimera/description/yaml_reader.h"
 #include "chimera/units/testing/unit_samples.h"
-#include "chimera/verify/outline.h"
+#include "chimera/verify/offers.h"
 #include "chimera/verify/verify.h"
 
 namespace chimera {
@@ -177,6 +178,31 @@ TEST_P(FaultyDescription, PutsEachFaultAtItsBox) {
     EXPECT_TRUE(fault.port.empty() || !fault.task.empty()) << fault.message;
     if (!fault.task.empty() && outlined.outline) check_task(fault, *outlined.outline);
   }
+}
+
+std::multiset<std::string> errors_of(const Report& report) {
+  static const std::regex kPlace(" at [0-9]+:[0-9]+");
+  std::multiset<std::string> errors;
+  for (const Fault& fault : report.faults())
+    if (fault.severity == Severity::kError)
+      errors.insert(std::string(fault.rule) + std::regex_replace(fault.message, kPlace, ""));
+  return errors;
+}
+
+TEST_P(FaultyDescription, IsOfferedOnlyEditsThatHelp) {
+  const ReadDescription reading = read_description(contents(GetParam()), GetParam().filename().string());
+  Outlined outlined = verify_with_outline(reading, library());
+  offer_edits(reading, library(), outlined);
+  const std::multiset<std::string> before = errors_of(outlined.verdict.report);
+  for (const Fault& fault : outlined.verdict.report.faults())
+    for (const Offer& offer : fault.offers) {
+      const auto text = edit_text(reading.text, offer.acts);
+      ASSERT_TRUE(text) << text.error().message.c_str();
+      const Report report = verify(read_description(*text, outlined.verdict.report.file()), library()).report;
+      const std::multiset<std::string> after = errors_of(report);
+      EXPECT_TRUE(std::ranges::includes(before, after)) << fault.message << offer.label << '\n' << report.text();
+      EXPECT_TRUE(fault.severity == Severity::kWarning || after.size() < before.size()) << offer.label;
+    }
 }
 
 std::string ends_text(const std::vector<PortRef>& refs) {
