@@ -44,8 +44,9 @@ std::optional<std::size_t> plain_end(std::string_view text, std::size_t at, std:
   return at;
 }
 
-/// Behind the word for nothing (`~`, `null`) that may stand at `at`.
+/// Behind the word for nothing (`~`, `null`) or the YAML alias (`*name`) that may stand at `at`.
 std::size_t nothing_end(std::string_view text, std::size_t at) {
+  if (text.substr(at).starts_with('*')) return std::min(text.find_first_of(" \t\r\n,]}", at), text.size());
   for (const std::string_view word : {"~", "null", "Null", "NULL"}) {
     if (!text.substr(at).starts_with(word)) continue;
     const std::size_t end = at + word.size();
@@ -143,6 +144,7 @@ std::size_t TextPlaces::content_of(Place place) const noexcept {
 
 std::optional<std::size_t> TextPlaces::scalar_end(std::size_t at, std::string_view value) const noexcept {
   if (at >= text_.size()) return std::nullopt;
+  if (text_[at] == '|' || text_[at] == '>') return line_end(at);  // no edit touches a block scalar
   return text_[at] == '"' || text_[at] == '\'' ? quoted_end(text_, at) : plain_end(text_, at, value);
 }
 

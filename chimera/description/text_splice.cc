@@ -135,7 +135,6 @@ class Splicer {
   // ---- values ----
 
   void value(const Node& old, const Node& now, const TextPart& part, const Style& style) {
-    if (is_same(old, now)) return;
     if (old.kind != now.kind || old.is_scalar() || old.items.empty() || now.items.empty())
       return replace(old, now, part, style);
     auto parts = places_.parts_of(old);
@@ -155,7 +154,8 @@ class Splicer {
       const std::size_t from = change.from[i];
       if (from == kNone) continue;
       if (change.now.is_map()) rename(change.parts[from], change.old.keys[from], change.now.keys[i]);
-      inner.block = style.is_root || has_block_near(change, from, inner.inner);
+      if (is_same(change.old.items[from], change.now.items[i])) continue;
+      inner.block = has_block_near(change, from, inner.inner) || style.is_root;
       value(change.old.items[from], change.now.items[i], change.parts[from], inner);
     }
     for (std::size_t i = 0, end = 0; i < change.stays.size(); i = end + 1) {
@@ -172,7 +172,7 @@ class Splicer {
 
   /// True if the map nearest to position `at` has lines of its own; `inner` is then how far they are indented.
   bool has_block_near(const PartsChange& change, std::size_t at, std::size_t& inner) const {
-    for (std::size_t distance = 0; distance < change.parts.size(); ++distance)
+    for (std::size_t distance = 0; change.old.is_map() && distance < change.parts.size(); ++distance)
       for (const std::size_t i : {at - distance - 1, at + distance}) {
         if (i >= change.parts.size() || !change.old.items[i].is_map() || change.old.items[i].items.empty()) continue;
         if (places_.has_brackets(change.old.items[i])) return false;
@@ -191,11 +191,11 @@ class Splicer {
   }
 
   void replace(const Node& old, const Node& now, const TextPart& part, const Style& style) {
+    touch(part.after, old.is_none() ? places_.line_end(part.end) : part.end);
     const std::size_t end_of_line = places_.line_end(part.end);
     const bool has_lines = style.block && !style.in_brackets && now.is_map() && !now.items.empty();
     const std::string words = written_text(now, style.in_brackets);
     if (old.is_none()) {
-      touch(part.after, end_of_line);
       if (part.end > part.after) return splice(places_.skip_blanks(part.after), part.end, words);
       if (has_lines) return splice(end_of_line, end_of_line, lines_of(now, style, places_.line_break(part.after)));
       return splice(part.after, part.after, (part.has_colon ? " " : ": ") + words);
@@ -205,10 +205,8 @@ class Splicer {
       const bool keeps_quote = quote == '\'' && now.is_scalar() && now.quoted;
       return splice(part.value, part.end, keeps_quote ? quoted_words(now.text, quote) : words);
     }
-    if (old.items.empty() && old.kind == now.kind) {
-      touch(part.value, part.end);
+    if (old.items.empty() && old.kind == now.kind)
       return splice(part.value + 1, part.value + 1, words.substr(1, words.size() - 2));
-    }
     if (places_.has_brackets(old) || places_.is_same_line(part.value, part.after))
       return splice(part.value, part.end, words);
     splice(part.after, part.after, " " + words);
@@ -253,7 +251,7 @@ class Splicer {
     const std::size_t before = first == 0 ? kNone : change.from[first - 1];
     const std::size_t behind = end < change.from.size() ? change.from[end] : kNone;
     const std::size_t next = before == kNone ? 0 : before + 1;
-    style.block = is_root || has_block_near(change, next, style.inner);
+    style.block = has_block_near(change, next, style.inner) || is_root;
     const std::string eol(places_.line_break(change.parts[before == kNone ? behind : before].begin));
     std::vector<std::string> words;
     for (std::size_t i = first; i < end; ++i) words.push_back(entry(change.now, i, style, eol));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "chimera/base/hosted/terminal_text.h"
 #include "chimera/base/hosted/wording.h"
 #include "chimera/description/yaml_reader.h"
 #include "chimera/text/json_text.h"
@@ -77,7 +78,7 @@ Result<Node> value_of(std::string_view words) {
   auto tree = is_one_line ? read_yaml("value: " + std::string(words) + "\n", report) : std::nullopt;
   const Node* value = tree && tree->keys.size() == 1 ? tree->find("value") : nullptr;
   if (value == nullptr || value->is_none() || !report.is_legal())
-    return Error{ErrorCode::kBadInput, {"'" + std::string(words.substr(0, 100)) + "' is no value"}, {}};
+    return Error{ErrorCode::kBadInput, {"'" + plain_line(words.substr(0, 100)) + "' is no value"}, {}};
   Node made = *value;
   make_portable(made);
   return made;

@@ -315,6 +315,7 @@ class EditCampaign {
     if (had_alias && old_.flat[top + "/alias"] != "{}") return stay();
     if (!edit({LinkPort{task, "zz_port", "zz_variable", {}}}, "link " + task)) return;
     FlatTree wanted = old_.flat;
+    std::erase_if(wanted, [&](const auto& one) { return is_within(one.first, top + "/alias/zz_port"); });
     wanted[top] = wanted[top + "/alias"] = "{}";
     wanted[top + "/alias/zz_port"] = "zz_variable";
     expect_tree(wanted);
@@ -344,7 +345,8 @@ class EditCampaign {
     if (now_.flat["/tasks/" + b + "/alias/zz_out"] != variable + "_2")
       complain("the second producer has no new variable");
     for (const auto& [path, value] : old_.flat) {
-      const bool may_change = path.starts_with("/configurations/") || path.ends_with("/alias/zz_out") || value == "-";
+      const bool may_change =
+          path.starts_with("/configurations/") || path.find("/alias/zz_out") != std::string::npos || value == "-";
       const auto got = now_.flat.find(path);
       if (!may_change && (got == now_.flat.end() || got->second != value)) complain("'" + path + "' changed");
     }
