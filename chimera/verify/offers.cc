@@ -25,6 +25,9 @@ const std::set<std::string_view> kRemovable = {
 /// Rules that find a wrong key; others with a nearest name find a wrong value.
 const std::set<std::string_view> kWrongKey = {"key-unknown", "port-unknown", "value-field"};
 
+/// Rules of a port that does not fit its variable.
+const std::set<std::string_view> kClashes = {"type-clash", "struct-clash", "unit-clash", "shape-clash"};
+
 /// The edits that may remedy a fault, the likeliest first.
 class Candidates {
  public:
@@ -46,7 +49,7 @@ class Candidates {
   std::vector<Offer> at_port(const Fault& fault, const OutlineTask& task, const OutlinePort& port) const {
     if (fault.rule == "input-unmet") return links(fault, task, port);
     if (fault.rule == "two-producers") return joins(fault, port);
-    if (fault.rule == "unit-clash") return conversions(task, port);
+    if (kClashes.contains(fault.rule)) return ways_round(fault, task, port);
     if (fault.rule == "loop-without-initial") {
       const std::string zero = zero_of(port);
       if (zero.empty()) return {};
@@ -91,7 +94,26 @@ class Candidates {
     return act;
   }
 
+  /// A producer for an input without one.
   std::vector<Offer> links(const Fault& fault, const OutlineTask& task, const OutlinePort& port) const {
+    std::vector<Offer> offers = additions(fault, port);
+    add_links(offers, fault, task, port);
+    if (const std::string zero = zero_of(port); !zero.empty())
+      offers.push_back({"give '" + port.variable + "' under operator", {SetValue{{"operator", port.variable}, zero}}});
+    return offers;
+  }
+
+  /// Another variable for an input, or a component between it and its own.
+  std::vector<Offer> ways_round(const Fault& fault, const OutlineTask& task, const OutlinePort& port) const {
+    if (port.kind != CHIMERA_IN_VAR) return {};
+    std::vector<Offer> offers;
+    if (fault.rule == "unit-clash") offers = conversions(task, port);
+    add_links(offers, fault, task, port);
+    return offers;
+  }
+
+  void add_links(std::vector<Offer>& offers, const Fault& fault, const OutlineTask& task,
+                 const OutlinePort& port) const {
     std::vector<const OutlineVariable*> all;
     for (const OutlineVariable& variable : outline_.variables) {
       const bool is_made = !variable.producers.empty() || variable.origin == Origin::kOperator;
@@ -99,13 +121,9 @@ class Candidates {
         all.push_back(&variable);
     }
     std::ranges::stable_sort(all, {}, [&](const OutlineVariable* v) { return v->name != fault.nearest; });
-    std::vector<Offer> offers = additions(fault, port);
+    if (all.size() > kMostLinks) all.resize(kMostLinks);
     for (const OutlineVariable* variable : all)
-      if (offers.size() < kMostLinks)
-        offers.push_back({"link to '" + variable->name + "'", {link(task, port, variable->name)}});
-    if (const std::string zero = zero_of(port); !zero.empty())
-      offers.push_back({"give '" + port.variable + "' under operator", {SetValue{{"operator", port.variable}, zero}}});
-    return offers;
+      offers.push_back({"link to '" + variable->name + "'", {link(task, port, variable->name)}});
   }
 
   /// The producers of other configurations.
@@ -145,7 +163,7 @@ class Candidates {
   /// A component between the variable and its reader.
   std::vector<Offer> conversions(const OutlineTask& task, const OutlinePort& port) const {
     const auto variable = std::ranges::find(outline_.variables, port.variable, &OutlineVariable::name);
-    if (port.kind != CHIMERA_IN_VAR || variable == outline_.variables.end()) return {};
+    if (variable == outline_.variables.end()) return {};
     const auto from = library_.units().parse(variable->unit), to = library_.units().parse(port.unit);
     if (!from || !to) return {};
     const auto made = converter_of(library_, {*from, variable->unit}, {*to, port.unit});

@@ -9,11 +9,11 @@
 namespace chimera {
 
 /// Edits tried for one report. Each takes the time of a verification.
-inline constexpr std::size_t kMostTries = 32;
+inline constexpr std::size_t kMostEditTries = 32;
 
 /// Fills Fault::offers. After an offered edit the fault is gone, there are fewer errors (or warnings, for a warning),
 /// and no error that was not there before. Faults beyond the tries get no offers. Context: setup.
 void offer_edits(const ReadDescription& reading, const Library& library, Outlined& outlined,
-                 std::size_t most_tries = kMostTries);
+                 std::size_t most_tries = kMostEditTries);
 
 }  // namespace chimera

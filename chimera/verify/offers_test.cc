@@ -49,7 +49,7 @@ const Library& offers_library() {
 }
 
 /// "label | label" of the faults of a rule; each edit is done and must leave less errors or warnings.
-std::string offered(const std::string& text, std::string_view rule, std::size_t most_tries = kMostTries) {
+std::string offered(const std::string& text, std::string_view rule, std::size_t most_tries = kMostEditTries) {
   const ReadDescription reading = read_description(text, "a.yaml");
   Outlined outlined = verify_with_outline(reading, offers_library());
   offer_edits(reading, offers_library(), outlined, most_tries);
@@ -97,6 +97,11 @@ TEST(Offers, InsertAConverterInEachConfigurationOfItsReader) {
   EXPECT_EQ(offered(std::string(kArmAlone) + "  slow:\n", "unit-clash"), "insert 'deg'");
   const std::string sets = "configurations: {run: [arm, slow], also: {tasks: [slow, arm]}}\n";
   EXPECT_EQ(offered(std::string(kArmAlone) + "  slow:\n" + sets, "unit-clash"), "insert 'deg'");
+}
+
+TEST(Offers, LinkAPortThatClashesToAnotherVariableOfItsUnit) {
+  const std::string text = std::string(kArmAlone) + "  gauge: {alias: {q_ref: qd}}\n";
+  EXPECT_EQ(offered(text, "unit-clash"), "link to 'q'");
 }
 
 TEST(Offers, WriteARateANearNameAndTakeOut) {
