@@ -50,6 +50,9 @@ class Candidates {
     if (fault.rule == "input-unmet") return links(fault, task, port);
     if (fault.rule == "two-producers") return joins(fault, port);
     if (kClashes.contains(fault.rule)) return ways_round(fault, task, port);
+    if (fault.rule == "resource-missing")  // its name stands for the device, which no rule knows
+      return {{"resources: {" + port.declared + ": " + port.declared + "}, to be changed",
+               {SetValue{{"tasks", task.name, "resources", port.declared}, port.declared}}}};
     if (fault.rule == "loop-without-initial") {
       const std::string zero = zero_of(port);
       if (zero.empty()) return {};

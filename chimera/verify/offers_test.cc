@@ -41,6 +41,9 @@ const Library& offers_library() {
        offered_component("gauge", {port_in("q_ref", "rad")}), offered_component("slow", {port_in("q", "deg")}),
        offered_component("deg", {port_in("x", "rad"), port_out("y", "deg")}, 0),
        offered_component("norate", {port_in("q", "rad")}, 0),
+       offered_component("camera",
+                         {{.name = "eye", .kind = CHIMERA_RESOURCE, .type = CHIMERA_STRING, .element_size = 256}}),
+       offered_component("plant", {port_in("u", "V"), port_out("q", "rad")}),
        offered_component("join_mean", {ports_in("in", "U"), port_out("out", "U")}),
        offered_component("join_priority", {ports_in("in", "U"), port_out("out", "U"), port_out("chosen", "1")}),
        offered_component("select", {ports_in("in", "U"), port_in("which", "1"), port_out("out", "U")})},
@@ -112,6 +115,14 @@ TEST(Offers, WriteARateANearNameAndTakeOut) {
   EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm: {magic: 5 Hz}\n", "key-unknown"), "take it out");
   EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm:\noperator: {x: 1}\n", "unused"), "take it out");
   EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm:\noperator: {q: 1 rad}\n", "operator-produced"), "take it out");
+}
+
+TEST(Offers, NameAMissingResourceAndGiveALoopItsInitialValue) {
+  EXPECT_EQ(offered(std::string(kArmAlone) + "  camera:\n", "resource-missing"),
+            "resources: {eye: eye}, to be changed");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  law: {alias: {kd: gain}}\n  plant:\noperator: {gain: 1 V.s/rad}\n",
+                    "loop-without-initial"),
+            "initial: {q: 0 rad}");
 }
 
 TEST(Offers, EndWithTheTries) {
