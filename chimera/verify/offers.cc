@@ -239,10 +239,15 @@ void offer_edits(const ReadDescription& reading, const Library& library, Outline
   if (!outlined.outline) return;
   const Report before = outlined.verdict.report;
   const Candidates candidates(reading, library, *outlined.outline);
+  std::vector<std::vector<Offer>> of_fault;
+  std::size_t most = 0;
+  for (const Fault& fault : before.faults()) most = std::max(most, of_fault.emplace_back(candidates.of(fault)).size());
   std::size_t tries = 0;
-  for (std::size_t f = 0; f < before.faults().size(); ++f)
-    for (Offer& offer : candidates.of(before.faults()[f])) {
+  for (std::size_t rank = 0; rank < most; ++rank)
+    for (std::size_t f = 0; f < of_fault.size(); ++f) {
+      if (rank >= of_fault[f].size()) continue;
       if (++tries > most_tries) return;
+      Offer& offer = of_fault[f][rank];
       const auto text = edit_text(reading.text, offer.acts);
       if (!text) continue;
       if (helps(before.faults()[f], before, verify(read_description(*text, before.file()), library).report))

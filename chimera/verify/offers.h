@@ -12,7 +12,7 @@ namespace chimera {
 inline constexpr std::size_t kMostEditTries = 32;
 
 /// Fills Fault::offers. After an offered edit the fault is gone, there are fewer errors (or warnings, for a warning),
-/// and no error that was not there before. Faults beyond the tries get no offers. Context: setup.
+/// and no error that was not there before. The likeliest edit of each fault is tried first. Context: setup.
 void offer_edits(const ReadDescription& reading, const Library& library, Outlined& outlined,
                  std::size_t most_tries = kMostEditTries);
 

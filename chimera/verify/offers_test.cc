@@ -130,6 +130,11 @@ TEST(Offers, EndWithTheTries) {
   EXPECT_EQ(offered(std::string(kArmAlone) + "  gauge:\n", "input-unmet", 0), "");
 }
 
+TEST(Offers, BeginWithTheLikeliestOfEachFault) {
+  const std::string text = std::string(kArmAlone) + "  gauge:\n  other: {component: gauge, alias: {q_ref: x}}\n";
+  EXPECT_EQ(offered(text, "input-unmet", 2), "link to 'q' | link to 'q'");
+}
+
 TEST(Offers, AreNoneForATextThatIsNoTree) { EXPECT_EQ(offered("tasks: [", "yaml-syntax"), ""); }
 
 }  // namespace
