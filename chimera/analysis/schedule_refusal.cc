@@ -39,7 +39,7 @@ Fault fault_of(const Configuration& configuration, const CpuSchedule& cpu, const
 }  // namespace
 
 Report unschedulable(const Configuration& configuration, const ScheduleReport& report) {
-  Report faults(configuration.file());
+  Report faults(configuration.file(), configuration.draft().keys);
   for (const SetSchedule& set : report.sets)
     for (const CpuSchedule& cpu : set.cpus)
       for (const ScheduleRow& row : cpu.rows)

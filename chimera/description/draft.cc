@@ -388,6 +388,7 @@ void require(const Node& root, std::string_view key, const char* remedy, Report&
 Draft read_root(const Node& root, std::string_view file, Report& report) {
   Draft draft;
   draft.file = file;
+  draft.keys = report.keys();
   const std::size_t before = report.errors();
   refuse_unknown_keys(root, kFileKeys, "the file", report);
   require(root, "subsystem", "write 'subsystem: NAME' as the first line", report);

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -127,6 +128,7 @@ struct Draft {
   std::vector<NamedNode> operators;
   std::vector<DraftSet> configurations;  ///< empty: none declared
   std::optional<Word> start;
+  std::shared_ptr<const KeyPaths> keys;  ///< of the text
   bool is_partial = false;  ///< some part outside the tasks could not be read
 };
 

@@ -6,6 +6,9 @@
 
 #include "chimera/base/assert.h"
 #include "chimera/base/hosted/terminal_text.h"
+#include "chimera/base/hosted/wording.h"
+#include "chimera/description/edit_json.h"
+#include "chimera/description/key_paths.h"
 #include "chimera/description/rule_ids.h"
 #include "chimera/text/json_text.h"
 #include "chimera/text/nearest.h"
@@ -20,6 +23,23 @@ std::string remedy(const Fault& fault) {
   return fault.nearest.empty() ? std::string{} : did_you_mean(fault.nearest).substr(2);
 }
 
+/// The port that tasks/TASK/KEY/PORT names; an item of a list under `alias` is an instance.
+std::string port_of(std::span<const std::string> names) {
+  constexpr std::string_view kKeys[] = {"alias", "constants", "resources", "initial", "max_step"};
+  if (names.size() < 4 || std::ranges::find(kKeys, names[2]) == std::end(kKeys)) return {};
+  return names.size() > 4 && names[2] == "alias" ? names[3] + '[' + names[4] + ']' : names[3];
+}
+
+Json offers_json(const Fault& fault) {
+  Json all = Json::array();
+  for (const Offer& offer : fault.offers) {
+    Json acts = Json::array();
+    for (const EditAct& act : offer.acts) acts.push_back(edit_json(act));
+    all.push_back({{"label", offer.label}, {"acts", std::move(acts)}});
+  }
+  return all;
+}
+
 }  // namespace
 
 std::string sentence(const Fault& fault) {
@@ -27,9 +47,31 @@ std::string sentence(const Fault& fault) {
   return help.empty() ? fault.message : fault.message + " (" + help + ")";
 }
 
+void Report::locate(Fault& fault) const {
+  if (keys_ == nullptr) return;
+  const std::vector<std::string> names = keys_->names(fault.at.key);
+  for (const std::string& name : names) append_joined(fault.path, "/", name);
+  if (names.size() < 2) return;
+  if (fault.set.empty() && names[0] == "configurations") fault.set = names[1];
+  if (!fault.task.empty() || names[0] != "tasks") return;
+  fault.task = names[1];
+  if (fault.port.empty()) fault.port = port_of(names);
+}
+
+void Report::use(std::shared_ptr<const KeyPaths> keys) {
+  if (keys == nullptr || keys == keys_) return;
+  keys_ = std::move(keys);
+  for (Fault& fault : faults_) {
+    fault.at.key = keys_->key_at(fault.at);
+    locate(fault);
+  }
+}
+
 void Report::add(Fault fault) {
   CHIMERA_ASSERT(is_rule(fault.rule));
-  for (std::string* part : {&fault.message, &fault.found, &fault.expected, &fault.nearest, &fault.remedy})
+  locate(fault);
+  for (std::string* part : {&fault.message, &fault.found, &fault.expected, &fault.nearest, &fault.remedy, &fault.set,
+                            &fault.task, &fault.port, &fault.path})
     *part = plain_line(*part);  // one fault, one line
   for (const Fault& known : faults_)
     if (known.at == fault.at && known.rule == fault.rule && known.message == fault.message) return;
@@ -49,6 +91,11 @@ void Report::add_all(const Report& other) {
       other.faults_.begin(), other.faults_.end(), [](const Fault& f) { return f.severity == Severity::kError; }));
   errors_ += other.errors_ - kept_errors;
   warnings_ += other.warnings_ - (other.faults_.size() - kept_errors);
+}
+
+void Report::offer(std::size_t fault, Offer offer) {
+  offer.label = plain_line(offer.label);
+  faults_[fault].offers.push_back(std::move(offer));
 }
 
 void Report::sort() {
@@ -89,7 +136,12 @@ std::string Report::json() const {
                       {"expected", fault.expected},
                       {"nearest", fault.nearest},
                       {"message", fault.message},
-                      {"remedy", remedy(fault)}});
+                      {"remedy", remedy(fault)},
+                      {"set", fault.set},
+                      {"task", fault.task},
+                      {"port", fault.port},
+                      {"path", fault.path},
+                      {"offers", offers_json(fault)}});
   return spaced_json({{"file", file_},
                       {"legal", is_legal()},
                       {"errors", errors_},

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "chimera/description/draft.h"
+
 namespace chimera {
 namespace {
 
@@ -65,10 +67,45 @@ TEST(Report, IsOneJsonObject) {
   EXPECT_EQ(report.json(),
             R"({"file": "a \"b\"", "legal": false, "errors": 1, "warnings": 0, "faults": [{"rule": "key-unknown", )"
             R"("severity": "error", "file": "a \"b\"", "line": 2, "column": 3, "found": "rat", "expected": "'rate'", )"
-            R"("nearest": "rate", "message": "back\\slash", "remedy": "did you mean 'rate'?"}], )"
-            R"("notes": []})");
+            R"("nearest": "rate", "message": "back\\slash", "remedy": "did you mean 'rate'?", "set": "", "task": "", )"
+            R"("port": "", "path": "", "offers": []}], "notes": []})");
   EXPECT_EQ(Report("a").json(),
             R"({"file": "a", "legal": true, "errors": 0, "warnings": 0, "faults": [], "notes": []})");
+}
+
+TEST(Report, FillsPathAndBoxFromThePlace) {
+  const auto box = [](const std::string& text) {
+    const ReadDescription reading = read_description(text, "a");
+    const Fault& fault = reading.report.faults()[0];
+    return fault.path + " set=" + fault.set + " task=" + fault.task + " port=" + fault.port;
+  };
+  const std::string head = "subsystem: a\ntasks:\n  pid:\n    ";
+  EXPECT_EQ(box(head + "rat: 1 Hz\n"), "tasks/pid/rat set= task=pid port=");  // the map begins at the same place
+  EXPECT_EQ(box(head + "rate:\n      a: 1\n"), "tasks/pid/rate set= task=pid port=");
+  EXPECT_EQ(box(head + "alias: {q: 1 m}\n"), "tasks/pid/alias/q set= task=pid port=q");
+  EXPECT_EQ(box(head + "alias:\n      in:\n      - a\n      - b c\n"),
+            "tasks/pid/alias/in/1 set= task=pid port=in[1]");
+  EXPECT_EQ(box(head + "rate: 1 Hz\nconfigurations: {run: [1 m]}\n"), "configurations/run/0 set=run task= port=");
+  EXPECT_EQ(box(head + "resources: {port: &a x}\n"), "tasks/pid/resources/port set= task=pid port=port");
+  EXPECT_EQ(box("subsystem: a\n"), " set= task= port=");
+}
+
+TEST(Report, WritesEachKindOfActThatItOffers) {
+  Report report("a");
+  report.add(fault({1, 1}, "wrong"));
+  report.offer(0, {"press", {SetValue{{"tasks", "pid", "rate"}, "1 kHz"}, RemoveValue{{"operator", "x"}},
+                             RenameKey{{"tasks", "a"}, "b", {{"c", "d"}}}, AddTask{"e", "f"},
+                             LinkPort{"g", "h", "i", 2}, LinkPort{"g", "h", "i", std::nullopt},
+                             JoinProducers{"j", JoinBy::kPriority, {{"k", "l"}}}}});
+  const std::string expected =
+      R"("offers": [{"label": "press", "acts": [{"act": "set", "path": "tasks/pid/rate", "value": "1 kHz"}, )"
+      R"({"act": "remove", "path": "operator/x"}, )"
+      R"({"act": "rename", "path": "tasks/a", "to": "b", "ports": [{"task": "c", "port": "d"}]}, )"
+      R"({"act": "add_task", "name": "e", "component": "f"}, )"
+      R"({"act": "link", "task": "g", "port": "h", "variable": "i", "instance": 2}, )"
+      R"({"act": "link", "task": "g", "port": "h", "variable": "i", "instance": null}, )"
+      R"({"act": "join", "variable": "j", "by": "priority", "producers": [{"task": "k", "port": "l"}]}]}])";
+  EXPECT_NE(report.json().find(expected), std::string::npos) << report.json();
 }
 
 TEST(Report, HasNotesThatAreNoFaults) {

@@ -15,6 +15,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "chimera/description/key_paths.h"
 #include "chimera/description/text_limits.h"
 #include "chimera/description/yaml_fault.h"
 
@@ -242,6 +243,7 @@ std::optional<Node> read_yaml(std::string_view text, Report& report) {
   TreeBuilder builder(text, report);
   if (!parse(text, builder, report)) return std::nullopt;
   Node root = builder.take();
+  report.use(std::make_shared<const KeyPaths>(root));
   refuse_duplicates(root, report);
   return root;
 }

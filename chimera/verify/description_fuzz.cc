@@ -9,6 +9,7 @@
 #include "chimera/base/testing/property.h"
 #include "chimera/base/testing/tree_path.h"
 #include "chimera/catalogue/library.h"
+#include "chimera/verify/outline.h"
 #include "chimera/verify/verify.h"
 
 namespace {
@@ -31,6 +32,7 @@ const Library& library() {
 void check_faults(const Report& report, std::size_t lines) {
   for (const Fault& fault : report.faults()) {
     require(!fault.message.empty(), "a fault says what it is");
+    require(fault.port.empty() || !fault.task.empty(), "a port is that of a task");
     require(fault.at.line <= lines, "a fault stands in the text");
     require((fault.at.line == 0) == (fault.at.column == 0), "a place has a line and a column");
   }
@@ -70,7 +72,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
 #ifdef CHIMERA_PLANTED_DEFECT
   if (reading.draft) planted(*reading.draft);
 #endif
-  const Verdict verdict = verify(reading, library());
+  const Outlined outlined = verify_with_outline(reading, library());
+  const Verdict& verdict = outlined.verdict;
+  require(!outlined.outline || !outline_json(*outlined.outline).empty(), "an outline can be written");
   require(verdict.configuration.has_value() == verdict.report.is_legal(), "legal is what becomes a configuration");
   check_faults(verdict.report, static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1);
   if (!verdict.configuration) return 0;

@@ -41,7 +41,7 @@ void Model::unlink(PortRef ref) {
   const auto is_it = [&](const PortRef other) { return other.task == ref.task && other.port == ref.port; };
   std::erase_if(of.producers, is_it);
   std::erase_if(of.consumers, is_it);
-  port(ref).variable.clear();
+  part(port(ref));
   has_unmet = true;
 }
 
@@ -49,23 +49,29 @@ bool Model::is_incomplete() const noexcept {
   return draft.is_partial || std::any_of(tasks.begin(), tasks.end(), [](const TaskModel& t) { return t.is_partial(); });
 }
 
-void Model::error(std::string_view rule, Place at, std::string message, std::string found, std::string expected,
-                  std::string nearest, std::string remedy) {
-  report.add({.rule = rule,
-              .at = at,
-              .message = std::move(message),
-              .found = std::move(found),
-              .expected = std::move(expected),
-              .nearest = std::move(nearest),
-              .remedy = std::move(remedy)});
+void Model::add(const Spot& spot, Fault fault) {
+  fault.at = spot.at;
+  if (spot.set != nullptr) fault.set = spot.set->name;
+  if (spot.task) fault.task = tasks[*spot.task].name();
+  fault.port = spot.port;
+  report.add(std::move(fault));
 }
 
-void Model::warn(std::string_view rule, Place at, std::string message, std::string remedy) {
-  report.add({.rule = rule,
-              .at = at,
-              .message = std::move(message),
-              .remedy = std::move(remedy),
-              .severity = Severity::kWarning});
+void Model::error(std::string_view rule, const Spot& spot, std::string message, std::string found,
+                  std::string expected, std::string nearest, std::string remedy) {
+  add(spot, {.rule = rule,
+             .message = std::move(message),
+             .found = std::move(found),
+             .expected = std::move(expected),
+             .nearest = std::move(nearest),
+             .remedy = std::move(remedy)});
+}
+
+void Model::warn(std::string_view rule, const Spot& spot, std::string message, std::string remedy) {
+  add(spot, {.rule = rule,
+             .message = std::move(message),
+             .remedy = std::move(remedy),
+             .severity = Severity::kWarning});
 }
 
 std::string Model::say(const LinkedPort& port) const {

@@ -48,6 +48,7 @@ struct LinkedPort {
   std::size_t task = 0;
   std::string name;                           ///< "x", "in[2]"
   std::string variable;                       ///< "" for resources and in-consts that are not linked
+  std::string parted_from;                    ///< `variable` before a fault parted the port from it
   Place at;                                   ///< of the alias, otherwise of the task
   const Node* own = nullptr;                  ///< `constants`, `initial` or `resources` of the task
   ConstSource source = ConstSource::kNobody;  ///< in-const
@@ -133,6 +134,25 @@ struct WrittenLength {
   Place at;
 };
 
+/// The place of a fault in the text, and the part of the picture at which it stands. A place below `tasks` or
+/// `configurations` gives task, port and configuration by itself (Report::add).
+struct Spot {
+  Place at;
+  std::optional<std::size_t> task = {};
+  std::string_view port = {};      ///< lives as long as the model
+  const SetModel* set = nullptr;
+
+  Spot(Place place) : at(place) {}
+  Spot(Place place, std::string_view name) : at(place), port(name) {}
+  Spot(Place place, const LinkedPort& of) : at(place), task(of.task), port(of.name) {}
+  Spot(const LinkedPort& of) : Spot(of.at, of) {}
+  Spot in(const SetModel& which) const {
+    Spot spot = *this;
+    spot.set = &which;
+    return spot;
+  }
+};
+
 struct Model {
   Model(const Draft& d, const Library& l, Report& r) : draft(d), library(l), report(r) {}
 
@@ -161,14 +181,17 @@ struct Model {
   VariableModel* variable(std::string_view name);
   /// The variable of the port; nullptr: not linked.
   VariableModel* variable(const LinkedPort& p) { return p.is_linked() ? variable(p.variable) : nullptr; }
+  /// Clears the variable of a port, which remembers it.
+  static void part(LinkedPort& of) { of.parted_from = std::exchange(of.variable, {}); }
   /// Takes the port out of its variable, so that a wrong link carries no type, unit or shape to other ports.
   void unlink(PortRef ref);
   /// True if a missing part could explain other missing parts: then report no missing parts.
   bool is_incomplete() const noexcept;
 
-  void error(std::string_view rule, Place at, std::string message, std::string found = {}, std::string expected = {},
-             std::string nearest = {}, std::string remedy = {});
-  void warn(std::string_view rule, Place at, std::string message, std::string remedy = {});
+  void error(std::string_view rule, const Spot& spot, std::string message, std::string found = {},
+             std::string expected = {}, std::string nearest = {}, std::string remedy = {});
+  void warn(std::string_view rule, const Spot& spot, std::string message, std::string remedy = {});
+  void add(const Spot& spot, Fault fault);
 
   /// "output 'tau' of task 'pid'", with "(variable 'x')" if an alias gives it.
   std::string say(const LinkedPort& port) const;

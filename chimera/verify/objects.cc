@@ -10,7 +10,7 @@
 namespace chimera {
 
 Report faulty_objects(const Configuration& configuration, const Library& library) {
-  Report report(configuration.file());
+  Report report(configuration.file(), configuration.draft().keys);
   std::set<std::string> seen;
   for (const ConfiguredTask& task : configuration.tasks()) {
     const LibraryEntry* entry = library.find(task.component);

@@ -11,7 +11,7 @@ namespace {
 class Refusals {
  public:
   Refusals(const Configuration& configuration, Executor executor)
-      : configuration_(configuration), executor_(executor), report_(configuration.file()) {}
+      : configuration_(configuration), executor_(executor), report_(configuration.file(), configuration.draft().keys) {}
 
   Report take() {
     for (std::size_t i = 0; i < configuration_.rtpus().size(); ++i) rtpu(i);

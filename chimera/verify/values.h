@@ -18,6 +18,7 @@ struct ValueTarget {
   const LinkedPort& port;
   std::string what;      ///< for messages: "constant 'scale' of task 'left'"
   bool is_step = false;  ///< the largest step of a value: above 0; the declared range does not count
+  const SetModel* set = nullptr;  ///< the configuration whose condition has the value; nullptr: the port has it
 };
 
 /// The bytes of `node` for the target: elements at their maxima, zero beyond the written ones. A value that is not a

@@ -4,6 +4,7 @@
 
 #include "chimera/catalogue/library.h"
 #include "chimera/verify/model.h"
+#include "chimera/verify/outline.h"
 #include "chimera/verify/rules/rules.h"
 
 namespace chimera {
@@ -49,8 +50,10 @@ void judge_order(Model& model) {
   warn_of_unused(model);
 }
 
-Verdict judge(const Draft& draft, const Library& library, Report report, Overload overload) {
+Verdict judge(const Draft& draft, const Library& library, Report report, Overload overload,
+              std::optional<Outline>* outline = nullptr) {
   Verdict verdict{std::nullopt, std::move(report)};
+  verdict.report.use(draft.keys);
   if (draft.tasks.empty() && !draft.is_partial && verdict.report.is_legal())
     verdict.report.add({.rule = "key-missing",
                         .at = draft.subsystem.at,
@@ -64,6 +67,7 @@ Verdict judge(const Draft& draft, const Library& library, Report report, Overloa
   judge_values(model);
   judge_order(model);
   if (verdict.report.is_legal()) verdict.configuration.emplace(model);
+  if (outline != nullptr) *outline = outline_of(model);
   verdict.report.sort();
   return verdict;
 }
@@ -77,6 +81,12 @@ Verdict verify(const Draft& draft, const Library& library) {
 Verdict verify(const ReadDescription& reading, const Library& library, Overload overload) {
   if (!reading.draft) return {std::nullopt, reading.report};
   return judge(*reading.draft, library, reading.report, overload);
+}
+
+Outlined verify_with_outline(const ReadDescription& reading, const Library& library, Overload overload) {
+  Outlined out{{std::nullopt, reading.report}, std::nullopt};
+  if (reading.draft) out.verdict = judge(*reading.draft, library, reading.report, overload, &out.outline);
+  return out;
 }
 
 }  // namespace chimera

@@ -8,6 +8,7 @@
 #include "chimera/cli/files/modes_text.h"
 #include "chimera/draw/graph_of.h"
 #include "chimera/runtime/hosted/together.h"
+#include "chimera/verify/offers.h"
 
 namespace chimera::cli {
 namespace {
@@ -92,7 +93,10 @@ std::string verdict_text(const Configuration& configuration, bool with_cycles) {
 CommandResult check(const CheckOptions& options, const Workplace& workplace) {
   const auto library = workplace.library(options.file);
   if (!library) return file_refusal(library.error(), options.json);
-  Verdict verdict = verify(read_description_file(options.file), *library);
+  const ReadDescription reading = read_description_file(options.file);
+  Outlined outlined = verify_with_outline(reading, *library);
+  if (options.json) offer_edits(reading, *library, outlined);
+  Verdict& verdict = outlined.verdict;
   if (verdict.configuration) {
     auto set = with_settings(*verdict.configuration, *library, options.settings);
     if (!set) return file_refusal(set.error(), options.json);

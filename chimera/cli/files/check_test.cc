@@ -2,6 +2,7 @@
 #include "chimera/cli/files/check.h"
 
 #include "chimera/cli/files/testing/test_place.h"
+#include "chimera/text/json.h"
 
 namespace chimera::cli {
 namespace {
@@ -53,6 +54,13 @@ TEST(Check, CountsTheFaultsOnStandardError) {
   EXPECT_EQ(output.err.rfind("FILE:3:", 0), 0u) << output.err;
   EXPECT_NE(output.err.find("t_counter"), std::string::npos) << output.err;
   EXPECT_EQ(output.err.substr(output.err.size() - 8), "1 error\n");
+}
+
+TEST(Check, JsonOffersTheEditOfARemedy) {
+  const Json report = Json::parse(checked("subsystem: small\ntasks:\n  counter: {component: t_countr}\n", true).out);
+  EXPECT_EQ(report["faults"][0]["task"], "counter");
+  EXPECT_EQ(report["faults"][0]["offers"][0]["acts"].dump(),
+            R"([{"act":"set","path":"tasks/counter/component","value":"t_counter"}])");
 }
 
 TEST(Check, JsonStandsAloneOnStandardOutput) {

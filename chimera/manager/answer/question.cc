@@ -4,7 +4,7 @@
 
 #include "chimera/analysis/schedule_report.h"
 #include "chimera/text/json.h"
-#include "chimera/verify/verify.h"
+#include "chimera/verify/offers.h"
 
 namespace chimera::manager {
 namespace {
@@ -16,8 +16,10 @@ std::string one_line(const std::string& json) { return Json::parse(json).dump();
 
 std::string answer_of(const Question& question, const Library& library) {
   const bool is_check = question.kind == Question::Kind::kCheck;
-  Verdict verdict = chimera::verify(read_description(question.text, question.file), library,
-                                    is_check ? Overload::kRefused : Overload::kTold);
+  const ReadDescription reading = read_description(question.text, question.file);
+  Outlined outlined = verify_with_outline(reading, library, is_check ? Overload::kRefused : Overload::kTold);
+  if (is_check) offer_edits(reading, library, outlined);
+  Verdict& verdict = outlined.verdict;
   if (!is_check && verdict.configuration)
     return one_line(schedule_json(*verdict.configuration, schedule_report(*verdict.configuration, {})));
   if (is_check && verdict.configuration) verdict.report.add_all(faulty_objects(*verdict.configuration, library));

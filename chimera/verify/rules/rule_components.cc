@@ -23,7 +23,7 @@ void refuse_unbuilt(Model& model, const DraftTask& task) {
 void refuse_streams(Model& model, const TaskModel& task) {
   for (const PortDescriptor& port : task.component->ports)
     if (port.kind == CHIMERA_IN_STREAM || port.kind == CHIMERA_OUT_STREAM)
-      model.error("port-stream", task.draft->component.at,
+      model.error("port-stream", Spot(task.draft->component.at, port.name),
                   "task '" + task.name() + "': port '" + port.name + "' of component '" + task.component->name +
                       "' is a stream; streams are not built yet",
                   port.name, "a component without streams");
@@ -157,7 +157,7 @@ std::optional<std::size_t> instances(Model& model, const TaskModel& task, const 
   const std::size_t least = may_have_none || is_said_none ? 0 : 1;
   if (found.count >= least && found.count <= port.max_instances) return found.count;
   const std::string range = std::to_string(least) + " to " + std::to_string(port.max_instances);
-  model.error("repeated-port", found.at,
+  model.error("repeated-port", Spot(found.at, port.name),
               "repeated port '" + port.name + "' of task '" + task.name() + "' has " + std::to_string(found.count) +
                   " instances; expected " + range,
               std::to_string(found.count), range, {}, "write alias: {" + port.name + ": [variable, variable]}");
@@ -267,7 +267,7 @@ void require_resources(Model& model) {
   for (const TaskModel& task : model.tasks)
     for (const LinkedPort& port : task.ports)
       if (port.is(CHIMERA_RESOURCE) && port.own == nullptr && !task.is_partial())
-        model.error("resource-missing", task.draft->name.at,
+        model.error("resource-missing", port,
                     "task '" + task.name() + "': the resource '" + port.declared->name + "' is not given", {},
                     port.declared->name, {},
                     "write resources: {" + port.declared->name + ": ...}" +

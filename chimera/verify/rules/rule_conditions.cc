@@ -27,7 +27,7 @@ class ConditionJudge {
     const LinkedPort& port =
         model_.port(variable->producers.empty() ? variable->consumers[0] : variable->producers[0]);
     if (!is_solved(port) || !is_number(port) || !is_one_element(port)) return;
-    const auto bytes = value_bytes(model_, draft_.value, {port, what_});
+    const auto bytes = value_bytes(model_, draft_.value, {port, what_, false, &set_});
     if (!bytes) return;
     const std::uint32_t element = draft_.element.value_or(0);
     const double limit = number_at(*port.type, bytes->data() + std::size_t{element} * port.element_bytes);

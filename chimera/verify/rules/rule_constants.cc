@@ -13,7 +13,7 @@ void settle(Model& model, LinkedPort& port) {
   if (port.own != nullptr) {
     port.source = ConstSource::kOwn;
     if (port.variable != port.declared->name)
-      model.error("constant-produced", port.at,
+      model.error("constant-produced", port,
                   model.say(port) + " is linked by 'alias' and given a value under 'constants'", port.name,
                   "one of the two", {}, "take one of the two out");
   } else if (produced) {
@@ -22,7 +22,7 @@ void settle(Model& model, LinkedPort& port) {
   } else if (!port.declared->initial.empty()) {
     port.source = ConstSource::kDefault;
   } else if (variable == nullptr && !model.is_incomplete()) {
-    model.error("constant-unmet", port.at, model.say(port) + " has no producer and no default", port.variable,
+    model.error("constant-unmet", port, model.say(port) + " has no producer and no default", port.variable,
                 "a value", {}, "write constants: {" + port.declared->name + ": ...} for the task or for the file");
   }
   port.variable.clear();
@@ -31,7 +31,7 @@ void settle(Model& model, LinkedPort& port) {
 void refuse_two(Model& model, const VariableModel& variable) {
   if (variable.given != nullptr && !variable.producers.empty()) {
     const LinkedPort& port = model.port(variable.producers[0]);
-    model.error("constant-produced", variable.given->name.at,
+    model.error("constant-produced", Spot(variable.given->name.at, port),
                 "constant '" + variable.name + "' is given here and produced by " + model.say(port) + " at " +
                     Model::say(port.at),
                 variable.name, "one producer", {}, "take it out here, or link the output elsewhere by alias");
@@ -40,7 +40,7 @@ void refuse_two(Model& model, const VariableModel& variable) {
     const std::vector<PortRef> producers = producers_of(model, variable, set);
     if (producers.size() < 2) continue;
     const LinkedPort &first = model.port(producers[0]), &second = model.port(producers[1]);
-    model.error("constant-two-producers", second.at,
+    model.error("constant-two-producers", Spot(second).in(set),
                 "constant '" + variable.name + "' has two producers in configuration '" + set.name +
                     "': " + model.say(first) + " at " + Model::say(first.at) + " and " + model.say(second),
                 variable.name, "one producer", {}, "link one of them elsewhere by alias");
@@ -55,15 +55,18 @@ bool has_several(const Model& model, const VariableModel& variable) {
   return n > 1;
 }
 
-/// "in-const 'mass' of task 'need'", or a port with the constant as an extent; "": the task does not use it.
-std::string user_of(const Model& model, const TaskModel& task, const VariableModel& constant) {
+bool reads(const LinkedPort& port, const VariableModel& constant) {
+  return port.is(CHIMERA_IN_CONST) && port.source == ConstSource::kVariable && port.variable == constant.name;
+}
+
+/// The in-const that reads the constant, or a port with it as an extent; nullptr: the task does not use it.
+const LinkedPort* user_of(const TaskModel& task, const VariableModel& constant) {
   for (const LinkedPort& port : task.ports) {
-    if (port.is(CHIMERA_IN_CONST) && port.source == ConstSource::kVariable && port.variable == constant.name)
-      return model.say(port);
+    if (reads(port, constant)) return &port;
     for (const SolvedExtent& extent : port.extents)
-      if (extent.constant == constant.name) return "the extent of " + model.say(port);
+      if (extent.constant == constant.name) return &port;
   }
-  return {};
+  return nullptr;
 }
 
 /// If a constant has several producers, each configuration with a user must contain one of them.
@@ -71,10 +74,11 @@ void require_one(Model& model, const VariableModel& variable) {
   for (const SetModel& set : model.sets) {
     if (!set.is_whole || model.draft.is_partial || !producers_of(model, variable, set).empty()) continue;
     for (const TaskId task : set.tasks) {
-      const std::string user = user_of(model, model.tasks[task.index], variable);
-      if (user.empty()) continue;
-      model.error("constant-unmet", model.tasks[task.index].draft->name.at,
-                  user + " has no producer in configuration '" + set.name + "'; constant '" + variable.name +
+      const LinkedPort* user = user_of(model.tasks[task.index], variable);
+      if (user == nullptr) continue;
+      model.error("constant-unmet", Spot(model.tasks[task.index].draft->name.at, *user).in(set),
+                  (reads(*user, variable) ? "" : "the extent of ") + model.say(*user) +
+                      " has no producer in configuration '" + set.name + "'; constant '" + variable.name +
                       "' is produced by tasks of other configurations",
                   variable.name, "a producer of '" + variable.name + "'", {},
                   "add task '" + model.tasks[variable.producers[0].task].name() + "' or another producer there");

@@ -36,7 +36,7 @@ void add_given(Model& model, const std::vector<NamedNode>& given, bool is_consta
 void refuse_both(Model& model, const LinkedPort& port) {
   const bool is_constant = port.declared->is_constant();
   const char *constant = "constant", *state = "state variable";
-  model.error("variable-and-constant", port.at,
+  model.error("variable-and-constant", port,
               "'" + port.variable + "' is a " + (is_constant ? constant : state) + " here (" + model.say(port) +
                   ") and a " + (is_constant ? state : constant) + " elsewhere",
               port.variable, {}, {}, "rename one of the two: alias: {" + port.declared->name + ": another_name}");
@@ -56,7 +56,7 @@ void add_port(Model& model, PortRef ref) {
     return;
   }
   refuse_both(model, port);
-  port.variable.clear();
+  Model::part(port);
 }
 
 /// Links an in-const only to a constant with a producer; otherwise its default counts (settle_constants).
@@ -79,7 +79,7 @@ void add_optional(Model& model, PortRef ref) {
   const VariableModel* known = model.variable(port.variable);
   if (known != nullptr && known->is_constant) {
     refuse_both(model, port);
-    port.variable.clear();
+    Model::part(port);
     return;
   }
   if (known == nullptr || (!known->is_given() && known->producers.empty()))
@@ -127,8 +127,9 @@ void report_unmet(Model& model, const UnmetInput& unmet) {
   const LinkedPort& port = model.port(unmet.port);
   const std::string near = nearest(variable.name, fitting(model, port, set));
   const std::string unit = port.unit && port.unit_text != "1" ? "; it is in " + port.unit_text : "";
-  model.error("input-unmet", port.at, unmet.said + " has no producer in configuration '" + set.name + "'" + unit,
-              variable.name, "a producer of '" + variable.name + "'", near,
+  model.error("input-unmet", Spot(port).in(set),
+              unmet.said + " has no producer in configuration '" + set.name + "'" + unit, variable.name,
+              "a producer of '" + variable.name + "'", near,
               unmet_remedy(model, port, variable, set, near));
 }
 
@@ -167,14 +168,14 @@ SetFault fault_of(const VariableModel& variable, const Members& on, const Member
 void report_two(Model& model, const VariableModel& variable, const SetModel& set) {
   const std::vector<PortRef> all = producers_in(variable, set), producers = producers_of(model, variable, set);
   if (variable.given != nullptr)
-    model.error("operator-produced", variable.given->name.at,
+    model.error("operator-produced", Spot(variable.given->name.at, model.port(all[0])).in(set),
                 "operator variable '" + variable.name + "' is produced by task '" +
                     model.tasks[all[0].task].name() + "' in configuration '" + set.name + "'",
                 variable.name, "a variable without a producing task", {},
                 "take it out of 'operator', or link the output elsewhere by alias");
   if (producers.size() < 2) return;
   const LinkedPort &first = model.port(producers[0]), &second = model.port(producers[1]);
-  model.error("two-producers", second.at,
+  model.error("two-producers", Spot(second).in(set),
               "'" + variable.name + "' has two producers in configuration '" + set.name + "': " + model.say(first) +
                   " at " + Model::say(first.at) + " and " + model.say(second),
               variable.name, "one producer", {},

@@ -222,7 +222,7 @@ class SetOrder {
     for (const Arc& arc : loop) path += " -" + model_.variables[arc.variable].name + "-> '" + task(arc.to).name() + "'";
     const LinkedPort& port = port_of(loop.back());
     model_.error(
-        "loop-without-initial", task(loop[0].from).draft->name.at,
+        "loop-without-initial", Spot(task(loop[0].from).draft->name.at, port_of(loop[0])).in(set_),
         "the loop " + path + " in configuration '" + set_.name + "' has no initial value", {},
         "an initial value on one of its variables", {},
         "give one: initial: {" + port.declared->name + ": ...} of task '" + task(loop.back().from).name() + "'");

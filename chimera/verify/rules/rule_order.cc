@@ -46,7 +46,7 @@ void refuse(Model& model, const LinkedPort& lower, const LinkedPort& upper, std:
   const std::string task = model.tasks[upper.task].name();
   const std::string place = element_count(upper.extents) == 1 ? "" : "[" + std::to_string(element) + "]";
   const std::string found = number_text(upper, high), least = number_text(lower, low);
-  model.error("constant-order", node != nullptr ? node->at : upper.at,
+  model.error("constant-order", Spot(node != nullptr ? node->at : upper.at, upper),
               "constant '" + upper.declared->name + place + "' of task '" + task + "' is " + found + ", below '" +
                   lower.declared->name + place + "'; expected at least " + least,
               found, "at least " + least, {},

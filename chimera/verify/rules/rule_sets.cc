@@ -85,8 +85,8 @@ void make_sets(Model& model) {
     set.at = draft.name.at;
     for (const Word& name : draft.tasks) add_task(model, set, name);
     if (draft.tasks.empty())
-      model.error("configuration-empty", set.at, "configuration '" + set.name + "' has no task", {}, "a list of tasks",
-                  {}, "write " + set.name + ": [task, task], or take it out");
+      model.error("configuration-empty", Spot(set.at).in(set), "configuration '" + set.name + "' has no task", {},
+                  "a list of tasks", {}, "write " + set.name + ": [task, task], or take it out");
     model.sets.push_back(std::move(set));
   }
   if (model.sets.empty()) model.sets.push_back(whole_set(model));

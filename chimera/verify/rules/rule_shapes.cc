@@ -64,7 +64,7 @@ SolvedExtent by_constant(Model& model, const TaskModel& task, const PortDescript
 bool is_too_large(Model& model, const LinkedPort& port, const std::string& symbol, const SolvedExtent& extent,
                   const std::string& why) {
   if (!extent.known || *extent.known <= extent.max) return false;
-  model.error("shape-clash", port.at,
+  model.error("shape-clash", port,
               model.say(port) + " holds at most " + std::to_string(extent.max) + " (shape " + port.declared->shape +
                   "), and '" + symbol + "' is " + std::to_string(*extent.known) + why,
               std::to_string(*extent.known), "at most " + std::to_string(extent.max), {},
@@ -112,7 +112,7 @@ void bind_shape(Model& model, PortRef ref, const LinkedPort& port, const Variabl
   if (!is_new) return;
   const std::uint32_t most = element_count(variable.extents);
   if (most <= declared.max) return;
-  model.error("shape-clash", port.at,
+  model.error("shape-clash", port,
               model.say(port) + " holds at most " + std::to_string(declared.max) + " elements (shape " +
                   port.declared->shape + "), and " + shape_text(variable.extents) + " by " +
                   settled_by(model, variable, variable.shape_from) + " may be " + std::to_string(most),
@@ -216,7 +216,7 @@ void compare(Model& model, const VariableModel& variable, const LinkedPort& port
   const std::string other = settled_by(model, variable, variable.shape_from);
   if (!port.has_extents) {  // a generic port with another number of dimensions
     if (port.declared->extents.size() == std::max<std::size_t>(variable.extents.size(), 1)) return;
-    model.error("shape-clash", port.at,
+    model.error("shape-clash", port,
                 model.say(port) + " is " + port.declared->shape + "; " + other + " is " + said(variable.extents),
                 port.declared->shape, said(variable.extents), {}, "link it to another variable by alias");
     return;
@@ -225,14 +225,14 @@ void compare(Model& model, const VariableModel& variable, const LinkedPort& port
   for (const Extent& extent : port.declared->extents) {
     const auto bound = bindings.find(key_of(model.tasks[port.task], port, extent.symbol));
     if (extent.is_literal() || bound == bindings.end()) continue;
-    model.error("extent-contradiction", port.at,
+    model.error("extent-contradiction", port,
                 "extent variable '" + extent.symbol + "' of task '" + model.tasks[port.task].name() + "' gives " +
                     said(port.extents) + " by '" + model.port(bound->second.from).name + "'; " + model.say(port) +
                     " has " + said(variable.extents) + " (" + other + ")",
                 said(variable.extents), said(port.extents), {}, "link both to variables of one shape");
     return;
   }
-  model.error("shape-clash", port.at,
+  model.error("shape-clash", port,
               model.say(port) + " is " + said(port.extents) + "; " + other + " is " + said(variable.extents),
               said(port.extents), said(variable.extents), {}, "link it to another variable by alias");
 }
@@ -240,7 +240,7 @@ void compare(Model& model, const VariableModel& variable, const LinkedPort& port
 void report_unsolved_shape(Model& model, const LinkedPort& port) {
   const VariableModel* variable = model.variable(port);
   if (variable != nullptr && variable->has_extents && variable->shape_from) return;  // compare() reported it
-  model.error("extent-unsolved", port.at,
+  model.error("extent-unsolved", port,
               "nothing settles the shape " + port.declared->shape + " of " + model.say(port), port.declared->shape,
               "a linked port or a value of a known shape", {},
               "link one of its ports to a component with a fixed shape");

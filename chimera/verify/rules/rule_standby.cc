@@ -97,14 +97,16 @@ void check_stale(Model& model, const TaskModel& task, const TaskModel& other) {
 void check_hot(Model& model, const TaskModel& task) {
   const DraftStandby& written = *task.draft->standby_for;
   if (!written.is_hot() || task.component == nullptr) return;
-  const auto refuse = [&](const std::string& why) {
-    model.error("standby-hot", written.hot->at, "task '" + task.name() + "' cannot be a hot standby: " + why, "true",
-                "false", {}, "take 'hot' out: it is then initialised, and turned ON when it takes over");
+  const auto refuse = [&](const std::string& why, std::string_view port = {}) {
+    model.error("standby-hot", Spot(written.hot->at, port),
+                "task '" + task.name() + "' cannot be a hot standby: " + why, "true", "false", {},
+                "take 'hot' out: it is then initialised, and turned ON when it takes over");
   };
   if (task.draft->server || task.component->is_aperiodic()) refuse("it is released by events");
   for (const LinkedPort& port : task.ports) {
-    if (port.is(CHIMERA_RESOURCE)) refuse("resource '" + port.name + "' would be used by it beside its primary");
-    if (port.is(CHIMERA_OUT_CONST)) refuse("it produces the constant '" + port.name + "'");
+    if (port.is(CHIMERA_RESOURCE))
+      refuse("resource '" + port.name + "' would be used by it beside its primary", port.name);
+    if (port.is(CHIMERA_OUT_CONST)) refuse("it produces the constant '" + port.name + "'", port.name);
   }
 }
 

@@ -179,7 +179,7 @@ bool limit(Model& model, const SetModel& set, const Together& together, std::uin
   std::snprintf(found, sizeof found, "%.3f", sum);
   const std::string taken = load_text(model, set, together, found, cpu);
   if (all_give_way) {
-    model.warn("utilisation", place_of_time(task),
+    model.warn("utilisation", Spot(place_of_time(task)).in(set),
                taken + ", more than 0.93: every task says 'on_miss: abort', so what finds no time ends at its deadline",
                "run it in virtual time");
     return false;
@@ -189,8 +189,9 @@ bool limit(Model& model, const SetModel& set, const Together& together, std::uin
   const std::string remedy = fits > 0
                                  ? "task '" + task.name() + "' takes most: it would fit with " + what_fits(task, fits)
                                  : "move tasks to another CPU, or lower their rates";
-  if (model.overload == Overload::kTold) model.warn("utilisation", place_of_time(task), message, remedy);
-  else model.error("utilisation", place_of_time(task), message, found, "at most 0.93", {}, remedy);
+  const Spot spot = Spot(place_of_time(task)).in(set);
+  if (model.overload == Overload::kTold) model.warn("utilisation", spot, message, remedy);
+  else model.error("utilisation", spot, message, found, "at most 0.93", {}, remedy);
   return false;
 }
 

@@ -100,13 +100,13 @@ void report_clash(Model& model, const VariableModel& variable, const LinkedPort&
   const std::string other = settled_by(model, variable, variable.type_from);
   if (port.declared->type == CHIMERA_ANY) {
     const LinkedPort& first = model.port(bindings.at(key_of(model, port)).from);
-    model.error("type-contradiction", port.at,
+    model.error("type-contradiction", port,
                 "type variable '" + port.declared->type_name + "' of task '" + model.tasks[port.task].name() + "' is " +
                     mine + " by '" + first.name + "' and " + theirs + " by '" + port.name + "' (" + other + ")",
                 theirs, mine, {}, "link both to variables of one type");
     return;
   }
-  model.error("type-clash", port.at, model.say(port) + " is " + mine + "; " + other + " is " + theirs, mine, theirs, {},
+  model.error("type-clash", port, model.say(port) + " is " + mine + "; " + other + " is " + theirs, mine, theirs, {},
               "link it to another variable by alias, or insert a component that converts " + theirs + " to " + mine);
 }
 
@@ -124,7 +124,7 @@ bool compare(Model& model, const VariableModel& variable, PortRef ref, const Typ
   if (*port.type != CHIMERA_STRUCT) return false;
   const std::string differs = difference(model, *port.declared, *first.declared);
   if (differs.empty()) return false;
-  model.error("struct-clash", port.at,
+  model.error("struct-clash", port,
               model.say(port) + " and " + settled_by(model, variable, variable.type_from) +
                   " mean different structs '" + port.declared->type_name + "': " + differs,
               port.declared->type_name, {}, {}, "build both components against one definition of the struct");
@@ -146,14 +146,14 @@ bool follows_from_another(Model& model, const LinkedPort& port) {
 void report_unsolved_type(Model& model, const LinkedPort& port) {
   const VariableModel* variable = model.variable(port);
   if (is_refused(variable)) {
-    model.error("type-clash", port.at,
+    model.error("type-clash", port,
                 model.say(port) + " takes any number; " + settled_by(model, *variable, variable->type_from) + " is " +
                     text_of(model, *variable),
                 text_of(model, *variable), "a number", {}, "link it to another variable by alias");
     return;
   }
   if (follows_from_another(model, port)) return;
-  model.error("type-unsolved", port.at,
+  model.error("type-unsolved", port,
               "nothing settles the type '" + port.declared->type_name + "' of " + model.say(port),
               port.declared->type_name, "a linked port or a value of a known type", {},
               "link one of its ports to a component with a fixed type");

@@ -8,6 +8,7 @@
 
 #include "chimera/base/hosted/wording.h"
 #include "chimera/units/quantity.h"
+#include "chimera/verify/converter.h"
 #include "chimera/verify/rules/rules.h"
 #include "chimera/verify/values.h"
 
@@ -302,48 +303,20 @@ void outvote(Model& model, UnitTable& table) {
   }
 }
 
-/// A component of the library of the framework: y = factor x, for any two units of one dimension.
-constexpr const char* kAnyConverter = "unit_convert";
-
-/// The component of the library that converts `from` to `to`, or "".
-std::string converter(const Model& model, UnitTable& table, const Unit& from, const Unit& to) {
-  for (const LibraryEntry& entry : model.library.entries()) {
-    std::size_t fits = 0, others = 0;
-    for (const PortDescriptor& port : entry.descriptor.ports) {
-      if (port.type == CHIMERA_STRUCT || port.is_constant()) continue;
-      const UnitExpression& expression = table.expression(port.unit);
-      const Unit& wanted = port.kind == CHIMERA_IN_VAR ? from : to;
-      const bool is_var = port.kind == CHIMERA_IN_VAR || port.kind == CHIMERA_OUT_VAR;
-      const bool fit = is_var && expression.is_concrete() && same(expression.rest, wanted);
-      ++(fit ? fits : others);
-    }
-    if (fits == 2 && others == 0) return entry.descriptor.name;
-  }
-  return {};
-}
-
-std::string remedy(const Model& model, UnitTable& table, const LinkedPort& port, const VariableModel& variable) {
+std::string remedy(const Model& model, const LinkedPort& port, const VariableModel& variable) {
   const bool into = !port.is_producer();
-  const NamedUnit mine{*port.unit, port.unit_text, {}}, theirs{*variable.unit, variable.unit_text, {}};
-  const NamedUnit &from = into ? theirs : mine, &to = into ? mine : theirs;
+  const WordedUnit mine{*port.unit, port.unit_text}, theirs{*variable.unit, variable.unit_text};
+  const WordedUnit &from = into ? theirs : mine, &to = into ? mine : theirs;
   const auto factor = conversion(from.unit, to.unit);
   if (!factor) return "they measure different things: link it to another variable by alias";
-  const std::string name = converter(model, table, from.unit, to.unit);
   char law[80];
   std::snprintf(law, sizeof law, factor->offset == 0 ? "times %.10g" : "times %.10g plus %.10g", factor->factor,
                 factor->offset);
   const std::string what = from.text + " to " + to.text + " (" + law + ")";
-  if (!name.empty()) return "insert the component '" + name + "': " + what;
-  const auto is_general = [](const LibraryEntry& entry) { return entry.descriptor.name == kAnyConverter; };
-  const auto& entries = model.library.entries();
-  if (factor->offset != 0 || std::none_of(entries.begin(), entries.end(), is_general))
-    return "insert a component that converts " + what;
-  const auto part = [](const std::string& unit) {
-    return unit.find_first_of(" .*/^()0123456789") == std::string::npos ? unit : "(" + unit + ")";
-  };
-  std::snprintf(law, sizeof law, "%.10g ", factor->factor);
-  return std::string("insert the component '") + kAnyConverter + "' with constants: {factor: " + law + part(to.text) +
-         "/" + part(from.text) + "}: " + what;
+  const auto converter = converter_of(model.library, from, to);
+  if (!converter) return "insert a component that converts " + what;
+  const std::string with = converter->factor.empty() ? "" : " with constants: {factor: " + converter->factor + "}";
+  return "insert the component '" + converter->component + "'" + with + ": " + what;
 }
 
 void report_contradiction(Model& model, UnitTable& table, const LinkedPort& port, const VariableModel& variable) {
@@ -352,10 +325,10 @@ void report_contradiction(Model& model, UnitTable& table, const LinkedPort& port
     if (key.first == port.task && port.declared->unit.find(key.second[0]) != std::string::npos)
       append_joined(by, ", ", std::string(1, key.second[0]) + " is " + binding.value.text + " by '" +
                                   model.port(binding.from).name + "'");
-  model.error("unit-contradiction", port.at,
+  model.error("unit-contradiction", port,
               model.say(port) + " has unit '" + port.declared->unit + "', so " + port.unit_text + " because " + by +
                   "; " + settled_by(model, variable, variable.unit_from) + " is in " + variable.unit_text,
-              variable.unit_text, port.unit_text, {}, remedy(model, table, port, variable));
+              variable.unit_text, port.unit_text, {}, remedy(model, port, variable));
 }
 
 void compare(Model& model, UnitTable& table, const VariableModel& variable, const LinkedPort& port) {
@@ -364,21 +337,21 @@ void compare(Model& model, UnitTable& table, const VariableModel& variable, cons
     report_contradiction(model, table, port, variable);
     return;
   }
-  model.error("unit-clash", port.at,
+  model.error("unit-clash", port,
               model.say(port) + " is in " + port.unit_text + "; " + settled_by(model, variable, variable.unit_from) +
                   " is in " + variable.unit_text,
-              port.unit_text, variable.unit_text, {}, remedy(model, table, port, variable));
+              port.unit_text, variable.unit_text, {}, remedy(model, port, variable));
 }
 
 /// A value whose unit cannot be read settles nothing: then it is the cause. Returns if there is one.
-bool report_unread(Model& model, const Node& written, const std::string& what) {
+bool report_unread(Model& model, const LinkedPort& port, const Node& written, const std::string& what) {
   bool found = false;
   for_each_number(written, [&](const Node& number) {
     const auto quantity = parse_quantity(number.text, model.library.units());
     if (quantity || found) return;
     found = true;
-    model.error("quantity-bad", number.at, what + ": " + std::string(quantity.error().message.view()), number.text,
-                "a quantity");
+    model.error("quantity-bad", Spot(number.at, port), what + ": " + std::string(quantity.error().message.view()),
+                number.text, "a quantity");
   });
   return found;
 }
@@ -386,18 +359,20 @@ bool report_unread(Model& model, const Node& written, const std::string& what) {
 bool report_unread_values(Model& model) {
   bool found = false;
   const auto is_open = [&](PortRef ref) { return has_unit(model.port(ref)) && !model.port(ref).unit; };
-  for (const VariableModel& variable : model.variables)
-    if (variable.given != nullptr && std::ranges::any_of(variable.consumers, is_open))
-      found |= report_unread(model, variable.given->value, value_name(variable));
+  for (const VariableModel& variable : model.variables) {
+    const auto reader = std::ranges::find_if(variable.consumers, is_open);
+    if (variable.given != nullptr && reader != variable.consumers.end())
+      found |= report_unread(model, model.port(*reader), variable.given->value, value_name(variable));
+  }
   for_each_port(model, [&](PortRef ref, const LinkedPort& port) {
     if (port.own != nullptr && port.is(CHIMERA_IN_CONST) && is_open(ref))
-      found |= report_unread(model, *port.own, value_name(model, port));
+      found |= report_unread(model, port, *port.own, value_name(model, port));
   });
   return found;
 }
 
 void report_unsolved_unit(Model& model, const LinkedPort& port) {
-  model.error("unit-unsolved", port.at, "nothing settles the unit '" + port.declared->unit + "' of " + model.say(port),
+  model.error("unit-unsolved", port, "nothing settles the unit '" + port.declared->unit + "' of " + model.say(port),
               port.declared->unit, "a linked port or a value of a known unit", {},
               "link one of its ports to a component with a fixed unit");
 }

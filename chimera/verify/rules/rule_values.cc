@@ -43,7 +43,7 @@ void check_resources(Model& model, const TaskModel& task) {
   for (const LinkedPort& port : task.ports) {
     if (!port.is(CHIMERA_RESOURCE) || port.own == nullptr) continue;
     if (!port.own->is_scalar())
-      model.error("value-type", port.own->at,
+      model.error("value-type", Spot(port.own->at, port),
                   "resource '" + port.name + "' of task '" + task.name() + "': expected a text", {}, "a text");
   }
 }
@@ -64,7 +64,7 @@ void check_users(Model& model, std::size_t a, std::size_t b) {
   for (const LinkedPort& port : model.tasks[a].ports) {
     if (!port.is(CHIMERA_RESOURCE) || port.declared->shared || port.own == nullptr || !port.own->is_scalar()) continue;
     if (const LinkedPort* its = same_resource(port, model.tasks[b]))
-      model.warn("resource-twice", its->own->at,
+      model.warn("resource-twice", Spot(its->own->at, *its).in(*set),
                  "tasks '" + model.tasks[a].name() + "' and '" + model.tasks[b].name() + "' of configuration '" +
                      set->name + "' both open the resource '" + port.own->text + "'",
                  "give each a device of its own; where it takes several users, declare the port `shared`");

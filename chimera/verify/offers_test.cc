@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// Offered edits: each leaves a text that is better, and what would not help is not offered.
+#include "chimera/verify/offers.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "chimera/base/hosted/wording.h"
+#include "chimera/catalogue/library.h"
+#include "chimera/description/text_edit.h"
+#include "chimera/units/testing/unit_samples.h"
+
+namespace chimera {
+namespace {
+
+Descriptor offered_component(std::string name, std::vector<PortDescriptor> ports, double rate_hz = 100) {
+  Descriptor d;
+  d.name = std::move(name);
+  d.default_rate_hz = rate_hz;
+  d.methods[CHIMERA_CYCLE] = true;
+  d.ports = std::move(ports);
+  EXPECT_TRUE(complete(d));
+  return d;
+}
+
+PortDescriptor port_in(std::string name, std::string unit) {
+  return {.name = std::move(name), .unit = std::move(unit)};
+}
+PortDescriptor port_out(std::string name, std::string unit) {
+  return {.name = std::move(name), .unit = std::move(unit), .kind = CHIMERA_OUT_VAR};
+}
+PortDescriptor ports_in(std::string name, std::string unit) {
+  return {.name = std::move(name), .unit = std::move(unit), .repeated = true, .max_instances = 16};
+}
+
+const Library& offers_library() {
+  static const Library kLibrary = Library::of(
+      {offered_component("arm", {port_out("q", "rad"), port_out("qd", "rad/s")}),
+       offered_component("law", {port_in("q", "rad"), port_in("kd", "V.s/rad"), port_out("u", "V")}),
+       offered_component("gauge", {port_in("q_ref", "rad")}), offered_component("slow", {port_in("q", "deg")}),
+       offered_component("deg", {port_in("x", "rad"), port_out("y", "deg")}, 0),
+       offered_component("norate", {port_in("q", "rad")}, 0),
+       offered_component("camera",
+                         {{.name = "eye", .kind = CHIMERA_RESOURCE, .type = CHIMERA_STRING, .element_size = 256}}),
+       offered_component("plant", {port_in("u", "V"), port_out("q", "rad")}),
+       offered_component("join_mean", {ports_in("in", "U"), port_out("out", "U")}),
+       offered_component("join_priority", {ports_in("in", "U"), port_out("out", "U"), port_out("chosen", "1")}),
+       offered_component("select", {ports_in("in", "U"), port_in("which", "1"), port_out("out", "U")})},
+      our_units());
+  return kLibrary;
+}
+
+/// "label | label" of the faults of a rule; each edit is done and must leave less errors or warnings.
+std::string offered(const std::string& text, std::string_view rule, std::size_t most_tries = kMostEditTries) {
+  const ReadDescription reading = read_description(text, "a.yaml");
+  Outlined outlined = verify_with_outline(reading, offers_library());
+  offer_edits(reading, offers_library(), outlined, most_tries);
+  const Report& before = outlined.verdict.report;
+  std::string labels;
+  for (const Fault& fault : before.faults()) {
+    if (fault.rule != rule) continue;
+    for (const Offer& offer : fault.offers) {
+      append_joined(labels, " | ", offer.label);
+      const auto after = edit_text(text, offer.acts);
+      EXPECT_TRUE(after) << (after ? "" : after.error().message.c_str());
+      if (!after) continue;
+      const Report report = verify(read_description(*after, "a.yaml"), offers_library()).report;
+      EXPECT_LT(report.errors() + report.warnings(), before.errors() + before.warnings()) << *after << report.text();
+    }
+  }
+  return labels;
+}
+
+constexpr const char* kArmAlone = "subsystem: a\ntasks:\n  arm:\n";
+
+TEST(Offers, LinkAnInputToVariablesOfItsUnitOrGiveItAValue) {
+  const std::string text = std::string(kArmAlone) + "  gauge:\n";
+  EXPECT_EQ(offered(text, "input-unmet"), "link to 'q' | give 'q_ref' under operator");
+}
+
+TEST(Offers, DoNotLinkAGainToAVelocityOfANearName) {
+  const std::string text = std::string(kArmAlone) + "  law:\n";
+  EXPECT_EQ(offered(text, "input-unmet"), "give 'kd' under operator");
+}
+
+TEST(Offers, JoinTwoProducersInThreeWays) {
+  const std::string text =
+      std::string(kArmAlone) + "  spare: {component: arm, alias: {qd: qd_2}}\n  norate: {rate: 1 Hz}\n";
+  EXPECT_EQ(offered(text, "two-producers"), "join by mean | join by priority | join by selection");
+}
+
+TEST(Offers, AddTheProducerToTheConfiguration) {
+  const std::string text =
+      std::string(kArmAlone) + "  norate: {rate: 1 Hz}\nconfigurations:\n  run: [norate]\n  idle: {tasks: [arm]}\n";
+  EXPECT_EQ(offered(text, "input-unmet"), "add 'arm' to 'run'");
+}
+
+TEST(Offers, InsertAConverterInEachConfigurationOfItsReader) {
+  EXPECT_EQ(offered(std::string(kArmAlone) + "  slow:\n", "unit-clash"), "insert 'deg'");
+  const std::string sets = "configurations: {run: [arm, slow], also: {tasks: [slow, arm]}}\n";
+  EXPECT_EQ(offered(std::string(kArmAlone) + "  slow:\n" + sets, "unit-clash"), "insert 'deg'");
+}
+
+TEST(Offers, LinkAPortThatClashesToAnotherVariableOfItsUnit) {
+  const std::string text = std::string(kArmAlone) + "  gauge: {alias: {q_ref: qd}}\n";
+  EXPECT_EQ(offered(text, "unit-clash"), "link to 'q'");
+}
+
+TEST(Offers, WriteARateANearNameAndTakeOut) {
+  EXPECT_EQ(offered(std::string(kArmAlone) + "  norate:\n", "rate-missing"), "rate: 100 Hz");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  amr: {component: arn}\n", "component-unknown"), "write 'arm'");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm: {alias: {q_d: v}}\n", "port-unknown"), "rename to 'qd'");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm: {rat: 5 Hz}\n", "key-unknown"), "rename to 'rate'");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm: {magic: 5 Hz}\n", "key-unknown"), "take it out");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm:\noperator: {x: 1}\n", "unused"), "take it out");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm:\noperator: {q: 1 rad}\n", "operator-produced"), "take it out");
+}
+
+TEST(Offers, NameAMissingResourceAndGiveALoopItsInitialValue) {
+  EXPECT_EQ(offered(std::string(kArmAlone) + "  camera:\n", "resource-missing"),
+            "resources: {eye: eye}, to be changed");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  law: {alias: {kd: gain}}\n  plant:\noperator: {gain: 1 V.s/rad}\n",
+                    "loop-without-initial"),
+            "initial: {q: 0 rad}");
+}
+
+TEST(Offers, EndWithTheTries) {
+  EXPECT_EQ(offered(std::string(kArmAlone) + "  gauge:\n", "input-unmet", 1), "link to 'q'");
+  EXPECT_EQ(offered(std::string(kArmAlone) + "  gauge:\n", "input-unmet", 0), "");
+}
+
+TEST(Offers, BeginWithTheLikeliestOfEachFault) {
+  const std::string text = std::string(kArmAlone) + "  gauge:\n  other: {component: gauge, alias: {q_ref: x}}\n";
+  EXPECT_EQ(offered(text, "input-unmet", 2), "link to 'q' | link to 'q'");
+}
+
+TEST(Offers, AreNoneForATextThatIsNoTree) { EXPECT_EQ(offered("tasks: [", "yaml-syntax"), ""); }
+
+}  // namespace
+}  // namespace chimera
