@@ -27,6 +27,9 @@ export function machineBanners(state: MachineState, isBenchOpen: boolean): Banne
   if (isBenchOpen && door === "lost")
     banners.push({ kind: "lost", text: `The manager of ${name} does not answer: ${doorSentence || "no connection"}. ` +
       "Tasks go on without it; the values below are old. The page connects again by itself." });
+  if (isBenchOpen && state.isSilent)
+    banners.push({ kind: "lost", text: `The manager of ${name} has said nothing for 2 s or more. Tasks go on without ` +
+      "it; the values below are old. Its keeper replaces a manager that hangs." });
   if (!status || door === "gone") return banners;
   for (const rtpu of status.rtpus) {
     if (!rtpu.alive && rtpu.phase !== "starting")

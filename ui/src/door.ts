@@ -10,6 +10,8 @@ export const CLOSE = { oldLink: 4401, notRunning: 4404, silent: 4408, full: 4429
 
 /** Time between two tries to connect, in milliseconds: short at first, because a manager is back within a second. */
 const RETRY_MS = [50, 100, 200, 400, 800, 1000];
+/** A connection that was open for this time was a good one: the next tries begin at the shortest time again. */
+const STEADY_MS = 2000;
 
 export class Refusal extends Error {
   constructor(readonly error: RpcError) { super(error.message); }
@@ -33,6 +35,7 @@ export class Door {
   private calls = new Map<number, Call>();
   private lastId = 0;
   private failures = 0;
+  private openSince = 0;
   private timer = 0;
   private isClosed = false;
 
@@ -76,8 +79,10 @@ export class Door {
 
   private take(line: string): void {
     const message = JSON.parse(line);
-    this.failures = 0;
-    if (this.state !== "open") this.set("open", "");  // not before: the key may be old, the subsystem not there
+    if (this.state !== "open") {  // not before: the key may be old, the subsystem not there
+      this.openSince = performance.now();
+      this.set("open", "");
+    }
     if (message.method !== undefined) return this.events.note(message.method, message.params);
     const call = this.calls.get(message.id);
     if (!call) return;
@@ -89,6 +94,7 @@ export class Door {
   private lose(code: number, reason: string): void {
     if (this.isClosed) return;
     this.fail("the connection was lost before the answer came");
+    if (this.state === "open" && performance.now() - this.openSince > STEADY_MS) this.failures = 0;
     if (code === CLOSE.oldLink) return this.set("refused", reason);
     this.set(code === CLOSE.notRunning ? "gone" : "lost", reason);
     const wait = RETRY_MS[Math.min(this.failures++, RETRY_MS.length - 1)] ?? 1000;

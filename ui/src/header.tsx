@@ -13,7 +13,7 @@ export function stateWord(state: MachineState): string {
   const { door, status } = state;
   if (door === "gone") return "ENDED";
   if (door === "connecting" || (door === "open" && !status)) return "CONNECTING";
-  if (door !== "open" || !status) return "NO CONNECTION";
+  if (door !== "open" || !status || state.isSilent) return "NO CONNECTION";
   if (status.ending) return "ENDING";
   if (status.tasks.some((task) => task.state === "ERROR")) return "IN ERROR";
   if (status.rtpus.some((rtpu) => !rtpu.alive)) return "RTPU ENDED";

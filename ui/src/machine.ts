@@ -7,6 +7,7 @@ import { Store } from "./store";
 import { LiveValues } from "./values";
 
 const STATUS_MS = 200, VALUES_MS = 100;
+const SILENT_MS = 2000;  // without a status for this time, the manager hangs
 const MOST_EVENTS = 2000;
 const EVENTS_MS = 250;  // events of this time are drawn together: there may be hundreds in a second
 const MOST_ELEMENTS = 16, MOST_VALUES = 600;
@@ -35,11 +36,13 @@ export interface MachineState {
   gaps: number;             // events that no message brought
   message: Message | null;
   isBusy: boolean;
+  /** The connection is open, but the manager says nothing. */
+  isSilent: boolean;
 }
 
 const EMPTY: Omit<MachineState, "name"> = {
   door: "connecting", doorSentence: "", hello: null, description: null, drawn: "", version: 0, status: null,
-  previous: null, events: [], gaps: 0, message: null, isBusy: false,
+  previous: null, events: [], gaps: 0, message: null, isBusy: false, isSilent: false,
 };
 
 const RANK: Record<Role, number> = { nothing: 0, observe: 1, operate: 2, configure: 3 };
@@ -55,6 +58,16 @@ export function elements(shape: string): number {
   return [...shape.matchAll(/(?:<=|\[|x|,)\s*(\d+)(?=\s*[\]x,])/g)].reduce((product, m) => product * Number(m[1]), 1);
 }
 
+/** Longest period of a producer of each variable, in nanoseconds; those without a rate do not count. */
+function periodsOf(description: Description): Map<string, number> {
+  const periods = new Map<string, number>();
+  for (const task of description.tasks)
+    for (const port of task.ports)
+      if (port.kind === "out-var" && task.rate_hz > 0)
+        periods.set(port.variable, Math.max(periods.get(port.variable) ?? 0, 1e9 / task.rate_hz));
+  return periods;
+}
+
 export class Machine {
   readonly state: Store<MachineState>;
   readonly values = new LiveValues();
@@ -63,6 +76,8 @@ export class Machine {
   private fresh: Event[] = [];
   private lost = 0;
   private timer = 0;  // of the next drawing of events; 0: none waits
+  private heardAt = 0;
+  private watch = window.setInterval(() => this.listen(), 500);
 
   constructor(readonly name: string, key: string) {
     this.state = new Store<MachineState>({ ...EMPTY, name });
@@ -75,6 +90,7 @@ export class Machine {
 
   close(): void {
     window.clearTimeout(this.timer);
+    window.clearInterval(this.watch);
     this.door.close();
   }
 
@@ -131,6 +147,8 @@ export class Machine {
       const { drawn } = this.state.get();
       const parameters = drawn === "" ? { picture: true } : { picture: true, configuration: drawn };
       const description: Description = await door.call("describe", parameters);
+      this.heardAt = performance.now();
+      this.values.setPeriods(periodsOf(description));
       this.state.set({ hello, description, status, previous: null, version: this.state.get().version + 1 });
       await door.call("subscribe", { to: "status", period_ms: STATUS_MS });
       const variables = description.variables
@@ -144,6 +162,7 @@ export class Machine {
   }
 
   private take(method: string, parameters: any): void {
+    this.heardAt = performance.now();
     if (method === "status") {
       this.state.set({ previous: this.state.get().status, status: parameters as Status });
     } else if (method === "values") {
@@ -151,6 +170,12 @@ export class Machine {
     } else if (method === "events") {
       this.takeEvents(parameters.events as Event[], parameters.lost as number);
     }
+  }
+
+  private listen(): void {
+    const { door, status, isSilent } = this.state.get();
+    const isSilentNow = door === "open" && status !== null && performance.now() - this.heardAt > SILENT_MS;
+    if (isSilentNow !== isSilent) this.state.set({ isSilent: isSilentNow });
   }
 
   private takeEvents(events: Event[], lost: number): void {

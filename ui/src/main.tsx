@@ -129,7 +129,7 @@ function MachinePage({ machine, isBenchOpen }: { machine: Machine; isBenchOpen: 
       <Banners banners={machineBanners(state, isBenchOpen)} />
       <MessageBox machine={machine} state={state} />
       {state.status && <CpuBars status={state.status} previous={state.previous} />}
-      <main className={isBenchOpen && state.door === "open" ? "" : "stale"}>
+      <main className={isBenchOpen && state.door === "open" && !state.isSilent ? "" : "stale"}>
         <div className="zoom" role="toolbar" aria-label="Zoom of the picture">
           <Button label="Zoom in" title="key +" press={() => zoomBy(1.2)}>+</Button>
           <Button label="Zoom out" title="key -" press={() => zoomBy(1 / 1.2)}>−</Button>

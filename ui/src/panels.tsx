@@ -157,7 +157,7 @@ function Why({ machine, state, chosen, variable }:
       {!isKnown && <p className="hint">Choose a variable in the picture, or a task.</p>}
       {isKnown && answer?.chain && (
         <>
-          <p data-why={asked}><strong>{asked}</strong>: {answer.verdict}</p>
+          <p data-why={asked}>{answer.verdict}</p>
           <ol className="why" aria-label={`Where ${asked} comes from`}>
             {answer.chain.map((link, i) => <WhyRow key={i} link={link} />)}</ol>
         </>

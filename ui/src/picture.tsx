@@ -18,11 +18,12 @@ const PortValue = memo(function PortValue({ port, values }: ValueProps) {
   useEffect(() => values.watch(port.variable, (reading, age, isOld) => {
     const element = text.current;
     if (!element) return;
-    const words = besidePort(reading, age);
+    const isAnothers = isOut && reading.producer !== "" && reading.producer !== port.task;
+    const words = isAnothers ? "" : besidePort(reading, age);
     if (element.textContent !== words) element.textContent = words;
     element.classList.toggle("old", isOld);
     element.classList.toggle("invalid", !reading.valid);
-  }), [values, port.variable]);
+  }), [values, port.variable, port.task, isOut]);
   return <text ref={text} className="value" data-value={port.variable} x={port.x + (isOut ? RIGHT : -STUB)}
                y={port.y + (isOut ? BELOW : BELOW_NAME)} textAnchor={isOut ? "start" : "end"} />;
 });

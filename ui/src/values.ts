@@ -7,13 +7,19 @@ import { duration, valueText } from "./text";
 type Show = (reading: Reading, ageNs: number, isOld: boolean) => void;
 
 const PERIOD_MS = 100;
-/** A value is grey if its producer is not ON, or if it is older than this. */
-const OLD_NS = 2e9;
+/** A value is grey if its producer is not ON, or if it is older than this and than three periods of its producer. */
+const OLD_NS = 2e9, OLD_PERIODS = 3;
 
 export class LiveValues {
   private readings = new Map<string, { reading: Reading; at: number }>();
   private shows = new Map<string, Set<Show>>();
   private timer = 0;
+  private limits = new Map<string, number>();
+
+  /** Longest period of a producer of each variable, in nanoseconds. */
+  setPeriods(periods: Map<string, number>): void {
+    this.limits = new Map([...periods].map(([name, period]) => [name, Math.max(OLD_NS, OLD_PERIODS * period)]));
+  }
 
   take(values: Record<string, Reading>): void {
     const at = performance.now();
@@ -50,7 +56,8 @@ export class LiveValues {
     const { reading, at } = known;
     const isOperators = reading.producer === "operator";  // holds until it is set: never old
     const age = isOperators ? 0 : reading.age_ns + (performance.now() - at) * 1e6;
-    show(reading, age, !isOperators && (reading.state !== "ON" || age > OLD_NS));
+    const limit = this.limits.get(variable) ?? OLD_NS;
+    show(reading, age, !isOperators && (reading.state !== "ON" || age > limit));
   }
 }
 
