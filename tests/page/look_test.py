@@ -123,6 +123,16 @@ class LookTest(PageTest):
         self.page.await_none("main.stale")
         self.page.await_text("[data-state-word]", "RUNNING")
 
+    def test_a_manager_that_falls_silent_is_said_until_it_speaks(self):
+        door = self.look_at(Door(self.runtime))
+        door.stall()
+        self.page.await_text(".banner.lost", "The manager of plant has said nothing")
+        self.page.await_text("[data-state-word]", "NO CONNECTION")
+        self.page.await_one("main.stale")
+        door.resume()
+        self.page.await_none(".banner")
+        self.page.await_text("[data-state-word]", "RUNNING")
+
     def test_events_that_are_lost_are_counted(self):
         door = self.look_at(Door(self.runtime))
         with door.change() as subject:

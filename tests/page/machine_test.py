@@ -69,6 +69,11 @@ class Looking(MachineTest):
             .filter((b) => a[1] < b[2] && b[1] < a[2] && a[3] < b[4] && b[3] < a[4]).map((b) => [a[0], b[0]]));""")
         self.assertEqual(covered, [])
 
+    def test_a_value_stands_at_the_port_of_its_producer_alone(self):
+        self.look()
+        self.page.await_one("text.value[data-of=strong][data-value=torque]:not(:empty)")
+        self.assertEqual(self.page.texts("text.value[data-of=gentle][data-value=torque]"), [""])
+
     def test_off_and_on_are_shown_and_reach_the_tasks(self):
         self.look()
         self.assertEqual(self.page.states(), {"source": "ON", "trim": "ON", "strong": "ON", "gentle": "OFF",
