@@ -25,7 +25,8 @@ const PortValue = memo(function PortValue({ port, values }: ValueProps) {
     element.classList.toggle("invalid", !reading.valid);
   }), [values, port.variable, port.task, isOut]);
   return <text ref={text} className="value" data-value={port.variable} data-of={port.task}
-               x={port.x + (isOut ? RIGHT : -STUB)} y={port.y + (isOut ? BELOW : BELOW_NAME)} textAnchor={isOut ? "start" : "end"} />;
+               x={port.x + (isOut ? RIGHT : -STUB)} y={port.y + (isOut ? BELOW : BELOW_NAME)}
+               textAnchor={isOut ? "start" : "end"} />;
 });
 
 interface BoxProps {
