@@ -57,6 +57,9 @@ int main(int argc, char** argv) {
       std::uint16_t port = 0;
       std::from_chars(text.data(), text.data() + text.size(), port);
       request.port = port;
+    } else if (word.starts_with("-")) {
+      tell("is started by `chimera web`, with [--json] [--port N] [FILE]; `chimera web --help` says more");
+      return 2;
     } else {
       request.facts.file = word;
     }
