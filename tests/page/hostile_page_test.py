@@ -228,7 +228,8 @@ class Hostile(unittest.TestCase):
                 kinds.append(frame[0])
             self.assertEqual((set(kinds), struct.unpack(">H", frame[2][:2])[0]), ({PING}, 4408))
             self.assertEqual(deaf.code(), 4502)
-            await_that(lambda: descriptors(server.process.pid) == n_before, "the end of what is not read")
+            # At the beginning those of the test before may still be closing: fewer are right too.
+            await_that(lambda: descriptors(server.process.pid) <= n_before, "the end of what is not read")
             self.assertLess(server.resident() - before, 64 * MIB)
             for one in (silent, half, keyless.wire, idle.wire, unread.wire, deaf.wire):
                 one.close()
