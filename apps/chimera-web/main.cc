@@ -34,7 +34,7 @@ int serve(const web::WebRequest& request, bool json) {
   std::printf("%s\n", (json ? "{\"url\": \"" + link + "\"}" : link).c_str());
   (void)flush_and_look(stdout);  // without a reader the page is served all the same
   (*server)->run();
-  return 0;
+  ::_exit(0);  // while signals are still caught: a second Ctrl-C during the end changes nothing
 }
 
 }  // namespace
