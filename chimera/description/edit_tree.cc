@@ -43,7 +43,7 @@ std::span<const std::string_view> keys_at(const EditPath& path) {
   return {};
 }
 
-/// "task" for tasks/NAME: what the name at `path` names.
+/// Kind of the thing that the key at `path` names: "task" for tasks/NAME.
 std::string kind_of(const EditPath& path) {
   if (path.size() != 2) return "key";
   if (path[0] == "tasks") return "task";

@@ -10,19 +10,10 @@
 #include "chimera/catalogue/library.h"
 #include "chimera/description/text_edit.h"
 #include "chimera/units/testing/unit_samples.h"
+#include "chimera/verify/testing/sample_component.h"
 
 namespace chimera {
 namespace {
-
-Descriptor offered_component(std::string name, std::vector<PortDescriptor> ports, double rate_hz = 100) {
-  Descriptor d;
-  d.name = std::move(name);
-  d.default_rate_hz = rate_hz;
-  d.methods[CHIMERA_CYCLE] = true;
-  d.ports = std::move(ports);
-  EXPECT_TRUE(complete(d));
-  return d;
-}
 
 PortDescriptor port_in(std::string name, std::string unit) {
   return {.name = std::move(name), .unit = std::move(unit)};
@@ -36,17 +27,17 @@ PortDescriptor ports_in(std::string name, std::string unit) {
 
 const Library& offers_library() {
   static const Library kLibrary = Library::of(
-      {offered_component("arm", {port_out("q", "rad"), port_out("qd", "rad/s")}),
-       offered_component("law", {port_in("q", "rad"), port_in("kd", "V.s/rad"), port_out("u", "V")}),
-       offered_component("gauge", {port_in("q_ref", "rad")}), offered_component("slow", {port_in("q", "deg")}),
-       offered_component("deg", {port_in("x", "rad"), port_out("y", "deg")}, 0),
-       offered_component("norate", {port_in("q", "rad")}, 0),
-       offered_component("camera",
+      {sample_component("arm", {port_out("q", "rad"), port_out("qd", "rad/s")}),
+       sample_component("law", {port_in("q", "rad"), port_in("kd", "V.s/rad"), port_out("u", "V")}),
+       sample_component("gauge", {port_in("q_ref", "rad")}), sample_component("slow", {port_in("q", "deg")}),
+       sample_component("deg", {port_in("x", "rad"), port_out("y", "deg")}, 0),
+       sample_component("norate", {port_in("q", "rad")}, 0),
+       sample_component("camera",
                          {{.name = "eye", .kind = CHIMERA_RESOURCE, .type = CHIMERA_STRING, .element_size = 256}}),
-       offered_component("plant", {port_in("u", "V"), port_out("q", "rad")}),
-       offered_component("join_mean", {ports_in("in", "U"), port_out("out", "U")}),
-       offered_component("join_priority", {ports_in("in", "U"), port_out("out", "U"), port_out("chosen", "1")}),
-       offered_component("select", {ports_in("in", "U"), port_in("which", "1"), port_out("out", "U")})},
+       sample_component("plant", {port_in("u", "V"), port_out("q", "rad")}),
+       sample_component("join_mean", {ports_in("in", "U"), port_out("out", "U")}),
+       sample_component("join_priority", {ports_in("in", "U"), port_out("out", "U"), port_out("chosen", "1")}),
+       sample_component("select", {ports_in("in", "U"), port_in("which", "1"), port_out("out", "U")})},
       our_units());
   return kLibrary;
 }

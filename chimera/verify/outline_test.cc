@@ -6,28 +6,19 @@
 
 #include "chimera/catalogue/library.h"
 #include "chimera/units/testing/unit_samples.h"
+#include "chimera/verify/testing/sample_component.h"
 
 namespace chimera {
 namespace {
-
-Descriptor drawn(std::string name, std::vector<PortDescriptor> ports) {
-  Descriptor d;
-  d.name = std::move(name);
-  d.default_rate_hz = 100;
-  d.methods[CHIMERA_CYCLE] = true;
-  d.ports = std::move(ports);
-  EXPECT_TRUE(complete(d));
-  return d;
-}
 
 const Library& drawn_library() {
   static const Library kLibrary = [] {
     PortDescriptor gain{.name = "gain", .unit = "1", .kind = CHIMERA_IN_CONST};
     gain.initial.resize(8);
-    return Library::of({drawn("source", {{.name = "angle", .unit = "rad", .kind = CHIMERA_OUT_VAR}}),
-                        drawn("sink", {{.name = "angle", .unit = "rad"}, gain}),
-                        drawn("counter", {{.name = "angle", .type = CHIMERA_INT64}}),
-                        drawn("mix", {{.name = "in", .unit = "U", .repeated = true, .max_instances = 4},
+    return Library::of({sample_component("source", {{.name = "angle", .unit = "rad", .kind = CHIMERA_OUT_VAR}}),
+                        sample_component("sink", {{.name = "angle", .unit = "rad"}, gain}),
+                        sample_component("counter", {{.name = "angle", .type = CHIMERA_INT64}}),
+                        sample_component("mix", {{.name = "in", .unit = "U", .repeated = true, .max_instances = 4},
                                           {.name = "out", .unit = "U", .kind = CHIMERA_OUT_VAR}})},
                        our_units());
   }();

@@ -7,6 +7,7 @@
 
 #include "chimera/catalogue/library.h"
 #include "chimera/units/testing/unit_samples.h"
+#include "chimera/verify/testing/sample_component.h"
 
 namespace chimera {
 namespace {
@@ -15,19 +16,9 @@ PortDescriptor set_port(std::string name, std::uint32_t kind, std::string unit, 
   return {.name = std::move(name), .unit = std::move(unit), .shape = std::move(shape), .kind = kind};
 }
 
-Descriptor set_component(std::string name, std::vector<PortDescriptor> ports) {
-  Descriptor d;
-  d.name = std::move(name);
-  d.default_rate_hz = 100;
-  d.methods[CHIMERA_CYCLE] = true;
-  d.ports = std::move(ports);
-  EXPECT_TRUE(complete(d));
-  return d;
-}
-
 const Library& set_library() {
   static const Library kLibrary = Library::of(
-      {set_component("law", {set_port("q", CHIMERA_IN_VAR, "rad", "[2]"),
+      {sample_component("law", {set_port("q", CHIMERA_IN_VAR, "rad", "[2]"),
                              set_port("kp", CHIMERA_IN_VAR, "N.m/rad", "[2]"),
                              set_port("limit", CHIMERA_IN_CONST, "N.m"), set_port("cutoff", CHIMERA_IN_CONST, "Hz"),
                              set_port("tau", CHIMERA_OUT_VAR, "N.m", "[2]")})},

@@ -12,6 +12,7 @@
 #include "chimera/units/testing/unit_samples.h"
 #include "chimera/verify/setting.h"
 #include "chimera/verify/verify.h"
+#include "chimera/verify/testing/sample_component.h"
 
 namespace chimera {
 namespace {
@@ -20,19 +21,9 @@ PortDescriptor vote_port(std::string name, std::uint32_t kind, std::string unit)
   return {.name = std::move(name), .unit = std::move(unit), .kind = kind};
 }
 
-Descriptor vote_component(std::string name, std::vector<PortDescriptor> ports) {
-  Descriptor d;
-  d.name = std::move(name);
-  d.default_rate_hz = 100;
-  d.methods[CHIMERA_CYCLE] = true;
-  d.ports = std::move(ports);
-  EXPECT_TRUE(complete(d));
-  return d;
-}
-
 /// A generic controller; `integral` is its gain of the integral.
 Descriptor law(std::string name, PortDescriptor integral) {
-  return vote_component(std::move(name), {vote_port("reference", CHIMERA_IN_VAR, "U"),
+  return sample_component(std::move(name), {vote_port("reference", CHIMERA_IN_VAR, "U"),
                                           vote_port("measured", CHIMERA_IN_VAR, "U"),
                                           vote_port("kp", CHIMERA_IN_VAR, "X/U"), std::move(integral),
                                           vote_port("low", CHIMERA_IN_CONST, "X"),
@@ -45,7 +36,7 @@ const Library& vote_library() {
     PortDescriptor optional = vote_port("ki", CHIMERA_IN_VAR, "X/(U.s)");
     optional.initial.resize(8);
     return Library::of({law("law", vote_port("ki", CHIMERA_IN_VAR, "X/(U.s)")), law("easy_law", optional),
-                        vote_component("encoder", {vote_port("angle", CHIMERA_OUT_VAR, "rad")})},
+                        sample_component("encoder", {vote_port("angle", CHIMERA_OUT_VAR, "rad")})},
                        our_units());
   }();
   return kLibrary;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What chimera-web itself answers over the control protocol: who it is, and which subsystems run.
+// The methods that chimera-web carries out itself: `hello`, and `machines`, the list of subsystems that run.
 // docs/formats/web.md, "Methods of the bench".
 #pragma once
 

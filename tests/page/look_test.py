@@ -103,7 +103,7 @@ class LookTest(PageTest):
         self.page.await_one(f"{self.page.box('task2')}.dead")
         self.page.await_one("text.value[data-value=v2].old")
         self.page.await_one("text.value[data-value=v1]:not(.old)")
-        self.page.await_text(".cpu[data-rtpu=beside]", "has ended")
+        self.page.await_text(".cpu[data-cpu='1']", "beside has ended")
         with door.change():
             subject.rtpus["beside"] = True
             subject.to("task2", "ON")
@@ -247,6 +247,19 @@ class Which(PageTest):
         self.using(Door(self.runtime, Subject.chain("alpha")))
         self.look_at(Door(self.runtime, Subject.chain("omega")), arguments=("/machines/omega.yaml",))
         self.assertEqual(self.page.root("machine"), "omega")
+
+    def test_the_file_of_a_new_link_wins_over_the_subsystem_before_and_may_start_later(self):
+        self.look_at(Door(self.runtime, Subject.chain("alpha")))
+        self.assertEqual(self.page.root("machine"), "alpha")
+        self.expected = ["WebSocket", "ERR_CONNECTION_REFUSED"]
+        self.web_server.die()
+        self.page.await_root("bench", "lost")
+        new = self.web("/machines/omega.yaml", port=self.web_server.port)
+        self.page.open(new.link)
+        self.page.await_text("h1", "Nothing runs /machines/omega.yaml")
+        self.using(Door(self.runtime, Subject.chain("omega")))
+        self.page.await_root("machine", "omega")
+        self.page.await_open()
 
     def test_a_subsystem_that_has_ended_stays_said_while_the_page_tries_again(self):
         door = self.look_at(Door(self.runtime))

@@ -4,7 +4,7 @@ import { useState } from "react";
 import { Button, onEscape } from "./controls";
 import { forbidden, Machine, MachineState } from "./machine";
 import type { BenchHello, MachineName, Status } from "./protocol";
-import { CAPACITY, loads } from "./load";
+import { loads } from "./load";
 import { SwitchMenu } from "./switch_menu";
 import { ask, view } from "./view";
 
@@ -87,18 +87,20 @@ export function CpuBars({ status, previous }: { status: Status; previous: Status
     <div className="cpus" role="group" aria-label="Load of each CPU">
       {loads(status, previous).map((load) => {
         const measured = load.measured === null ? "" : load.measured.toFixed(2);
-        const words = `cpu ${load.cpu}, rtpu ${load.rtpu}: measured ${measured || "not yet"}, budgets ` +
-          `${load.budgets.toFixed(2)} of ${CAPACITY}, ${load.missed} missed`;
-        const note = !load.isAlive ? "has ended" : load.late.length > 0 ? `missed just now: ${load.late.join(", ")}`
+        const name = `cpu${load.cpu} ${load.rtpus.join(", ")}`;
+        const words = `${name}: measured ${measured || "not yet"}, budgets ${load.budgets.toFixed(2)} of ` +
+          `${load.capacity}, ${load.missed} missed`;
+        const note = load.ended.length > 0 ? `${load.ended.join(", ")} has ended`
+          : load.late.length > 0 ? `missed just now: ${load.late.join(", ")}`
           : load.missed > 0 ? `${load.missed} missed` : "all keep their deadlines";
         return (
-          <div key={load.rtpu} className="cpu" role="img" aria-label={words} title={words} data-rtpu={load.rtpu}>
-            <span>cpu{load.cpu} {load.rtpu}</span>
+          <div key={load.cpu} className="cpu" role="img" aria-label={words} title={words} data-cpu={load.cpu}>
+            <span>{name}</span>
             <svg viewBox="0 0 100 10" preserveAspectRatio="none" aria-hidden="true">
               <rect className="trough" x="0" y="0" width="100" height="10" />
               <rect className="used" x="0" y="0" width={Math.min(100, 100 * (load.measured ?? 0))} height="10" />
               <rect className="budgets" x={Math.min(99, 100 * load.budgets)} y="0" width="1" height="10" />
-              <rect className="capacity" x={100 * CAPACITY} y="0" width="1" height="10" />
+              <rect className="capacity" x={100 * load.capacity} y="0" width="1" height="10" />
             </svg>
             <span className="figures-cpu">{measured} / {load.budgets.toFixed(2)}</span>
             <span className="note">{note}</span>

@@ -1,33 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// The load of each rtpu, from two answers of `status`. No function here knows the browser.
-import type { Status, TaskStatus } from "./protocol";
+// The load of each CPU, from two answers of `status`. No function here knows the browser.
+import type { CpuStatus, Status } from "./protocol";
 
-/** The greatest sum of budgets that a configuration may have on one CPU: docs/formats/run.md. */
-export const CAPACITY = 0.93;
-
-export interface RtpuLoad {
-  rtpu: string;
-  cpu: number;
-  isAlive: boolean;
+export interface CpuLoad extends CpuStatus {
+  rtpus: string[];
+  /** Those of its rtpus that have ended. */
+  ended: string[];
   /** Execution time over elapsed time, between the two answers; null: not known yet. */
   measured: number | null;
-  /** Sum of budget over period of the tasks that are ON. */
-  budgets: number;
   missed: number;
   /** Tasks that missed a deadline between the two answers. */
   late: string[];
 }
 
-function budget(task: TaskStatus): number {
-  if (task.server) return task.server.period_ns > 0 ? task.server.capacity_ns / task.server.period_ns : 0;
-  return task.period_ns > 0 ? task.budget_ns / task.period_ns : 0;
-}
-
-export function loads(status: Status, before: Status | null): RtpuLoad[] {
+export function loads(status: Status, before: Status | null): CpuLoad[] {
   const earlier = new Map((before?.tasks ?? []).map((task) => [task.task, task]));
   const elapsed = before && before.origin_ns === status.origin_ns ? status.now_ns - before.now_ns : 0;
-  return status.rtpus.map((rtpu) => {
-    const tasks = status.tasks.filter((task) => task.rtpu === rtpu.name);
+  return status.cpus.map((cpu) => {
+    const rtpus = status.rtpus.filter((rtpu) => rtpu.cpu === cpu.cpu);
+    const names = rtpus.map((rtpu) => rtpu.name);
+    const tasks = status.tasks.filter((task) => names.includes(task.rtpu));
     let busy = 0;
     const late: string[] = [];
     for (const task of tasks) {
@@ -37,9 +29,8 @@ export function loads(status: Status, before: Status | null): RtpuLoad[] {
       if (task.missed > old.missed) late.push(task.task);
     }
     return {
-      rtpu: rtpu.name, cpu: rtpu.cpu, isAlive: rtpu.alive, measured: elapsed > 0 ? busy / elapsed : null,
-      budgets: tasks.filter((task) => task.state === "ON").reduce((sum, task) => sum + budget(task), 0),
-      missed: tasks.reduce((sum, task) => sum + task.missed, 0), late,
+      ...cpu, rtpus: names, ended: rtpus.filter((rtpu) => !rtpu.alive).map((rtpu) => rtpu.name),
+      measured: elapsed > 0 ? busy / elapsed : null, missed: tasks.reduce((sum, task) => sum + task.missed, 0), late,
     };
   });
 }

@@ -3,8 +3,8 @@
 import { MouseEvent, useCallback, useEffect, useMemo, useRef, useState } from "react";
 import { createRoot } from "react-dom/client";
 import { Banner, Banners, benchBanner, machineBanners, MessageBox } from "./banners";
+import { bench, door, key, useChoice } from "./bench";
 import { Button, QuestionBox } from "./controls";
-import { Door, DoorState } from "./door";
 import { Finder, Help } from "./finder";
 import { CpuBars, Header } from "./header";
 import { Inspector } from "./inspector";
@@ -13,56 +13,9 @@ import { Machine, MachineState } from "./machine";
 import { Operator } from "./operator";
 import { Panels } from "./panels";
 import { PictureView } from "./picture";
-import type { BenchHello, Hello, MachineName } from "./protocol";
-import { Store, useStore } from "./store";
-import { joinPath } from "./text";
+import type { BenchHello, MachineName } from "./protocol";
+import { useStore } from "./store";
 import { choose, showVariable, view, zoomBy } from "./view";
-
-interface BenchState { door: DoorState; sentence: string; hello: BenchHello | null; machines: MachineName[] | null }
-
-const [key = "", ...wishes] = location.hash.slice(1).split("&");
-const bench = new Store<BenchState>({ door: "connecting", sentence: "", hello: null, machines: null });
-
-const door = new Door("/bench", key, {
-  opened: (open) => {
-    void open.call("hello").then((hello: BenchHello) => bench.set({ hello }))
-      .then(() => open.call("subscribe", { to: "machines" })).catch(() => undefined);  // a loss is said by `changed`
-  },
-  changed: (state, sentence) => bench.set({ door: state, sentence }),
-  note: (method, parameters) => { if (method === "machines") bench.set({ machines: parameters.machines }); },
-});
-
-/** The subsystem that runs the file of the link: asks each one for its file. */
-async function machineOf(file: string, machines: MachineName[]): Promise<string> {
-  const asked = machines.map((one) => new Promise<string>((resolve) => {
-    const asking: Door = new Door(`/machine/${encodeURIComponent(one.name)}`, key, {
-      opened: () => void asking.call("hello").then(
-        (hello: Hello) => resolve(joinPath(hello.folder, hello.file) === file ? one.name : ""), () => resolve(""))
-        .finally(() => asking.close()),
-      changed: (state) => { if (state !== "open" && state !== "connecting") resolve(""); },
-      note: () => undefined,
-    });
-  }));
-  return (await Promise.all(asked)).find((name) => name !== "") ?? "";
-}
-
-/** Chooses a subsystem when none is chosen: that of the link, that of its file, the only one, else the first. */
-function useChoice(): void {
-  const { machines, hello } = useStore(bench);
-  const [isDone, done] = useState(false);
-  useEffect(() => {
-    if (isDone || !machines || !hello) return;
-    const wished = wishes.map((one) => one.split("=")).find(([name]) => name === "machine")?.[1];
-    const known = view.get().machine;
-    const isThere = machines.some((one) => one.name === known);
-    if (wished !== undefined) view.set({ machine: decodeURIComponent(wished) });
-    else if (hello.file !== null && !isThere)
-      void machineOf(hello.file, machines)
-        .then((name) => { if (name !== "") view.set({ machine: name, chosen: [] }); });
-    else if (!isThere && machines.length > 0) view.set({ machine: machines[0]!.name, chosen: [] });
-    if (machines.length > 0 || wished !== undefined) done(true);
-  }, [machines, hello, isDone]);
-}
 
 /** Tests and style sheets read the state of the page from its root element. */
 function mark(names: Record<string, string | number>): void {

@@ -97,6 +97,8 @@ export interface RtpuStatus {
   flag: boolean;
 }
 
+export interface CpuStatus { cpu: number; budgets: number; capacity: number }
+
 export interface TaskStatus {
   task: string; component: string; rtpu: string; state: State; in_service: boolean; incarnation: number;
   rate_hz: number; period_ns: number; budget_ns: number; busy_ns: number; on_ns: number; cycles: number;
@@ -114,6 +116,7 @@ export interface Status {
   keeper: { pid: number; hang: string | null };
   guard: { pid: number; lack: string | null; hang: string | null } | null;
   switch?: { to: string | null; progress: string } | null;
+  cpus: CpuStatus[];
   rtpus: RtpuStatus[];
   tasks: TaskStatus[];
 }

@@ -5,7 +5,7 @@ import test from "node:test";
 import { ACTS, questionBefore } from "./acts";
 import { loads } from "./load";
 import { elements, forbidden } from "./machine";
-import type { Picture, Status, TaskStatus } from "./protocol";
+import type { Picture, RtpuStatus, Status, TaskStatus } from "./protocol";
 import { neighbours, step, toggled } from "./selection";
 import { clock, count, duration, joinPath, rate, scalar, short, sliderRange, valueText, withUnit } from "./text";
 
@@ -106,27 +106,27 @@ const task = (name: string, change: Partial<TaskStatus>): TaskStatus => ({
   response_ns: { max: 0 }, jitter_ns: 0, server: null, missed: 0, overrun: 0, dropped: 0, stale: 0, rejected: 0,
   demoted: 0, fault: null, faults: 0, standby_for: null, inputs: [], ...change,
 });
+const rtpu = (name: string, alive: boolean): RtpuStatus => ({
+  name, cpu: 1, policy: "muf", executor: "executive", pid: 2, alive, phase: "serving", hang: null, restarts: 0,
+  last_end: null, given_up: false, remedy: null, running: null, not_real_time: null, lost_rights: null,
+  unguarded: null, flag: false,
+});
 const status = (now: number, tasks: TaskStatus[]): Status => ({
   subsystem: "s", configuration: "", now_ns: now, origin_ns: 1, started_ns: 1, ending: false,
   flag: { up: false, by: [] }, keeper: { pid: 1, hang: null }, guard: null,
-  rtpus: [{ name: "servo", cpu: 1, policy: "muf", executor: "executive", pid: 2, alive: true, phase: "serving",
-    hang: null, restarts: 0,
-    last_end: null, given_up: false, remedy: null, running: null, not_real_time: null, lost_rights: null,
-    unguarded: null, flag: false }], tasks,
+  cpus: [{ cpu: 1, budgets: 0.2, capacity: 0.93 }], rtpus: [rtpu("servo", true), rtpu("beside", false)], tasks,
 });
 
-test("the load of an rtpu is execution time over elapsed time, beside its budgets", () => {
-  const before = status(0, [task("pid", {}), task("arm", { missed: 1 })]);
-  const now = status(1e9, [task("pid", { busy_ns: 2e8 }), task("arm", { busy_ns: 1e8, missed: 2 })]);
-  const [load] = loads(now, before);
+test("the load of a CPU is execution time over elapsed time, over all its rtpus", () => {
+  const before = status(0, [task("pid", {}), task("arm", { missed: 1, rtpu: "beside" })]);
+  const now = status(1e9, [task("pid", { busy_ns: 2e8 }), task("arm", { busy_ns: 1e8, missed: 2, rtpu: "beside" })]);
+  const [load, ...others] = loads(now, before);
   assert.ok(load && Math.abs((load.measured ?? 0) - 0.3) < 1e-9);
-  assert.ok(load && Math.abs(load.budgets - 0.2) < 1e-9);
-  assert.deepEqual([load?.late, load?.missed], [["arm"], 2]);
+  assert.deepEqual([load?.late, load?.missed, load?.rtpus, load?.ended], [["arm"], 2, ["servo", "beside"], ["beside"]]);
+  assert.deepEqual([load?.budgets, load?.capacity, others], [0.2, 0.93, []]);
   assert.equal(loads(now, null)[0]?.measured, null);
   const restarted = status(2e9, [task("pid", { busy_ns: 5, incarnation: 2 })]);
   assert.equal(loads(restarted, now)[0]?.measured, 0);
-  const server = task("lamp", { period_ns: 0, server: { capacity_ns: 2e6, period_ns: 1e7 } });
-  assert.equal(loads(status(1, [server]), null)[0]?.budgets, 0.2);
 });
 
 test("a person is asked only before the kill of a task that is ON", () => {

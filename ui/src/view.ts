@@ -8,6 +8,8 @@ export type Panel = "events" | "receipts" | "profile" | "why";
 
 export interface View {
   machine: string;
+  /** Process of the chimera-web whose link was opened last: a page that is loaded again has the same one. */
+  bench: number;
   chosen: string[];
   variable: string;
   panel: Panel;
@@ -17,7 +19,7 @@ export interface View {
   isHelping: boolean;
 }
 
-const KEPT: (keyof View)[] = ["machine", "chosen", "variable", "panel", "zoom"];
+const KEPT: (keyof View)[] = ["machine", "bench", "chosen", "variable", "panel", "zoom"];
 const NAME = "chimera";
 
 function kept(): Partial<View> {
@@ -29,7 +31,8 @@ function kept(): Partial<View> {
 }
 
 export const view = new Store<View>({
-  machine: "", chosen: [], variable: "", panel: "events", zoom: 1, ...kept(), question: null, isFinding: false,
+  machine: "", bench: 0,
+  chosen: [], variable: "", panel: "events", zoom: 1, ...kept(), question: null, isFinding: false,
   isHelping: false,
 });
 

@@ -3,6 +3,7 @@
 #include "chimera/manager/answer/status_json.h"
 
 #include <algorithm>
+#include <map>
 #include <vector>
 
 #include "chimera/analysis/schedule_report.h"
@@ -12,6 +13,7 @@
 #include "chimera/manager/watch/face_watch.h"
 #include "chimera/manager/watch/guard_news.h"
 #include "chimera/platform/realtime.h"
+#include "chimera/runtime/hosted/together.h"
 #include "chimera/text/json.h"
 
 namespace chimera::manager {
@@ -264,6 +266,28 @@ std::string configuration_name(const ManagerState& state) {
   return set == kNoSet ? "" : control::set_with_standbys(set, spec, is_on);
 }
 
+namespace {
+
+/// Budgets of the tasks that cycle now, hot standbys among them, and the limit of their sum: for each CPU.
+Json cpus_json(const ManagerState& state) {
+  const ApplicationSpec& spec = state.spec();
+  std::map<std::uint32_t, double> budgets;
+  for (const RtpuSpec& rtpu : spec.rtpus) budgets[rtpu.cpu] = 0;
+  std::vector<TaskId> on;
+  for (std::uint32_t t = 0; t < state.peers.n_tasks(); ++t)
+    if (state.state(TaskId(t)) == State::kOn) on.emplace_back(t);
+  for (const TaskId task : all_together(spec.standbys, on).front().tasks) {
+    const TaskSpec& each = spec.tasks[task.index];
+    budgets[spec.rtpus[each.rtpu.index].cpu] += load_of(each);
+  }
+  Json cpus = Json::array();
+  for (const auto& [cpu, sum] : budgets)
+    cpus.push_back({{"cpu", cpu}, {"budgets", sum}, {"capacity", kMaxUtilisation}});
+  return cpus;
+}
+
+}  // namespace
+
 Json status_json(const ManagerState& state, Nanoseconds at) {
   Json rtpus = Json::array(), tasks = Json::array();
   for (std::uint32_t r = 0; r < state.peers.n_rtpus(); ++r) rtpus.push_back(rtpu_json(state, RtpuId(r)));
@@ -280,6 +304,7 @@ Json status_json(const ManagerState& state, Nanoseconds at) {
           {"keeper", {{"pid", state.keeper_pid}, {"hang", or_null(state.keeper_hang)}}},
           {"guard", guard_json(state)},
           {"face", face_json(state)},
+          {"cpus", cpus_json(state)},
           {"rtpus", std::move(rtpus)},
           {"tasks", std::move(tasks)}};
 }

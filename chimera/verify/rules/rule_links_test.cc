@@ -7,19 +7,14 @@
 #include "chimera/base/hosted/wording.h"
 #include "chimera/catalogue/library.h"
 #include "chimera/units/testing/unit_samples.h"
+#include "chimera/verify/testing/sample_component.h"
 #include "chimera/verify/verify.h"
 
 namespace chimera {
 namespace {
 
 Library valves() {
-  Descriptor d;
-  d.name = "valve";
-  d.default_rate_hz = 100;
-  d.methods[CHIMERA_CYCLE] = true;
-  d.ports = {{.name = "u", .kind = CHIMERA_OUT_VAR}};
-  EXPECT_TRUE(complete(d));
-  return Library::of({d}, our_units());
+  return Library::of({sample_component("valve", {{.name = "u", .kind = CHIMERA_OUT_VAR}})}, our_units());
 }
 
 /// Codes of the faults of a configuration of a valve, its two standbys and one more valve.

@@ -71,6 +71,7 @@ class Subject:
                 "flag": {"up": bool(self.flag_by), "by": self.flag_by}, "switch": self.switch,
                 "keeper": {"pid": 10, "hang": None}, "guard": None,
                 "face": {"deaths": 0, "last_end": None, "lost_output": None},
+                "cpus": [{"cpu": 1, "budgets": 0.005 * len(self.on()), "capacity": 0.93}],
                 "rtpus": [self.rtpu(name, alive) for name, alive in self.rtpus.items()],
                 "tasks": [self.task(name, task) for name, task in self.tasks.items()]}
 
