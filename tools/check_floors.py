@@ -18,7 +18,8 @@ INSIDE = {"cli": {"": 0, "command": 0, "files": 1, "print": 1, "live": 2, "run":
           "runtime": {"": 0, "record": 1, "job": 2, "plan": 3, "state": 4, "life": 5, "switch": 6, "cycle": 7,
                       "executive": 8, "hosted": 8, "preemptive": 9, "virtual": 9},
           "manager": {"state": 0, "watch": 1, "answer": 2, "switch": 3, "act": 4, "": 5},
-          "control": {"receipt": 0, "": 1}}
+          "control": {"receipt": 0, "": 1},
+          "description": {"": 0, "edit": 1}}
 COMPONENT_INTERFACE = ("chimera/task/abi.h", "chimera/task/component.h", "chimera/task/geometry.h",
                        "chimera/task/number_at.h", "chimera/task/pbo.h", "chimera/task/rig.h")
 ROOT_FOLDERS = ("chimera", "library", "apps", "executive", "examples", "tests", "bench", "tools")

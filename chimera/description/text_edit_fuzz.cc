@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chimera/base/testing/property.h"
-#include "chimera/description/text_edit.h"
+#include "chimera/description/edit/text_edit.h"
 #include "chimera/description/yaml_reader.h"
 #include "chimera/description/yaml_words.h"
 

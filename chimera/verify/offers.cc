@@ -9,7 +9,7 @@
 
 #include "chimera/base/hosted/wording.h"
 #include "chimera/description/key_paths.h"
-#include "chimera/description/text_edit.h"
+#include "chimera/description/edit/text_edit.h"
 #include "chimera/verify/converter.h"
 
 namespace chimera {

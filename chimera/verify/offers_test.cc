@@ -8,7 +8,7 @@
 
 #include "chimera/base/hosted/wording.h"
 #include "chimera/catalogue/library.h"
-#include "chimera/description/text_edit.h"
+#include "chimera/description/edit/text_edit.h"
 #include "chimera/units/testing/unit_samples.h"
 #include "chimera/verify/testing/sample_component.h"
 

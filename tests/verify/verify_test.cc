@@ -15,7 +15,7 @@
 #include "chimera/analysis/schedule_report.h"
 #include "chimera/base/testing/tree_path.h"
 #include "chimera/catalogue/library.h"
-#include "chimera/description/text_edit.h"
+#include "chimera/description/edit/text_edit.h"
 #include "chimera/description/yaml_reader.h"
 #include "chimera/units/testing/unit_samples.h"
 #include "chimera/verify/offers.h"

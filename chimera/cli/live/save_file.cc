@@ -16,7 +16,7 @@
 #include "chimera/cli/print/fields.h"
 #include "chimera/control/state_folder.h"
 #include "chimera/description/draft.h"
-#include "chimera/description/text_edit.h"
+#include "chimera/description/edit/text_edit.h"
 #include "chimera/platform/clock.h"
 #include "chimera/platform/file.h"
 #include "chimera/text/json.h"

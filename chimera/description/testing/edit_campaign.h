@@ -15,7 +15,7 @@
 
 #include "chimera/base/testing/tree_path.h"
 #include "chimera/description/testing/styled_text.h"
-#include "chimera/description/text_edit.h"
+#include "chimera/description/edit/text_edit.h"
 #include "chimera/description/yaml_reader.h"
 
 namespace chimera {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Follows a name through the tree of a description: lists of tasks, reactions, standbys, aliases, conditions,
 // constants.
-#include "chimera/description/rename_tree.h"
+#include "chimera/description/edit/rename_tree.h"
 
 #include <algorithm>
 
 #include "chimera/base/hosted/wording.h"
-#include "chimera/description/edit_tree.h"
+#include "chimera/description/edit/edit_tree.h"
 #include "chimera/description/yaml_words.h"
 #include "chimera/text/nearest.h"
 

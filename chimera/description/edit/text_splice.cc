@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares two trees part by part and makes a splice of each difference, in the style of the text around it.
-#include "chimera/description/text_splice.h"
+#include "chimera/description/edit/text_splice.h"
 
 #include <algorithm>
 #include <optional>
 #include <vector>
 
-#include "chimera/description/text_places.h"
+#include "chimera/description/edit/text_places.h"
 #include "chimera/description/yaml_words.h"
 
 namespace chimera {

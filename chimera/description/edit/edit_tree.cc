@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sets, removes, adds and links parts of the tree of a description.
-#include "chimera/description/edit_tree.h"
+#include "chimera/description/edit/edit_tree.h"
 
 #include <algorithm>
 #include <charconv>
@@ -10,10 +10,10 @@
 
 #include "chimera/base/hosted/wording.h"
 #include "chimera/description/draft_values.h"
-#include "chimera/description/join_tree.h"
+#include "chimera/description/edit/join_tree.h"
 #include "chimera/description/keys.h"
-#include "chimera/description/rename_tree.h"
-#include "chimera/description/same_value.h"
+#include "chimera/description/edit/rename_tree.h"
+#include "chimera/description/edit/same_value.h"
 #include "chimera/description/yaml_words.h"
 #include "chimera/text/nearest.h"
 
@@ -246,17 +246,5 @@ Result<void> link_port(Node& root, const LinkPort& link) {
 Result<void> act_on(Node& root, const EditAct& one) {
   return std::visit([&root](const auto& what) { return act(root, what); }, one);
 }
-
-EditPath edit_path(std::string_view text) {
-  EditPath path;
-  while (!text.empty()) {
-    const std::size_t slash = std::min(text.find('/'), text.size());
-    path.emplace_back(text.substr(0, slash));
-    text.remove_prefix(std::min(slash + 1, text.size()));
-  }
-  return path;
-}
-
-std::string text_of(const EditPath& path) { return join(path, "/"); }
 
 }  // namespace chimera

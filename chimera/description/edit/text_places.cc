@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Follows the text beside its tree to find where each value ends.
-#include "chimera/description/text_places.h"
+#include "chimera/description/edit/text_places.h"
 
 #include <algorithm>
 

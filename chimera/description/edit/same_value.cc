@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compares values part by part, numbers in one unit.
-#include "chimera/description/same_value.h"
+#include "chimera/description/edit/same_value.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/description/text_edit.h"
+#include "chimera/description/edit/text_edit.h"
 
 #include <gtest/gtest.h>
 

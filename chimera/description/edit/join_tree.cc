@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Inserts join_mean, join_priority or select, and gives each producer a variable of its own.
-#include "chimera/description/join_tree.h"
+#include "chimera/description/edit/join_tree.h"
 
 #include <algorithm>
 #include <map>
 
 #include "chimera/base/hosted/wording.h"
-#include "chimera/description/edit_tree.h"
-#include "chimera/description/rename_tree.h"
+#include "chimera/description/edit/edit_tree.h"
+#include "chimera/description/edit/rename_tree.h"
 
 namespace chimera {
 namespace {

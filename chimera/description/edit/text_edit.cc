@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads the text, changes its tree, splices the difference into the text, and proves the result by reading it.
-#include "chimera/description/text_edit.h"
+#include "chimera/description/edit/text_edit.h"
 
 #include <algorithm>
 #include <vector>
 
-#include "chimera/description/edit_tree.h"
-#include "chimera/description/text_splice.h"
+#include "chimera/description/edit/edit_tree.h"
+#include "chimera/description/edit/text_splice.h"
 #include "chimera/description/yaml_reader.h"
 #include "chimera/description/yaml_words.h"
 
