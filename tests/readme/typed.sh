@@ -12,7 +12,7 @@ place=$(mktemp -d)
 fail() { echo "readme: $*"; exit 1; }
 leave() {
   local code=$?
-  [ ! -s "$place/started" ] || kill "$(cat "$place/started")" 2>/dev/null || true
+  [ ! -s "$place/started" ] || kill $(cat "$place/started") 2>/dev/null || true
   rm -rf "$place"
   exit $code
 }
@@ -40,7 +40,8 @@ stand_in() {  # build tree
 words=("\$@")
 case " \$* " in
   *" --virtual "*) ;;
-  " run "*) words+=(--priority 0); echo \$\$ >"$place/started";;
+  " web "*) echo \$\$ >>"$place/started";;
+  " run "*) words+=(--priority 0); echo \$\$ >>"$place/started";;
 esac
 exec "$tree/bin/chimera" "\${words[@]}"
 TEXT

@@ -276,7 +276,8 @@ Json cpus_json(const ManagerState& state) {
   std::vector<TaskId> on;
   for (std::uint32_t t = 0; t < state.peers.n_tasks(); ++t)
     if (state.state(TaskId(t)) == State::kOn) on.emplace_back(t);
-  for (const TaskId task : all_together(spec.standbys, on).front().tasks) {
+  const std::vector<Together> whatever_stands_by = all_together(spec.standbys, on);
+  for (const TaskId task : whatever_stands_by.front().tasks) {
     const TaskSpec& each = spec.tasks[task.index];
     budgets[spec.rtpus[each.rtpu.index].cpu] += load_of(each);
   }
