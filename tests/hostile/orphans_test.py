@@ -93,7 +93,7 @@ class Orphans(unittest.TestCase):
                     policy, name = os.sched_getscheduler(pid), name_of(pid)
                 except OSError:
                     continue
-                self.assertEqual(policy, os.SCHED_OTHER, f"{name} {pid} is a real-time process")
+                self.assertIn(policy, (os.SCHED_OTHER, os.SCHED_IDLE), f"{name} {pid} is a real-time process")
             sleeper = [p for p in children if name_of(p) == "sleep"]
             self.assertEqual(len(sleeper), 1)
             # The child closes the files of its loader before it sleeps.
@@ -133,7 +133,7 @@ class Orphans(unittest.TestCase):
             system.disconnect()
             system.process.send_signal(signal.SIGTERM)
             self.assertEqual(system.wait(), 0, system.said())
-            self.assertIn("not clean: 2 restarts of second", system.said())
+            self.assertRegex(system.said(), r"not clean: .*\b2 restarts of second")  # and misses of a busy machine
             self.assertEqual(system.left_over(), [])
 
     def test_children_end_also_when_the_keeper_was_killed(self):
