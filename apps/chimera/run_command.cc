@@ -60,8 +60,8 @@ const std::vector<Option>& printing_options() {
        .repeats = Repeats::kManyEach},
       {.name = "--every",
        .value = "DURATION",
-       .help = "how often --watch prints (1 s); of --svg: the shortest period",
-       .manual = "How often `--watch` prints (1 s). The default of a picture by `--svg` is the shortest period."},
+       .help = "how often --watch prints (1 s); of --svg and --csv: the shortest period",
+       .manual = "How often `--watch` prints (1 s). The default of `--svg` and `--csv` is the shortest period."},
       {.name = "--expect",
        .value = "COMPARISON",
        .help = "what must hold at the end, such as 'error_now <= 2 mrad', or of the run: 'max |u| <= 1 V'; may be "
@@ -107,6 +107,11 @@ const std::vector<Option>& own_options() {
        .value = "FILE",
        .help = "virtual time: draw what --watch names to this file instead of printing it",
        .manual = "Virtual time: draws what `--watch` names to this file instead of printing it, a point `--every`.",
+       .kind = WordKind::kFile},
+      {.name = "--csv",
+       .value = "FILE",
+       .help = "virtual time: write what --watch names to this file, a line for each --every",
+       .manual = "Virtual time: writes what `--watch` names to this file instead of printing it, a line `--every`.",
        .kind = WordKind::kFile},
       {.name = "--preemptive", .help = "virtual time: schedule preemptively, whatever the file says of an rtpu"},
       {.name = "--seed",
@@ -201,6 +206,7 @@ bool AskedRun::read(const Call& call) {
   run.preemptive = call.has("--preemptive");
   run.may_miss = call.values("--may-miss");
   run.svg = call.value("--svg");
+  run.csv = call.value("--csv");
   run.settings = settings_of(call);
   for (const std::string& text : call.values("--cpu")) {
     const std::size_t equals = std::min(text.find('='), text.size());
@@ -210,8 +216,8 @@ bool AskedRun::read(const Call& call) {
   read_number(call, "--priority", run.priority);
   if (!read_printing(call)) return false;
   const char* wrong = nullptr;
-  if (!run.svg.empty() && (!run.virtual_time || run.watch.empty()))
-    wrong = "--svg needs --virtual and --watch; `chimera scope` draws what runs in real time";
+  if (run.keeps_samples() && (!run.virtual_time || run.watch.empty()))
+    wrong = "--svg and --csv need --virtual and --watch; `chimera scope` records what runs in real time";
   if (!run.virtual_time && (run.preemptive || run.seed || !call.value("--quantum").empty()))
     wrong = "--preemptive, --seed and --quantum belong to --virtual";
   if (run.virtual_time && run.duration == kNever) wrong = "--virtual needs --for: virtual time has no end of its own";
@@ -272,7 +278,7 @@ int run(const Call& call, const cli::Workplace& workplace) {
       !read_group(call, "--operate-group", kept.operate_group) ||
       !read_group(call, "--configure-group", kept.configure_group))
     return kUsage;
-  if (!may_save(asked.run.profile) || !may_save(asked.run.svg)) return kRefused;
+  if (!may_save(asked.run.profile) || !may_save(asked.run.svg) || !may_save(asked.run.csv)) return kRefused;
   if (const auto log = log_of(asked.run); !log) return print_refusal(log.error());
   if (!asked.run.virtual_time && !asked.run.one_process) {
     kept.run = asked.run;

@@ -135,7 +135,7 @@ Result<void> LocalTarget::start() {
                                 : make_real_time_loop(application_, request_, options);
   if (auto started = loop_->start(); !started) return started;
   // Now that extents are known.
-  if (!request_.svg.empty())
+  if (request_.keeps_samples())
     for (const std::string& name : request_.watch) drawn_.push_back(*application_.probe(name));
   for (Measure& measure : measures_)
     if (auto bound = measure.bind(application_); !bound) return bound;
@@ -198,7 +198,7 @@ std::optional<RunEnd> LocalTarget::advance(Nanoseconds until) {
 }
 
 bool LocalTarget::draws(Nanoseconds at) {
-  if (request_.svg.empty()) return false;
+  if (!request_.keeps_samples()) return false;
   plot_.add_sample(at, drawn_);
   return true;
 }
@@ -255,12 +255,16 @@ void LocalTarget::finish(RunReport& report) {
 }
 
 bool LocalTarget::is_output_complete(const RunReport& report) {
-  if (request_.svg.empty()) return true;
-  std::ofstream file(request_.svg, std::ios::binary);
-  file << draw::svg(plot_.plot(report.subsystem));
-  if (file.flush()) return true;
-  std::fprintf(err_, "%s: cannot be written: %s\n", request_.svg.c_str(), std::strerror(errno));
-  return false;
+  const auto is_written = [&](const std::string& path, const auto& text) {
+    if (path.empty()) return true;
+    std::ofstream file(path, std::ios::binary);
+    file << text();
+    if (file.flush()) return true;
+    std::fprintf(err_, "%s: cannot be written: %s\n", path.c_str(), std::strerror(errno));
+    return false;
+  };
+  const bool is_drawn = is_written(request_.svg, [&] { return draw::svg(plot_.plot(report.subsystem)); });
+  return is_written(request_.csv, [&] { return plot_.csv(); }) && is_drawn;
 }
 
 }  // namespace
@@ -274,7 +278,7 @@ int run(const RunRequest& asked, const Workplace& workplace, RecordSink* sink, s
   const auto plan = plan_run(asked, workplace, out, err, &code);
   if (!plan) return code;
   RunRequest request = asked;
-  if (!request.svg.empty())
+  if (request.keeps_samples())
     request.every = sample_distance(request.every, request.duration, plan->configuration.spec());
   const auto contexts = request.virtual_time ? Application::Contexts::kByRtpu : Application::Contexts::kOne;
   auto application = Application::load(plan->configuration, plan->library, contexts);

@@ -32,11 +32,15 @@ struct RunRequest {
   std::vector<std::string> expect;    ///< expectation.h
   std::vector<std::string> watch;     ///< state variables to print while it runs
   Nanoseconds every;                  ///< how often; 0: every second, into a picture at the shortest period
-  std::string svg;                    ///< draw them to this file instead; virtual time or one process only
+  std::string svg;                    ///< draw them to this file instead; virtual time only
+  std::string csv;                    ///< write them as a table to this file instead; virtual time only
   std::string profile;                ///< save the profile into this file at the end; "": not
   std::string log;                    ///< add the events to this file as they come; "": not
   bool json = false;
   bool strict = false;  ///< a run that was not clean (run_verdict.h) is no success
+
+  /// What is watched goes to files, and is not printed.
+  bool keeps_samples() const noexcept { return !svg.empty() || !csv.empty(); }
 };
 
 /// Takes the tap's records in order while the run goes on. Context: setup thread.

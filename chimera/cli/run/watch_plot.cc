@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Collects samples of watched variables and draws them.
+// Collects samples of watched variables, draws them and writes them down.
 #include "chimera/cli/run/watch_plot.h"
 
 #include <algorithm>
+
+#include "chimera/base/hosted/wording.h"
 
 namespace chimera::cli {
 
@@ -15,6 +17,7 @@ void WatchPlot::add_sample(Nanoseconds at, std::span<const Probe> probes) {
     }
     first_.push_back(curves_.size());
   }
+  samples_.push_back(at);
   for (std::size_t p = 0; p < probes.size(); ++p) {
     const Seen seen = probes[p].sample();
     if (points_ + seen.numbers.size() > kMostPoints) return;
@@ -29,6 +32,23 @@ draw::Plot WatchPlot::plot(const std::string& title) const {
   plot.title = title;
   plot.curves = curves_;
   return plot;
+}
+
+std::string WatchPlot::csv() const {
+  std::string text = "t(s)";
+  for (const draw::Curve& curve : curves_) text += "," + curve.name + "(" + curve.unit + ")";
+  text += "\n";
+  std::vector<std::size_t> next(curves_.size());
+  for (const Nanoseconds at : samples_) {
+    text += formatted("%.9f", to_seconds(at));
+    for (std::size_t c = 0; c < curves_.size(); ++c) {
+      const auto& points = curves_[c].points;
+      const bool is_there = next[c] < points.size() && points[next[c]].at == to_seconds(at);
+      text += is_there ? formatted(",%.17g", points[next[c]++].value) : std::string(",");
+    }
+    text += "\n";
+  }
+  return text;
 }
 
 }  // namespace chimera::cli
