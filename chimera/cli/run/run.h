@@ -39,7 +39,7 @@ struct RunRequest {
   bool json = false;
   bool strict = false;  ///< a run that was not clean (run_verdict.h) is no success
 
-  /// What is watched goes to files, and is not printed.
+  /// Watched values go to files, and are not printed.
   bool keeps_samples() const noexcept { return !svg.empty() || !csv.empty(); }
 };
 
