@@ -91,9 +91,9 @@ export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
   }, [machine, fit]);
   const text = now?.analysis.text ?? "";
   const task = outline?.tasks.find((one) => one.task === chosen[0]);
-  const show = (at: number, column: number, isFocused: boolean) =>
-    setPlace({ line: at, column, isFocused, number: (place?.number ?? 0) + 1 });
-  useEffect(() => { if (task && task.line > 0) show(task.line, 1, false); }, [task?.task]);
+  useEffect(() => {
+    if (task && task.line > 0) setPlace({ line: task.line, column: 1, isFocused: false });
+  }, [task?.task]);
   const cursorTask = useMemo(() => taskAt(text, outline?.tasks ?? [], line), [text, outline, line]);
   if (!now) return <main><p className="hint">{state.message?.text ?? "Connecting…"}</p></main>;
   const { analysis } = now;
@@ -103,8 +103,10 @@ export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
   const go = (fault: Fault) => {
     const box = boxOf(fault, outline);
     if (box !== "") choose([box]);
-    document.querySelector(`g.box[data-task="${CSS.escape(box)}"]`)?.scrollIntoView({ block: "nearest", inline: "nearest" });
-    window.setTimeout(() => show(Math.max(1, fault.line), fault.column, true), 0);  // after the line of the box
+    document.querySelector(`g.box[data-task="${CSS.escape(box)}"]`)
+      ?.scrollIntoView({ block: "nearest", inline: "nearest" });
+    const there = { line: Math.max(1, fault.line), column: fault.column, isFocused: true };
+    window.setTimeout(() => setPlace(there), 0);  // after the line of the box
   };
   const pressPort = ({ task: name, port }: TaskPort) => {
     choose([name]);

@@ -98,7 +98,8 @@ function Rtpus({ outline, text, why }: Props) {
             <EditField label="name" name={`name of rtpu ${rtpu}`} mark={["rename", `rtpus/${rtpu}`]} present={rtpu}
                        why={why} commit={(to) => draft.edit([{ act: "rename", path: `rtpus/${rtpu}`, to }])} />
             <EditField {...field("cpu")} present={String(cpu)} />
-            <EditChoice {...field("policy")} present={policy} options={options("rm", "edf", "muf", "muf-laxity", "llf")} />
+            <EditChoice {...field("policy")} present={policy}
+                        options={options("rm", "edf", "muf", "muf-laxity", "llf")} />
             <EditChoice {...field("executor")} present={executor} options={options("executive", "preemptive")} />
             <Button label={`Remove rtpu ${rtpu}`} forbidden={why}
                     press={() => void draft.press([{ act: "remove", path: `rtpus/${rtpu}` }])} />

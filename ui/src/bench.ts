@@ -55,7 +55,8 @@ export function useChoice(): void {
     const { machine: before, bench: pid } = view.get();
     const choose = (machine: string) => {
       const isFirst = pid !== hello.pid && machine === "" && hello.file !== null;
-      view.set({ machine, bench: hello.pid, ...(isFirst ? { mode: "assemble" } : {}), ...(machine === before ? {} : { chosen: [], variable: "" }) });
+      view.set({ machine, bench: hello.pid, ...(isFirst ? { mode: "assemble" } : {}),
+        ...(machine === before ? {} : { chosen: [], variable: "" }) });
       if (machine !== "") done(true);
     };
     const wished = wishes.map((one) => one.split("=")).find(([name]) => name === "machine")?.[1];

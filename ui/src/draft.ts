@@ -20,16 +20,16 @@ export interface DraftState extends History {
   fromFile: string[] | null;
   fromMachine: string[] | null;
   message: { text: string; isError: boolean } | null;
-  isBusy: boolean;
   output: { pid: number; ended: string | null; text: string } | null;
 }
 
 const EMPTY: DraftState = {
-  draft: null, picture: null, outline: null, offers: [], library: [], running: null, fromFile: null, fromMachine: null, message: null,
-  isBusy: false, output: null, past: [], future: [],
+  draft: null, picture: null, outline: null, offers: [], library: [], running: null, fromFile: null, fromMachine: null,
+  message: null, output: null, past: [], future: [],
 };
 
 const OUTPUT_MS = 500;
+const OFFERS_MS = 200;  // acts and typed letters that follow each other need no offers in between
 
 /** What a person reads of a refused act. */
 export function sentenceOf(why: unknown): string {
@@ -56,14 +56,17 @@ export class Draft {
   readonly state = new Store<DraftState>(EMPTY);
   private door: Door | null = null;
   private turn: Promise<unknown> = Promise.resolve();
+  private offering = 0;  // timer
 
   async begin(door: Door): Promise<void> {
     this.door = door;
     try {
       this.take(await door.call("draft"), "act");
       await door.call("subscribe", { to: "draft" });
-      const { components }: { components: LibraryComponent[] } = await door.call("library");
-      this.state.set({ library: components });
+      const library = await door.call("library").catch(() => null);
+      if (library) this.state.set({ library: library.components });
+      const output = await door.call("output").catch(() => null);
+      if (output?.pid && output.ended === null) void this.watch(output);
     } catch (why) {
       if (why instanceof Refusal) this.say(sentenceOf(why), true);  // a lost connection begins again by itself
     }
@@ -82,22 +85,24 @@ export class Draft {
   }
 
   /** Carries acts out; the sentence of a refusal, or "". */
-  edit = (acts: EditAct[]): Promise<string> => (acts.length === 0 ? Promise.resolve("") : this.change("edit", { acts }));
+  edit = (acts: EditAct[]): Promise<string> => (
+    acts.length === 0 ? Promise.resolve("") : this.change("edit", () => ({ acts })));
 
-  replace = (text: string): Promise<string> => this.change("replace", { text });
+  /** The text was typed over that of the version `base`. */
+  replace = (text: string, base: number): Promise<string> => 
+    this.change("replace", () => ({ text, version: base }));
 
   /** An act of a button: its refusal is said above the picture. */
   press = async (acts: EditAct[]): Promise<void> => {
-    const sentence = await this.edit(acts);
-    if (sentence !== "") this.say(sentence, true);
+    this.report(await this.edit(acts));
   };
 
   async undo(step: "undo" | "redo"): Promise<void> {
-    const { past, future } = this.state.get();
-    const text = step === "undo" ? past[past.length - 1] : future[0];
-    if (text === undefined) return;
-    const sentence = await this.change("replace", { text }, step);
-    if (sentence !== "") this.say(sentence, true);
+    this.report(await this.change("replace", () => {
+      const { past, future } = this.state.get();
+      const text = step === "undo" ? past[past.length - 1] : future[0];
+      return text === undefined ? null : { text };
+    }, step));
   }
 
   write(): void {
@@ -105,24 +110,28 @@ export class Draft {
       const version = this.state.get().draft?.version;
       const answer = await this.ask("write", { version });
       if (answer) this.say(answer.changed ? `Saved ${answer.file}.` : `${answer.file} holds this text already.`);
-      await this.follow();
     });
   }
 
   async keep(what: "draft" | "file"): Promise<void> {
-    const sentence = await this.change("keep", { what });
-    if (sentence !== "") this.say(sentence, true);
+    this.report(await this.change("keep", () => ({ what })));
   }
 
   async start(): Promise<void> {
     const answer = await this.ask("start", {});
     if (!answer) return;
-    this.state.set({ output: { pid: answer.pid, ended: null, text: "" }, message: null });
+    this.state.set({ message: null });
+    void this.watch({ pid: answer.pid, ended: null, text: "" });
+  }
+
+  /** Reads what the started run prints, until it ends or the connection is lost. */
+  private async watch(output: DraftState["output"]): Promise<void> {
+    this.state.set({ output });
     while (this.state.get().output?.ended === null) {
       await new Promise((resolve) => window.setTimeout(resolve, OUTPUT_MS));
-      const output = await this.door?.call("output").catch(() => null);
-      if (!output) return;
-      this.state.set({ output });
+      const latest = await this.door?.call("output").catch(() => null);
+      if (!latest) return;
+      this.state.set({ output: latest });
     }
   }
 
@@ -160,9 +169,16 @@ export class Draft {
     return this.door ? this.door.call(method, parameters) : Promise.reject(new Error("there is no connection"));
   }
 
-  private change(method: string, parameters: object, step: Step = "act"): Promise<string> {
+  private report(sentence: string): void {
+    if (sentence !== "") this.say(sentence, true);
+  }
+
+  /** `make`: the parameters when its turn comes; null: nothing is to be done any more. */
+  private change(method: string, make: () => object | null, step: Step = "act"): Promise<string> {
     return this.inTurn(async () => {
-      this.state.set({ isBusy: true, message: null });
+      const parameters = make();
+      if (parameters === null) return "";
+      this.state.set({ message: null });
       try {
         const version = method === "keep" ? {} : { version: this.state.get().draft?.version };
         this.take(await this.call(method, { ...version, ...parameters }), step);
@@ -172,8 +188,6 @@ export class Draft {
         await this.follow();
         return "The draft was changed in another window before this act came: it was not carried out. Look at the " +
           "draft, then repeat the act if it still fits.";
-      } finally {
-        this.state.set({ isBusy: false });
       }
     });
   }
@@ -194,7 +208,9 @@ export class Draft {
       ...stepped({ past, future }, step, before, analysis.text),
     });
     this.compare();
-    if (analysis.report.faults.length > 0) void this.offer(answer.version);
+    window.clearTimeout(this.offering);
+    if (analysis.report.faults.length > 0)
+      this.offering = window.setTimeout(() => void this.offer(answer.version), OFFERS_MS);
   }
 
   private async offer(version: number): Promise<void> {

@@ -8,7 +8,8 @@ const isAt = (fault: Fault, port: string) =>
 
 /** The messages of errors at a box (no port), or at one of its ports; "": none. */
 export function faultsAt(faults: Fault[], task: string, port?: string): string {
-  return faults.filter((fault) => fault.severity === "error" && fault.task === task && (port === undefined || isAt(fault, port)))
+  const isHere = (fault: Fault) => fault.task === task && (port === undefined || isAt(fault, port));
+  return faults.filter((fault) => fault.severity === "error" && isHere(fault))
     .map((fault) => fault.message).join("\n");
 }
 

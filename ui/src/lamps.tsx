@@ -73,7 +73,7 @@ export function Lamps({ state, machine, machineState, bench, why }: Props) {
               forbidden={why || (now.outside ? "first take FILE or keep the draft" : "")}>
         Save</Button>
       {!isRunning && <Button label="Start" title={`chimera run ${now.file}`} press={() => void draft.start()}
-                             forbidden={why || (now.exists ? "" : "save FILE first")} />}
+                             forbidden={why || (now.exists && !now.touched ? "" : "save FILE first")} />}
       {isRunning && machineLamp === "differs" && !now.touched &&
         <Button label="Restart" forbidden={why || forbidden(machineState?.hello?.role, "configure")} press={() => ask({
           title: `Restart ${machineState?.name}?`, button: `Restart ${machineState?.name}`, carryOut: restart,
@@ -105,7 +105,7 @@ export function DraftBanners({ state, why }: { state: DraftState; why: string })
         <div className="banner error"><p>What was started ended {output.ended}:</p>
           <pre data-output>{output.text}</pre></div>)}
       {message && (
-        <p className={`message ${message.isError ? "error" : "good"}`}><span data-message>{message.text}</span>
+        <p className={`message ${message.isError ? "error" : "good"}`} role="alert"><span data-message>{message.text}</span>
           <Button label="Dismiss" className="quiet" press={() => draft.dismiss()}>✕</Button></p>)}
     </div>
   );

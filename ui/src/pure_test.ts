@@ -168,10 +168,12 @@ configurations:
 `;
 
 test("the text shows how a value is written, in brackets and in lines", () => {
-  const cases: [string, string | null][] = [["subsystem", "loop"], ["tasks/path/rate", "1 kHz"], ["tasks/pid/rate", "2 kHz"],
+  const cases: [string, string | null][] = [["subsystem", "loop"], ["tasks/path/rate", "1 kHz"],
+    ["tasks/pid/rate", "2 kHz"],
     ["tasks/pid/on_miss", "{switch: safe,\n              }"], ["tasks/pid/constants/rate", "3"], ["tasks/arm", ""],
     ["tasks/arm/rate", null], ["tasks/path/not", null], ["constants/gain", "2"], ["constants/name: odd", "'a, b'"],
-    ["tasks/path/alias/out", "q_ref"], ["operator/kp", "1"], ["configurations/safe/safe_when", "'v < 1'"], ["none", null]];
+    ["tasks/path/alias/out", "q_ref"], ["operator/kp", "1"], ["configurations/safe/safe_when", "'v < 1'"],
+    ["none", null]];
   for (const [path, words] of cases) assert.equal(wordsAt(TEXT, path), words, path);
   assert.equal(wordsAt(TEXT.replace(/\n/g, "\r\n"), "tasks/pid/rate"), "2 kHz");
   assert.equal(wordsAt("", "tasks"), null);
@@ -207,7 +209,8 @@ const outlineTask = (task: string, line: number, ports: OutlinePort[], standby_f
   criticality: "low", standby_for, ports, repeated: [] });
 const outline: Outline = {
   subsystem: "loop", start: "run", variables: [], rtpus: [],
-  tasks: [outlineTask("path", 5, [outlinePort("out", "out-var", "q_ref"), outlinePort("goal", "in-const", "goal")], null),
+  tasks: [
+    outlineTask("path", 5, [outlinePort("out", "out-var", "q_ref"), outlinePort("goal", "in-const", "goal")], null),
     outlineTask("pid", 6, [outlinePort("in[0]", "in-var", "a"), outlinePort("in[1]", "in-var", "b")], "arm"),
     outlineTask("arm", 14, [outlinePort("x", "in-var", null), outlinePort("model", "resource", null)], null)],
   configurations: ["run", "safe", "hold"].map((configuration) => (
@@ -217,7 +220,8 @@ const link = (task: string, port: string, variable: string, instance: number | n
   [{ act: "link", task, port, variable, instance }];
 
 test("what is typed in a field is one act", () => {
-  assert.deepEqual(valueActs("tasks/pid/rate", "1 kHz", true), [{ act: "set", path: "tasks/pid/rate", value: "1 kHz" }]);
+  assert.deepEqual(valueActs("tasks/pid/rate", "1 kHz", true),
+    [{ act: "set", path: "tasks/pid/rate", value: "1 kHz" }]);
   assert.deepEqual(valueActs("tasks/pid/rate", "", true), [{ act: "remove", path: "tasks/pid/rate" }]);
   assert.deepEqual(valueActs("tasks/pid/rate", "", false), []);
   assert.deepEqual(linkActs("pid", outlinePort("in[1]", "in-var", "b"), "c"), link("pid", "in", "c", 1));
@@ -283,11 +287,13 @@ test("a fault leads to its box and port", () => {
 });
 
 test("a CPU is judged by its worst set", () => {
-  const cpu = (utilisation: number, fits: boolean, guarantee: "yes" | "no" | "not-stated") => ({ cpu: 1, fits, utilisation,
-    limit: 0.93, give_way: fits ? [] : ["log"], remedies: [], tasks: [{ task: "pid", guarantee }] });
+  const cpu = (utilisation: number, fits: boolean, guarantee: "yes" | "no" | "not-stated") => ({
+    cpu: 1, fits, utilisation, limit: 0.93,
+    give_way: fits ? [] : ["log"], remedies: [], tasks: [{ task: "pid", guarantee }] });
   const schedule: Schedule = { fits: false, sets: [{ name: "a", fits: true, cpus: [cpu(0.9, true, "yes")] },
     { name: "b", fits: false, cpus: [cpu(0.5, false, "no")] }] };
-  const notes = (...sets: Schedule["sets"]) => cpuVerdicts({ fits: true, sets }).map((one) => `${one.set}: ${one.note}`);
+  const notes = (...sets: Schedule["sets"]) =>
+    cpuVerdicts({ fits: true, sets }).map((one) => `${one.set}: ${one.note}`);
   assert.deepEqual(notes(...schedule.sets), ["b: may miss deadlines: pid; the rest fits without log"]);
   assert.deepEqual(notes(schedule.sets[0]!), ["a: all keep their deadlines"]);
   assert.deepEqual(notes({ name: "c", fits: true, cpus: [cpu(0, true, "not-stated")] }), ["c: without a budget: pid"]);

@@ -62,7 +62,8 @@ function PortFields({ task, port, outline, why, faults }: Omit<Props, "text"> & 
         <EditField label={port.kind === "out-var" ? "at first" : port.kind === "resource" ? port.port : "value"}
                    note={port.kind === "resource" ? "file, device or address" : ""} name={`value of ${mark}`}
                    mark={["field", `${task.task} ${path.split("/").slice(2).join("/")}`]} why={why} present={given}
-                   placeholder={variable?.value ?? port.default ?? (port.kind === "out-var" ? "not written" : "required")}
+                   placeholder={variable?.value ?? port.default ??
+                     (port.kind === "out-var" ? "not written" : "required")}
                    commit={(typed) => draft.edit(valueActs(path, toValue(typed), port.value !== null))} />}
       {fault !== "" && <p className="fault">{fault}</p>}
       <span className="acts">

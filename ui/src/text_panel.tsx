@@ -15,8 +15,10 @@ export function undoKey(event: { key: string; ctrlKey: boolean; shiftKey: boolea
   return key === "y" || event.shiftKey ? "redo" : "undo";
 }
 
-/** A place to show; another number shows the same place again. */
-export interface TextPlace { line: number; column: number; isFocused: boolean; number: number }
+/** A place to show; another object shows the same place again. */
+export interface TextPlace { line: number; column: number; isFocused: boolean }
+
+const version = (): number => draft.state.get().draft?.version ?? 0;
 
 export function TextPanel({ text, why, place, atLine }:
   { text: string; why: string; place: TextPlace | null; atLine: (line: number) => void }) {
@@ -26,6 +28,7 @@ export function TextPanel({ text, why, place, atLine }:
   const area = useRef<HTMLTextAreaElement>(null);
   const timer = useRef(0);
   const wanted = useRef<string | null>(null);  // typed, and not known to be the text of the draft
+  const base = useRef(0);  // version under it
   const sent = useRef<string | null>(null);
   const isRefused = useRef(false);
   const shown = useRef(text);
@@ -40,8 +43,9 @@ export function TextPanel({ text, why, place, atLine }:
     window.clearTimeout(timer.current);
     if (mine === null || mine === sent.current || (isRefused.current && !isAsked)) return;
     sent.current = mine;
-    const sentence = await draft.replace(mine);
+    const sentence = await draft.replace(mine, isAsked ? version() : base.current);
     sent.current = null;
+    base.current = version();
     refuse(sentence);
     if (wanted.current !== mine || sentence !== "") return;  // more was typed, or the typed words stay
     wanted.current = null;
@@ -88,6 +92,7 @@ export function TextPanel({ text, why, place, atLine }:
                   void send(false).then(() => draft.undo(step));
                 }}
                 onChange={(event) => {
+                  if (wanted.current === null) base.current = version();
                   wanted.current = shown.current = event.target.value;
                   type(event.target.value);
                   window.clearTimeout(timer.current);
