@@ -125,7 +125,7 @@ export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
       {machine && machineState?.message && <MessageBox machine={machine} state={machineState} />}
       <DraftCpus analysis={analysis} why={still} />
       <Lists outline={outline} state={state} />
-      <main className={analysis.picture ? "" : "last"}>
+      <main className={hasPicture && !analysis.picture ? "last" : ""}>
         <Canvas place={canvas} fit={fit}>
           {hasPicture && picture
             ? <DraftPicture picture={picture} faults={analysis.report.faults} zoom={zoom} chosen={chosen} link={link}

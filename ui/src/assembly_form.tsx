@@ -3,7 +3,7 @@
 import { Button } from "./controls";
 import { draft } from "./draft";
 import { freeName, memberActs, renameActs, rtpuActs, valueActs, variablePath } from "./edits";
-import { AddForm, EditChoice, EditField } from "./edit_field";
+import { AddForm, EditChoice, EditField, MoreOf } from "./edit_field";
 import type { Outline, OutlineVariable } from "./protocol";
 import { joinPath } from "./text";
 import { choose, showVariable } from "./view";
@@ -38,8 +38,7 @@ function Values({ words, section, list, why }:
           <EditField label={one.variable} note={one.unit === "1" ? "" : one.unit} name={`value of ${one.variable}`}
                      mark={["field", `${section}/${one.variable}`]} present={one.value ?? ""} why={why}
                      commit={(typed) => draft.edit(valueActs(variablePath(one), typed, true))} />
-          <button type="button" className="link" aria-label={`Variable ${one.variable}`}
-                  onClick={() => showVariable(one.variable)}>more</button>
+          <MoreOf variable={one.variable} />
         </div>))}
       <AddForm label={section === "operator" ? "Add operator variable" : "Add constant"} why={why}
                fields={[{ id: `add-${section}-name`, label: "name",

@@ -3,6 +3,7 @@
 // sentence at the field, and the typed words stay.
 import { useEffect, useRef, useState } from "react";
 import { onEscape } from "./controls";
+import { showVariable } from "./view";
 
 interface Props {
   label: string;
@@ -110,6 +111,11 @@ export function AddForm({ label, fields, why, commit }: {
     </form>
   );
 }
+
+/** Leads to a variable: its name, producers and readers. */
+export const MoreOf = ({ variable }: { variable: string }) => (
+  <button type="button" className="link" aria-label={`Variable ${variable}`} title={`variable ${variable}`}
+          onClick={() => showVariable(variable)}>more</button>);
 
 /** Gives the focus to a field by its mark. */
 export function focusField(attribute: string, value: string): void {

@@ -13,7 +13,7 @@ export function FaultList({ analysis, offers, why, go }:
   return (
     <section className="faults" aria-label="Faults">
       <h2>Faults {errors}{warnings > 0 && `, warnings ${warnings}`}</h2>
-      {faults.length === 0 && <p className="hint">The draft is legal.</p>}
+      {analysis.report.legal && <p className="hint">The draft is legal.</p>}
       <ol aria-label="Faults, in order of their place">
         {faults.slice(0, MOST_SHOWN).map((fault, number) => (
           <li key={number} data-fault={number} className={fault.severity}

@@ -4,12 +4,12 @@ import { Button } from "./controls";
 import { draft } from "./draft";
 import { instanceActs, instanceOf, linkActs, memberActs, quoted, removedInstance, removedTask, valueActs, valuePath,
   } from "./edits";
-import { AddForm, EditChoice, EditField } from "./edit_field";
+import { AddForm, EditChoice, EditField, MoreOf } from "./edit_field";
 import { faultsAt } from "./faults";
 import type { Fault, Outline, OutlinePort, OutlineTask, Port, TaskStatus } from "./protocol";
 import { duration, rate } from "./text";
 import { wordsAt } from "./text_places";
-import { choose, showVariable } from "./view";
+import { choose } from "./view";
 
 interface Props { outline: Outline; task: OutlineTask; text: string; why: string; faults: Fault[] }
 
@@ -43,36 +43,44 @@ function KeyField({ task, text, why, name, label, help, placeholder, note }:
 const kindWords: Record<Port["kind"], string> = { "in-var": "Inputs", "out-var": "Outputs", "in-const": "Constants",
   "out-const": "Constants for others", resource: "Resources" };
 
-function PortFields({ task, port, outline, why, faults }: Omit<Props, "text"> & { port: OutlinePort }) {
-  const mark = `${task.task} ${port.port}`;
+/** The value of a constant, a resource, or of an output at first. */
+function ValueField({ task, port, outline, why, label }: Omit<Props, "text" | "faults"> &
+  { port: OutlinePort; label: string }) {
   const path = valuePath(task.task, port);
+  const variable = outline.variables.find((one) => one.variable === port.variable && one.constant);
+  const isResource = port.kind === "resource";
+  if (path === "") return null;
+  return <EditField label={label} why={why}
+                    note={isResource ? "file, device or address" : label === "own value" ? "" : noteOf(port)}
+                    name={`value of ${task.task} ${port.port}`} present={port.value ?? ""} title={port.doc}
+                    mark={["field", `${task.task} ${path.split("/").slice(2).join("/")}`]}
+                    placeholder={variable?.value ?? port.default ?? (port.kind === "out-var" ? "none" : "required")}
+                    commit={(words) => draft.edit(
+                      valueActs(path, isResource ? quoted(words) : words, port.value !== null))} />;
+}
+
+const noteOf = ({ type, shape, unit }: OutlinePort) => `${type}${shape}${unit === "1" || unit === "" ? "" : ` ${unit}`}`;
+
+function PortFields({ text: _, ...props }: Props & { port: OutlinePort }) {
+  const { task, port, why, faults } = props;
+  const mark = `${task.task} ${port.port}`;
   const fault = faultsAt(faults, task.task, port.port);
-  const type = `${port.type}${port.shape}${port.unit === "1" || port.unit === "" ? "" : ` ${port.unit}`}`;
-  const variable = outline.variables.find((one) => one.variable === port.variable);
-  const given = port.value ?? "";
-  const toValue = (words: string) => (port.kind === "resource" ? quoted(words) : words);
+  const isLinked = port.kind.endsWith("var") || port.variable !== null;
   return (
-    <li className={fault ? "faulty" : ""} title={port.doc || undefined}>
-      {port.kind !== "resource" &&
-        <EditField label={port.port} note={type} name={`variable of ${mark}`} mark={["link", mark]} why={why}
-                   present={port.variable ?? ""} list={port.kind.endsWith("const") ? "constants-known" : "known"}
-                   placeholder="no variable" title={port.doc || "name of a variable"}
-                   commit={(typed) => draft.edit(linkActs(task.task, port, typed))} />}
-      {path !== "" &&
-        <EditField label={port.kind === "out-var" ? "at first" : port.kind === "resource" ? port.port : "value"}
-                   note={port.kind === "resource" ? "file, device or address" : ""} name={`value of ${mark}`}
-                   mark={["field", `${task.task} ${path.split("/").slice(2).join("/")}`]} why={why} present={given}
-                   placeholder={variable?.value ?? port.default ??
-                     (port.kind === "out-var" ? "not written" : "required")}
-                   commit={(typed) => draft.edit(valueActs(path, toValue(typed), port.value !== null))} />}
+    <li className={fault ? "faulty" : ""}>
+      {isLinked && (
+        <div className="row">
+          <EditField label={port.port} note={noteOf(port)} name={`variable of ${mark}`} mark={["link", mark]} why={why}
+                     present={port.variable ?? ""} list={port.kind.endsWith("const") ? "constants-known" : "known"}
+                     placeholder="no variable" title={port.doc || "name of a variable"}
+                     commit={(typed) => draft.edit(linkActs(task.task, port, typed))} />
+          {port.variable !== null && <MoreOf variable={port.variable} />}
+        </div>)}
+      {port.kind !== "out-var" && <ValueField {...props} label={isLinked ? "own value" : port.port} />}
       {fault !== "" && <p className="fault">{fault}</p>}
-      <span className="acts">
-        {port.variable !== null && <button type="button" className="link" aria-label={`Variable ${port.variable}`}
-            onClick={() => showVariable(port.variable as string)}>{port.variable}</button>}
-        {instanceOf(port.port) !== null &&
-          <Button label={`Remove ${mark}`} forbidden={why} className="quiet"
-                  press={() => void draft.press(removedInstance(task.task, port))}>remove</Button>}
-      </span>
+      {instanceOf(port.port) !== null &&
+        <Button label={`Remove ${mark}`} forbidden={why}
+                press={() => void draft.press(removedInstance(task.task, port))}>Remove {port.port}</Button>}
     </li>
   );
 }
@@ -81,13 +89,17 @@ function Ports(props: Props) {
   const { task, why } = props;
   return <>{(Object.keys(kindWords) as Port["kind"][]).map((kind) => {
     const found = task.ports.filter((port) => port.kind === kind);
-    const repeated = task.repeated.filter((port) => port.kind === kind);
+    const repeated = task.repeated.filter((port) => port.kind === kind && port.instances < port.max_instances);
     return found.length + repeated.length === 0 ? null : (
       <section key={kind}>
         <h4>{kindWords[kind]}</h4>
         <ul className="ports" aria-label={`${kindWords[kind]} of ${task.task}`}>
           {found.map((port) => <PortFields key={port.port} {...props} port={port} />)}</ul>
-        {repeated.filter((port) => port.instances < port.max_instances).map((port) => (
+        {kind === "out-var" && found.length > 0 && (
+          <details><summary>Before the first cycle</summary>
+            {found.map((port) => <ValueField key={port.port} {...props} port={port} label={`${port.port} at first`} />)}
+          </details>)}
+        {repeated.map((port) => (
           <AddForm key={port.port} label={`Add ${port.port}[${port.instances}]`} why={why}
                    fields={[{ id: `add-${task.task}-${port.port}`, list: "known",
                      label: kind.endsWith("var") ? "variable" : "value" }]}
