@@ -32,6 +32,10 @@ std::int64_t file_size(int file) noexcept;
 /// an error of the system. Context: setup; may block on the disk.
 std::int64_t read_at(int file, std::uint64_t offset, std::span<std::byte> to) noexcept;
 
+/// Gives the room of all bytes before `offset` back to the file system; they then read as zeros. False if the file
+/// system cannot do that. Context: setup; may block.
+bool free_bytes_before(int file, std::uint64_t offset) noexcept;
+
 /// Two different states mean that the file has changed.
 struct FileState {
   std::uint64_t inode = 0;
@@ -59,16 +63,19 @@ bool make_private_folder(const std::string& path);
 class PartFile {
  public:
   /// Refuses, with the path in `where`, a place that holds no ordinary file ("is no ordinary file"), and a folder that
-  /// refuses a new file ("cannot be written: REASON").
-  static Result<PartFile> open(const std::string& path);
+  /// refuses a new file ("cannot be written: REASON"). `mode`: permissions of the file, less those of the umask.
+  static Result<PartFile> open(const std::string& path, unsigned mode = 0666);
   PartFile(PartFile&& other) noexcept = default;
   PartFile& operator=(PartFile&&) = delete;
   ~PartFile();
 
   /// Writes `text`, waits until the disk has it, and renames the file to its place, once. Refuses as open().
-  Result<void> put(std::string_view text);
+  Result<void> put(std::string_view text) { return put(text, true); }
+  /// As put(), and refuses if there is a file at the place: "is there already".
+  Result<void> put_new(std::string_view text) { return put(text, false); }
 
  private:
+  Result<void> put(std::string_view text, bool may_replace);
   PartFile(std::string path, std::string part, OwnedDescriptor file) noexcept
       : path_(std::move(path)), part_(std::move(part)), file_(std::move(file)) {}
 
