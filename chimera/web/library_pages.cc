@@ -77,7 +77,8 @@ std::vector<std::string> sources_of(const Documents& documents, const std::strin
   std::vector<std::string> sources;
   for (const std::string& name : documents.names()) {
     const bool is_code = name.ends_with(".cc") || name.ends_with(".c") || name.ends_with(".h");
-    if (is_code && name.starts_with(folder) && name.find('/', folder.size()) == std::string::npos)
+    if (is_code && !name.ends_with("_test.cc") && name.starts_with(folder) &&
+        name.find('/', folder.size()) == std::string::npos)
       sources.push_back(name);
   }
   return sources;

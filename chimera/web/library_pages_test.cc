@@ -45,6 +45,7 @@ struct LibraryPagesTest : ::testing::Test {
     put("library/pid/README.md", kSheet);
     put("library/pid/pid.cc", "// code\n");
     put("library/pid/response.svg", "<svg/>");
+    put("library/pid/pid_test.cc", "// not installed\n");
     put("library/pid/testing/rig.h", "// not of the component\n");
     put("examples/02_b/README.md", "# The second\n");
     put("examples/02_b/b.yaml",
