@@ -155,7 +155,10 @@ export function LibraryPage(props: LibraryProps) {
   useEffect(() => {  // a heading, once its text is there
     if (!page.current) return;
     const heading = () => (at === "" ? null : document.getElementById(`at-${at}`));
-    const observer = new MutationObserver(() => { if (heading()) { heading()!.scrollIntoView(); observer.disconnect(); } });
+    const observer = new MutationObserver(() => {
+      heading()?.scrollIntoView();
+      if (heading()) observer.disconnect();
+    });
     page.current.scrollTo(0, 0);
     heading()?.scrollIntoView();
     if (at !== "" && !heading()) observer.observe(page.current, { childList: true, subtree: true });
