@@ -45,7 +45,7 @@ Json component_json(const LibraryEntry& entry) {
   const Descriptor& d = entry.descriptor;
   const auto read = read_beside(entry, ".md", kMostSheetBytes);
   const std::string sheet = read ? *read : "";
-  Json component{{"name", d.name}, {"doc", d.doc}, {"file", entry.descriptor_file}};
+  Json component{{"name", d.name}, {"doc", d.doc}, {"file", entry.object_file}};
   component["rate_hz"] = d.default_rate_hz > 0 ? Json(d.default_rate_hz) : Json();
   component["aperiodic"] = d.is_aperiodic();
   component["time"] = text_or_null(time_on_sheet(sheet));

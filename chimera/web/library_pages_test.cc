@@ -87,7 +87,7 @@ TEST_F(LibraryPagesTest, GivesPortsWordsPapersAndTimeOfEachComponent) {
   const Json answer = pages->library(*library);
   const Json& pid = answer["components"][0];
   EXPECT_EQ(pid["name"], Json("pid"));
-  EXPECT_EQ(pid["file"], Json(place + "/components/pid.component.json"));
+  EXPECT_EQ(pid["file"], Json(place + "/components/pid.so"));
   EXPECT_EQ(pid["time"], Json("38 ns typical, 70 ns worst"));
   EXPECT_EQ(pid["papers"].dump(), R"(["b","meier-1999"])");
   EXPECT_EQ(pid["words"].as_string().substr(0, 36), "1999 chimera controls docs execution");
