@@ -84,7 +84,7 @@ constexpr MethodRule kMethods[] = {
     question(MethodId::kOutput, "output"),
     {MethodId::kSheet, "sheet", Role::kObserve, false, true, {kComponent}},
     {MethodId::kDocument, "document", Role::kObserve, false, false, {{"name", Kind::kText, true}}},
-    {MethodId::kValues, "values", Role::kObserve, false, true, {kComponent, {"port", Kind::kText, true}}},
+    {MethodId::kValues, "values", Role::kObserve, false, false, {kComponent, {"port", Kind::kText, true}}},
 };
 // clang-format on
 

@@ -74,11 +74,10 @@ FittingPorts fitting_ports(const Library& library, const PortDescriptor& port, s
   for (const LibraryEntry& entry : library.entries()) {
     for (const PortDescriptor& other : entry.descriptor.ports) {
       if (other.kind != wanted) continue;
+      PortFit fit = std::min(fit_of_types(port, other), fit_of_shapes(port, other));
+      if (fit == PortFit::kNot) continue;
       const auto other_unit = library.units().parse_expression(other.unit);
-      const PortFit fit =
-          other_unit
-              ? std::min({fit_of_types(port, other), fit_of_units(*unit, *other_unit), fit_of_shapes(port, other)})
-              : PortFit::kNot;
+      fit = other_unit ? std::min(fit, fit_of_units(*unit, *other_unit)) : PortFit::kNot;
       if (fit != PortFit::kNot)
         (fit == PortFit::kExact ? exact : others).push_back({entry.descriptor.name, other.name});
     }
