@@ -60,7 +60,7 @@ function Empty({ state, why }: { state: DraftState; why: string }) {
     return <p className="hint">{`The text is no YAML: ${analysis.report.faults[0]?.message ?? ""}. Mend the text.`}</p>;
   return (
     <div className="hint empty">
-      <h1>{exists ? `${file} has no task` : `${file} does not exist yet`}</h1>
+      <h1>{exists ? `${file} has no task` : `Nothing runs ${file}, and it does not exist yet`}</h1>
       <p>Type the name of a component, press Enter, and link its ports at the right; Save writes the file.</p>
       <AddTask outline={state.outline} file={file} why={why} />
     </div>

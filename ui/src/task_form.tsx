@@ -59,7 +59,8 @@ function ValueField({ task, port, outline, why, label }: Omit<Props, "text" | "f
                       valueActs(path, isResource ? quoted(words) : words, port.value !== null))} />;
 }
 
-const noteOf = ({ type, shape, unit }: OutlinePort) => `${type}${shape}${unit === "1" || unit === "" ? "" : ` ${unit}`}`;
+const noteOf = ({ type, shape, unit }: OutlinePort) =>
+  `${type}${shape}${unit === "1" || unit === "" ? "" : ` ${unit}`}`;
 
 function PortFields({ text: _, ...props }: Props & { port: OutlinePort }) {
   const { task, port, why, faults } = props;
