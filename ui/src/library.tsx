@@ -21,8 +21,10 @@ export interface LibraryProps {
   call: (method: string, parameters?: object) => Promise<any>;
   place: Place;
   go: (place: Place, replace?: boolean) => void;
-  /** Puts a component on the canvas; left out: there is no canvas. */
-  add?: (component: string) => void;
+  /** Puts a component on the canvas, `at` a port ("TASK PORT") if it was dropped there. Left out: there is none. */
+  add?: (component: LibraryComponent, at?: string) => void;
+  /** The canvas, which stands beside the search. */
+  canvas?: ReactNode;
   close: () => void;
 }
 
@@ -89,7 +91,7 @@ function ComponentPage({ component, call, go, add, around }: PageProps & { compo
     time === null ? "" : `${time} (its sheet)`].filter((fact) => fact !== "");
   return (
     <>
-      <p className="acts">{add && <Button label="Put on the canvas" press={() => add(name)} />}
+      <p className="acts">{add && <Button label="Put on the canvas" press={() => add(component)} />}
         <span className="soft">{facts.join(" · ")}</span></p>
       {why !== "" && <p className="fault">{why}</p>}
       {sheet && (sheet.text !== null ? markdown(sheet.text, around(`library/${name}/README.md`))
@@ -113,10 +115,10 @@ function DocumentPage({ name, call, around }: PageProps & { name: string }) {
 
 function Row({ found, isChosen, go, add }: { found: Found; isChosen: boolean } & Pick<LibraryProps, "go" | "add">) {
   const { component } = found;
-  const drag = (event: DragEvent) => event.dataTransfer.setData(DRAGGED, component ?? "");
+  const drag = (event: DragEvent) => event.dataTransfer.setData(DRAGGED, component?.name ?? "");
   return (
     <li data-found={found.place} aria-current={isChosen || undefined} draggable={component !== undefined}
-        onDragStart={drag} onDoubleClick={() => { if (component !== undefined) add?.(component); }}>
+        onDragStart={drag} onDoubleClick={() => { if (component) add?.(component); }}>
       <PlaceLink to={place(found.place)} go={go}>{found.name}</PlaceLink> <span className="doc">{found.doc}</span>
       {found.why !== "" && <span className="soft"> ({found.why})</span>}
     </li>
@@ -140,7 +142,7 @@ async function pictureOf(call: LibraryProps["call"], name: string): Promise<stri
 }
 
 export function LibraryPage(props: LibraryProps) {
-  const { call, place: { doc, at }, go, add, close } = props;
+  const { call, place: { doc, at }, go, add, canvas, close } = props;
   const [library, why] = useAnswer<Library>(call, "library", "library", {});
   const [query, ask] = useState("");
   const input = useRef<HTMLInputElement>(null);
@@ -169,11 +171,10 @@ export function LibraryPage(props: LibraryProps) {
   const take = (event: KeyboardEvent) => {
     const step = event.key === "ArrowDown" ? 1 : event.key === "ArrowUp" ? -1 : 0;
     const next = found[Math.max(0, Math.min(found.length - 1, chosen + step))];
-    if (event.key === "Escape") close();
-    else if (step !== 0 && next) go(place(next.place), true);
+    if (step !== 0 && next) go(place(next.place), true);
     else if (event.key === "Enter" && (found[chosen] ?? found[0])) {
       const one = (found[chosen] ?? found[0])!;
-      if (one.component !== undefined && add) add(one.component);
+      if (one.component && add) add(one.component);
       else go(place(one.place));
     } else return;
     event.preventDefault();
@@ -184,8 +185,14 @@ export function LibraryPage(props: LibraryProps) {
   else if (library && doc.startsWith("component/"))
     shown = <p className="fault">The library has no component '{doc.slice("component/".length)}'.</p>;
   else if (library && doc !== "library") shown = <DocumentPage key={doc} {...props} around={around} name={doc} />;
+  const drop = (event: DragEvent) => {
+    const one = library?.components.find(({ name }) => name === event.dataTransfer.getData(DRAGGED));
+    if (one) add?.(one, (event.target as Element).closest<HTMLElement>("[data-port]")?.dataset["port"]);
+    if (one) event.preventDefault();
+  };
+  const isBeside = canvas !== undefined && doc === "library";
   return (
-    <main className="library" data-place={doc}>
+    <div className="library" onKeyDown={(event) => { if (event.key === "Escape" && !event.defaultPrevented) close(); }}>
       <nav aria-label="Library">
         <p className="acts"><Button label="Close the library" title="Escape" press={close}>Close</Button>
           <PlaceLink to={place("README.md")} go={go}>README</PlaceLink>{" "}
@@ -199,7 +206,8 @@ export function LibraryPage(props: LibraryProps) {
         {library && found.length === 0 && <p className="hint">Nothing has all these words.</p>}
         {library && <Faults faults={library.faults} />}
       </nav>
-      <article ref={page} tabIndex={-1} aria-label="Document">{shown}</article>
-    </main>
+      {isBeside ? <div className="beside" onDragOver={(event) => event.preventDefault()} onDrop={drop}>{canvas}</div>
+        : <main><article ref={page} tabIndex={-1} aria-label="Document">{shown}</article></main>}
+    </div>
   );
 }

@@ -51,6 +51,7 @@ test("a formula has fractions, powers, roots and indices where the line has them
     ["w = sqrt(det J)", "math(w=msqrt(det J))"],
     ["y = q_ref^-1", "math(y=msup(msub(qmrow(ref))mrow(-1)))"],
     ["kd d/dt(c r) = 1", "math(kd mfrac(dmrow(dt))mrow((c r))=1)"],
+    ["|H|^2 = 1", "math(|Hmsup(|mrow(2))=1)"],
     ["y = phase / 2 pi", "math(y=phase/2 pi)"],
   ];
   for (const [line, wanted] of cases) assert.equal(shape(formula(line)), wanted, line);

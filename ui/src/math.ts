@@ -44,7 +44,7 @@ class Parser {
       }
       if (/^\s/.test(token)) nodes.push(...this.space(before));
       else if (this.isAtom()) nodes.push(this.run());
-      else nodes.push(el("mo", this.tokens[this.at++]!));
+      else nodes.push(this.powerOf(el("mo", this.tokens[this.at++]!)));  // |x|^2
       if (!/^\s/.test(token)) before = this.tokens[this.at - 1]!;
     }
     ++this.at;
@@ -87,8 +87,11 @@ class Parser {
   }
 
   private power(): MathNode {
-    const base = this.atom();
-    if (this.tokens[this.at] !== "^") return base;
+    return this.powerOf(this.atom());
+  }
+
+  private powerOf(base: MathNode): MathNode {
+    if (this.tokens[this.at] !== "^" || textOf(base) === "^") return base;
     ++this.at;
     const exponent: MathNode[] = [hidden("^")];
     if (this.tokens[this.at] === "-") exponent.push(el("mo", this.tokens[this.at++]!));

@@ -13,7 +13,7 @@ export interface Library {
   components: LibraryComponent[]; faults: { file: string; message: string }[]; documents: DocumentName[];
 }
 /** `place`: of the page about it. `why`: what has the words that were looked for. */
-export interface Found { place: string; name: string; doc: string; why: string; component?: string }
+export interface Found { place: string; name: string; doc: string; why: string; component?: LibraryComponent }
 
 const lower = (text: string): string => text.toLowerCase();
 const begins = (text: string, word: string): boolean =>
@@ -43,7 +43,7 @@ function component(words: string[], one: LibraryComponent): { score: number; fou
   const fits = words.map((word) => fit(word, one));
   const score = fits.some(([points]) => points === 0) ? 0 : fits.reduce((sum, [points]) => sum + points, 1);
   const why = [...new Set(fits.map(([, reason]) => reason).filter((reason) => reason !== ""))].join(", ");
-  return { score, found: { place: `component/${one.name}`, name: one.name, doc: one.doc, why, component: one.name } };
+  return { score, found: { place: `component/${one.name}`, name: one.name, doc: one.doc, why, component: one } };
 }
 
 function document(words: string[], one: DocumentName): { score: number; found: Found } {
