@@ -70,9 +70,10 @@ install(DIRECTORY docs/formats/ DESTINATION share/chimera/schema COMPONENT docum
 install(DIRECTORY examples docs DESTINATION share/chimera COMPONENT documents
   PATTERN CMakeLists.txt EXCLUDE PATTERN man EXCLUDE)
 install(FILES README.md CONTRIBUTING.md DESTINATION share/chimera COMPONENT documents)
-# The recordings and stores are those that lessons name as ../../library/...
-file(GLOB sheets RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS
-  library/README.md library/*/README.md library/*/*.events library/*/*.store)
+# The recordings and stores are those that lessons name as ../../library/...; the page shows pictures and code.
+file(GLOB sheets RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS library/README.md library/*/README.md
+  library/*/*.events library/*/*.store library/*/*.svg library/*/*.cc library/*/*.h)
+list(FILTER sheets EXCLUDE REGEX "_test\\.cc$")
 foreach(sheet IN LISTS sheets)
   get_filename_component(folder ${sheet} DIRECTORY)
   install(FILES ${sheet} DESTINATION share/chimera/${folder} COMPONENT documents)

@@ -33,8 +33,8 @@ int web(const Call& call, const Workplace&) {
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   ::execv(arguments[0], arguments.data());
-  return refuse(errno == ENOENT ? "is not there: this program was built without libboost-dev, esbuild, node-react or "
-                                  "node-react-dom; `./dev install` builds it with them"
+  return refuse(errno == ENOENT ? "is not there: this program was built without libboost-dev, esbuild, node-react, "
+                                  "node-react-dom or node-marked; `./dev install` builds it with them"
                                 : "cannot be started: " + std::string(std::strerror(errno)),
                 words[0]);
 }

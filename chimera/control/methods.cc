@@ -24,6 +24,7 @@ constexpr MethodRule question(MethodId id, const char* name) { return {id, name,
 
 constexpr Parameter kTasks = {"tasks", Kind::kTexts, true};
 constexpr Parameter kText = {"text", Kind::kText, true}, kFile = {"file", Kind::kText, false};
+constexpr Parameter kComponent = {"component", Kind::kText, true};
 constexpr Parameter kVersion = count("version", 1, INT64_MAX, true);
 
 /// The signals that a client may name, a blank between each two: all before `wakeup`, which is `ring`.
@@ -81,6 +82,9 @@ constexpr MethodRule kMethods[] = {
     {MethodId::kKeep, "keep", Role::kConfigure, true, false, {{"what", Kind::kText, true, "draft file"}}},
     {MethodId::kStart, "start", Role::kConfigure, true, false, {}},
     question(MethodId::kOutput, "output"),
+    {MethodId::kSheet, "sheet", Role::kObserve, false, true, {kComponent}},
+    {MethodId::kDocument, "document", Role::kObserve, false, false, {{"name", Kind::kText, true}}},
+    {MethodId::kValues, "values", Role::kObserve, false, false, {kComponent, {"port", Kind::kText, true}}},
 };
 // clang-format on
 

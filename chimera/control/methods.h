@@ -27,7 +27,8 @@ struct Parameter {
 enum class MethodId : unsigned char {
   kHello, kStatus, kDescribe, kGet, kProfile, kEvents, kReceipts, kWhy, kPlan, kSubscribe, kUnsubscribe, kCheck,
   kSchedule, kLibrary, kSignal, kRing, kSet, kFlag, kSwitch, kCancel, kDrill, kSave, kEnd,
-  kMachines, kDraft, kEdit, kReplace, kRemedies, kDifferences, kWrite, kKeep, kStart, kOutput
+  kMachines, kDraft, kEdit, kReplace, kRemedies, kDifferences, kWrite, kKeep, kStart, kOutput, kSheet,
+  kDocument, kValues
 };
 
 struct MethodRule {

@@ -43,7 +43,10 @@ void Bench::call(const control::MethodRule& method, const Json& parameters, cons
   switch (method.id) {
     case MethodId::kHello: return reply(RpcResponse::good(hello(caller.role)));
     case MethodId::kMachines: return reply(RpcResponse::good(*machines()));
-    case MethodId::kLibrary: return (void)library_.version(), reply(library_.answer());
+    case MethodId::kLibrary:
+    case MethodId::kSheet:
+    case MethodId::kDocument:
+    case MethodId::kValues: return (void)library_.version(), reply(library_.answer(method.id, parameters));
     case MethodId::kOutput: return run_.serve(clock_.now()), reply(run_.output());
     case MethodId::kStart: return reply(start());
     default: break;

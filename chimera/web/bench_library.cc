@@ -8,25 +8,7 @@
 #include "chimera/text/json.h"
 
 namespace chimera::web {
-namespace {
-
 namespace fs = std::filesystem;
-
-Json list_of(const Library& library) {
-  Json components = Json::array(), faults = Json::array();
-  for (const LibraryEntry& entry : library.entries())
-    components.push_back(
-        {{"name", entry.descriptor.name}, {"doc", entry.descriptor.doc}, {"file", entry.object_file}});
-  for (const Error& fault : library.faults())
-    faults.push_back(
-        {{"file", std::string(fault.where.view())}, {"message", std::string(fault.message.view())}});
-  Json list = Json::object();
-  list["components"] = std::move(components);
-  list["faults"] = std::move(faults);
-  return list;
-}
-
-}  // namespace
 
 std::uint64_t BenchLibrary::version() {
   const Nanoseconds now = clock_.now();
@@ -60,13 +42,14 @@ BenchLibrary::Stamp BenchLibrary::stamp() const {
 
 void BenchLibrary::read() {
   bundle_ = Error{};
+  library_ = std::nullopt;
   list_ = nullptr;
   auto library = workplace_.library(file_);
   if (!library) {
     bundle_ = library.error();
     return;
   }
-  list_ = std::make_shared<const std::string>(list_of(*library).dump());
+  library_ = *library;
   const std::string packed = manager::encode({.program = program_,
                                               .file = "",
                                               .description = "",
@@ -77,10 +60,17 @@ void BenchLibrary::read() {
   bundle_ = FrozenBytes::create("bundle", std::as_bytes(std::span(packed)));
 }
 
-control::RpcResponse BenchLibrary::answer() const {
-  if (list_ != nullptr) return control::RpcResponse::ready(list_);
-  return control::RpcResponse::refused("library", bundle_.error().message.c_str(),
-                                       std::string(bundle_.error().where.view()));
+control::RpcResponse BenchLibrary::answer(control::MethodId method, const Json& parameters) {
+  using control::MethodId;
+  if (method == MethodId::kDocument) return pages_.document(parameters.at("name").as_string());
+  if (!library_)
+    return control::RpcResponse::refused("library", bundle_.error().message.c_str(),
+                                         std::string(bundle_.error().where.view()));
+  if (method == MethodId::kSheet) return pages_.sheet(*library_, parameters.at("component").as_string());
+  if (method == MethodId::kValues)
+    return pages_.values(*library_, parameters.at("component").as_string(), parameters.at("port").as_string());
+  if (list_ == nullptr) list_ = std::make_shared<const std::string>(pages_.library(*library_).dump());
+  return control::RpcResponse::ready(list_);
 }
 
 }  // namespace chimera::web

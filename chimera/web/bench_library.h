@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// The installed components as the bench knows them: read again when a folder or descriptor changes.
+// The installed components and their documents as the bench knows them: the components are read again when a folder or
+// descriptor changes.
 #pragma once
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "chimera/base/result.h"
 #include "chimera/catalogue/workplace.h"
+#include "chimera/control/methods.h"
 #include "chimera/control/rpc_response.h"
 #include "chimera/platform/clock.h"
 #include "chimera/platform/shared_memory.h"
+#include "chimera/web/library_pages.h"
 
 namespace chimera::web {
 
@@ -23,14 +27,18 @@ class BenchLibrary {
 
   /// `file`: the description, or "". `program`: the version, for the bundle. `clock` outlives it.
   BenchLibrary(Workplace workplace, std::string file, std::string program, Clock& clock)
-      : workplace_(std::move(workplace)), file_(std::move(file)), program_(std::move(program)), clock_(clock) {}
+      : workplace_(std::move(workplace)),
+        file_(std::move(file)),
+        program_(std::move(program)),
+        clock_(clock),
+        pages_(workplace_.documents) {}
 
   /// Grows with each change of the library; reads it if it has changed.
   std::uint64_t version();
   /// The bundle for an analyst, of the last version(); or why there is none.
   const Result<FrozenBytes>& bundle() const noexcept { return bundle_; }
-  /// The answer of `library`, of the last version().
-  control::RpcResponse answer() const;
+  /// The answer of `library`, `sheet`, `document` or `values`, of the last version().
+  control::RpcResponse answer(control::MethodId method, const Json& parameters);
 
  private:
   using Stamp = std::vector<std::pair<std::string, std::filesystem::file_time_type>>;
@@ -45,7 +53,9 @@ class BenchLibrary {
   std::uint64_t version_ = 0;
   Stamp stamp_;
   Result<FrozenBytes> bundle_ = Error{};
-  std::shared_ptr<const std::string> list_;
+  LibraryPages pages_;
+  std::optional<Library> library_;           // none: bundle_ says why
+  std::shared_ptr<const std::string> list_;  // the answer of `library`; null: not asked yet
 };
 
 }  // namespace chimera::web

@@ -11,7 +11,7 @@ import { choose, showVariable } from "./view";
 interface Props { outline: Outline; text: string; why: string }
 
 /** The name of a subsystem for a FILE that has none yet: its own name. */
-const nameOfFile = (file: string): string =>
+export const nameOfFile = (file: string): string =>
   joinPath("/", file).replace(/^.*\//, "").replace(/\.[^.]*$/, "").replace(/\W/g, "_").replace(/^(?=\d)/, "_");
 
 export function AddTask({ outline, file, why }: { outline: Outline | null; file: string; why: string }) {

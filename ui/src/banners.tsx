@@ -8,6 +8,8 @@ import { carryOut, ACTS } from "./acts";
 export interface Banner { kind: "lost" | "error" | "warning"; text: string }
 
 export function benchBanner(door: DoorState, sentence: string): Banner | null {
+  if (door === "refused" && sentence.startsWith("this link has no key"))
+    return { kind: "error", text: `T${sentence.slice(1)}. The page then goes to the place of this link.` };
   if (door === "refused")
     return { kind: "error", text: "This link is old: chimera-web was started anew. What runs goes on. Open the link " +
       "that `chimera web` printed last; the page goes on where it was." };

@@ -66,6 +66,7 @@ export class Door {
   }
 
   private connect(): void {
+    if (this.key === "") return this.set("refused", "this link has no key: open the one that `chimera web` prints");
     const socket = new WebSocket(`ws://${location.host}${this.path}`);
     this.socket = socket;
     socket.onopen = () => {

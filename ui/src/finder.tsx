@@ -63,7 +63,8 @@ const KEYS: [string, string][] = [
   ["Delete", "Assemble: remove the chosen task"], ["Ctrl-Z, Ctrl-Y", "Assemble: undo an act, and do it again"],
   ["Ctrl-S", "Assemble: save the draft to FILE"], ["Enter, Escape in a field", "Assemble: carry the act out; restore"],
   ["w", "why: where the values of the chosen task come from"], ["Shift-F", "raise the FLAG, at once"],
-  ["Ctrl-K or /", "find anything by name"], ["+ - 0", "zoom of the picture; 0 fits it"], ["?", "this list"],
+  ["Ctrl-K", "find anything by name"], ["/", "the library: search by word, port, unit, paper"],
+  ["+ - 0", "zoom of the picture; 0 fits it"], ["?", "this list"],
 ];
 
 export function Help() {

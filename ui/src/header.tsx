@@ -5,6 +5,8 @@ import { Button, onEscape } from "./controls";
 import { forbidden, Machine, MachineState } from "./machine";
 import type { BenchHello, MachineName, Status } from "./protocol";
 import { loads } from "./load";
+import { go, place } from "./place";
+import { useStore } from "./store";
 import { SwitchMenu } from "./switch_menu";
 import { ask, Mode, view } from "./view";
 
@@ -119,7 +121,8 @@ function Modes({ mode, file }: { mode: Mode; file: string }) {
     <div className="modes" role="group" aria-label="Mode">
       {MODES.map(([name, words, title]) => (
         <button key={name} type="button" data-mode-button={name} aria-pressed={mode === name}
-                title={name === "look" ? title : title + file} onClick={() => view.set({ mode: name })}>
+                title={name === "look" ? title : title + file}
+                onClick={() => { view.set({ mode: name }); go({ doc: "", at: "" }); }}>
           {words}</button>))}
     </div>
   );
@@ -133,6 +136,7 @@ interface Props {
 export function Header({ machine, state, machines, bench, name, mode, children }: Props) {
   const role = mode === "look" ? state?.hello?.role : bench?.role;
   const isLooking = mode === "look";
+  const isReading = useStore(place).doc !== "";
   return (
     <header>
       <MachineMenu machines={machines} name={name} />
@@ -142,6 +146,8 @@ export function Header({ machine, state, machines, bench, name, mode, children }
         {state.status.configuration === "" ? "no named configuration" : state.status.configuration}</span>}
       {isLooking && machine && state && <SwitchMenu machine={machine} state={state} />}
       {isLooking && machine && state && <MoreMenu machine={machine} state={state} />}
+      <Button label="Library" title="components and documents: key /" isPressed={isReading}
+              press={() => go({ doc: isReading ? "" : "library", at: "" })}>Library</Button>
       <Button label="Find" press={() => view.set({ isFinding: true })} title="Ctrl-K">Find</Button>
       <Button label="Help" press={() => view.set({ isHelping: true })} title="key ?">?</Button>
       {role !== undefined && role !== "configure" &&

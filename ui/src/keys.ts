@@ -6,6 +6,7 @@ import { removedTask } from "./edits";
 import { raiseFlag } from "./header";
 import { begin } from "./inspector";
 import type { Machine } from "./machine";
+import { go } from "./place";
 import { undoKey } from "./text_panel";
 import { choose, view, zoomBy } from "./view";
 
@@ -75,7 +76,7 @@ export function takeKey(event: KeyboardEvent, machine: Machine | null, fit: () =
   if (isTypedInto(event.target)) return;
   if (event.key === "F" && event.shiftKey && machine) return raiseFlag(machine, true);
   if (question) return;
-  if (event.key === "/") view.set({ isFinding: true });
+  if (event.key === "/") go({ doc: "library", at: "" });
   else if (event.key === "?") view.set({ isHelping: true });
   else if (event.key === "Escape") view.set({ chosen: [], variable: "", isFinding: false, isHelping: false });
   else if (event.key === "+") zoomBy(1.2);

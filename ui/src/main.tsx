@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page: one connection to chimera-web, one to the chosen subsystem, and what they show.
-import { useEffect, useMemo, useState } from "react";
+import { ReactNode, useEffect, useMemo, useState } from "react";
 import { createRoot } from "react-dom/client";
 import { AssemblePage, markDraft } from "./assemble";
+import { nameOfFile } from "./assembly_form";
 import { Banner, Banners, benchBanner, machineBanners, MessageBox } from "./banners";
 import { bench, door, key, modeOf, useChoice } from "./bench";
 import { Canvas, useFit } from "./canvas";
@@ -12,13 +13,17 @@ import { Finder, Help, Names } from "./finder";
 import { CpuBars, Header } from "./header";
 import { Inspector } from "./inspector";
 import { lookKeys, takeKey } from "./keys";
+import { LibraryPage } from "./library";
+import { addedTask } from "./library_acts";
 import { Lamps, runsFile, useRunningText, whyNot } from "./lamps";
 import { Machine, MachineState } from "./machine";
 import { mark } from "./marks";
 import { Operator } from "./operator";
 import { Panels } from "./panels";
 import { PictureView } from "./picture";
+import { followAddress, go, Place, place } from "./place";
 import type { BenchHello, MachineName } from "./protocol";
+import type { LibraryComponent } from "./search";
 import { Store, useStore } from "./store";
 import { choose, showVariable, view } from "./view";
 
@@ -92,7 +97,28 @@ function NoMachine({ hello, machines }: { hello: BenchHello | null; machines: Ma
   );
 }
 
+const callBench = (method: string, parameters: object = {}) => door.call(method, parameters);
 const NO_MACHINE = new Store<MachineState | null>(null);
+
+/** The library and its documents, beside the canvas of the draft if there is one. */
+function Reading({ at, machine, canvas, why, isOpen }:
+  { at: Place; machine: Machine | null; canvas: ReactNode; why: string; isOpen: boolean }) {
+  const isAssembling = Boolean(canvas);
+  useEffect(() => {
+    const take = (event: KeyboardEvent) => takeKey(event, machine, () => undefined, () => false);
+    if (!isAssembling || at.doc !== "library") window.addEventListener("keydown", take);
+    return () => window.removeEventListener("keydown", take);
+  }, [machine, isAssembling, at.doc]);
+  const add = async (component: LibraryComponent, port?: string) => {
+    const { outline, draft: now } = draft.state.get();
+    const subsystem = outline?.subsystem || nameOfFile(now?.file ?? "");
+    const [name, acts] = addedTask(outline, subsystem, component, port);
+    if (why === "") await draft.press(acts).then(() => choose([name]));
+  };
+  if (!isOpen) return <main><p className="hint">Connecting…</p></main>;
+  return <LibraryPage call={callBench} place={at} go={go} close={() => go({ doc: "", at: "" })}
+                      {...(isAssembling ? { add, canvas } : {})} />;
+}
 
 function Modes({ machine, name }: { machine: Machine | null; name: string }) {
   const { door: benchDoor, sentence, hello, machines } = useStore(bench);
@@ -100,10 +126,12 @@ function Modes({ machine, name }: { machine: Machine | null; name: string }) {
   const mode = modeOf(useStore(view), hello);
   const drafted = useStore(draft.state);
   const isBenchOpen = benchDoor === "open";
+  const at = useStore(place);
+  const assembly = hello && <AssemblePage machine={machine} machineState={state} bench={hello} isOpen={isBenchOpen} />;
   const banner: Banner | null = benchBanner(benchDoor, sentence);
   useRunningText(machine, runsFile(state, hello?.file ?? null), state?.version ?? 0);
   useEffect(() => { if (state) markMachine(state); }, [state]);
-  useEffect(() => mark({ mode }), [mode]);
+  useEffect(() => mark({ mode, place: at.doc }), [mode, at.doc]);
   useEffect(() => { if (drafted.past.length > 0) view.set({ mode }); }, [drafted.past.length > 0]);  // at work
   useEffect(() => markDraft(drafted), [drafted]);
   return (
@@ -114,8 +142,10 @@ function Modes({ machine, name }: { machine: Machine | null; name: string }) {
       </Header>
       <QuestionBox />
       {banner && <Banners banners={[banner]} />}
-      {mode === "assemble" && hello
-        ? <AssemblePage machine={machine} machineState={state} bench={hello} isOpen={isBenchOpen} />
+      {at.doc !== ""
+        ? <Reading at={at} machine={machine} why={whyNot(hello, isBenchOpen)} isOpen={isBenchOpen}
+                   canvas={mode === "assemble" && assembly} />
+        : mode === "assemble" ? assembly
         : machine && state ? <MachinePage key={name} machine={machine} state={state} isBenchOpen={isBenchOpen} />
         : <NoMachine hello={hello} machines={machines} />}
     </>
@@ -155,6 +185,9 @@ function Page() {
   );
 }
 
-window.addEventListener("hashchange", () => location.reload());  // a new link was put into this page
+window.addEventListener("hashchange", () => {  // a new link was put into this page
+  if (location.hash.slice(1).split("&")[0] !== key) location.reload();
+});
+followAddress();
 window.addEventListener("pagehide", () => door.close());
 createRoot(document.getElementById("page")!).render(<Page />);

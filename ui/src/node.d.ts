@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The two parts of Node that tests use.
+// The parts of Node that tests use.
 declare module "node:test" {
   export default function test(name: string, body: () => void | Promise<void>): void;
 }
@@ -10,4 +10,11 @@ declare module "node:assert/strict" {
     ok(value: unknown, message?: string): void;
   };
   export default assert;
+}
+declare module "node:fs" {
+  const fs: {
+    readFileSync(path: string, encoding: "utf8"): string;
+    readdirSync(path: string, options: { withFileTypes: true }): { name: string; isDirectory(): boolean }[];
+  };
+  export default fs;
 }

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// The library and the documents of the checkout, without a browser: every sheet renders, no link leads nowhere.
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import test from "node:test";
+import { Around, markdown } from "./document";
+import { formula, textOf } from "./math";
+import { anchorOf, hashWith, placeOf, targetOf } from "./place";
+import { Library, LibraryComponent, search } from "./search";
+
+/** Names of all files below a folder of the checkout. */
+const below = (folder: string): string[] => fs.readdirSync(folder, { withFileTypes: true }).flatMap((entry) =>
+  entry.isDirectory() ? below(`${folder}/${entry.name}`) : [`${folder}/${entry.name}`]);
+const FILES = new Set(["README.md", "CONTRIBUTING.md", ...["docs", "examples", "library"].flatMap(below)]);
+const PAGES = [...FILES].filter((name) => name.endsWith(".md"));
+const read = (name: string) => fs.readFileSync(name, "utf8");
+
+interface Element { type: any; props: Record<string, any> }
+/** Elements in the order of the document; those of our own kind (links, pictures) are not called. */
+function elements(node: any): Element[] {
+  if (Array.isArray(node)) return node.flatMap(elements);
+  return node?.props ? [node as Element, ...elements(node.props.children)] : [];
+}
+const words = (node: any): string => (Array.isArray(node) ? node.map(words).join("")
+  : typeof node === "string" ? node : node?.props ? words(node.props.children) : "");
+const around = (base: string): Around =>
+  ({ base, isThere: (name) => PAGES.includes(name), go: () => undefined, picture: () => Promise.resolve("") });
+
+test("every line under Equation keeps its text, and most become formulas", () => {
+  let lines = 0, formulas = 0;
+  for (const name of PAGES.filter((one) => one.startsWith("library/"))) {
+    const [, section = ""] = /\n## Equation\n([^]*?)\n## /.exec(read(name)) ?? [];
+    for (const line of section.split("\n").filter((one) => one.startsWith("    ")).map((one) => one.slice(4))) {
+      const whole = formula(line);
+      if (whole) assert.equal(textOf(whole), line);
+      ++lines;
+      formulas += whole ? 1 : 0;
+    }
+  }
+  assert.ok(lines > 100 && formulas > 0.75 * lines, `${formulas} of ${lines}`);
+});
+
+test("a formula has fractions, powers, roots and indices where the line has them", () => {
+  const shape = (node: any): string => (typeof node === "string" ? "" : node.hidden ? ""
+    : ["mi", "mn", "mo", "mtext"].includes(node.tag) ? node.children[0]
+      : node.tag === "mspace" ? " " : `${node.tag}(${node.children.map(shape).join("")})`);
+  const cases: [string, string][] = [
+    ["y = k x", "math(y=k x)"],
+    ["dI/dt = ki e", "math(mfrac(dImrow(dt))=ki e)"],
+    ["k = (1 - w/w0)^2", "math(k=msup(mrow((1-mfrac(wmrow(w0))))mrow(2)))"],
+    ["w = sqrt(det J)", "math(w=msqrt(det J))"],
+    ["y = q_ref^-1", "math(y=msup(msub(qmrow(ref))mrow(-1)))"],
+    ["kd d/dt(c r) = 1", "math(kd mfrac(dmrow(dt))mrow((c r))=1)"],
+    ["|H|^2 = 1", "math(|Hmsup(|mrow(2))=1)"],
+    ["y = phase / 2 pi", "math(y=phase/2 pi)"],
+  ];
+  for (const [line, wanted] of cases) assert.equal(shape(formula(line)), wanted, line);
+  for (const line of ["a = (b", "a = b^", "a: {b: c = d}", "words alone", "a = `b`", ""])
+    assert.equal(formula(line), null, line);
+});
+
+test("a formula of any letters keeps its text or is none", () => {
+  const letters = ["a", "q_ref", "sqrt", "(", ")", "[", "]", "/", "^", "-", "=", " ", "   ", "2", "|", "<=", "'", "ü",
+    "dt", "."];
+  for (let i = 0; i < 20_000; ++i) {
+    const line = Array.from({ length: 1 + i % 12 }, () => letters[Math.floor(Math.random() * letters.length)]).join("");
+    const whole = formula(line);
+    if (whole) assert.equal(textOf(whole), line);
+  }
+});
+
+const anchorsOf = (name: string) =>
+  new Set(elements(markdown(read(name), around(name))).map((one) => one.props.id));
+
+test("every document renders, and no link of one leads nowhere", () => {
+  for (const name of PAGES) {
+    const text = read(name);
+    const all = elements(markdown(text, around(name)));
+    assert.ok(all.length > 3, name);
+    assert.ok(all.every((one) => one.props.dangerouslySetInnerHTML === undefined), name);
+    for (const { props } of all) {
+      if (props.alt !== undefined && props.load) assert.ok(FILES.has(props.name), `${name}: picture ${props.name}`);
+      if (!props.to) continue;
+      const { doc, at } = props.to as { doc: string; at: string };
+      const file = doc.replace(/^component\/(\w+)$/, "library/$1/README.md");
+      assert.ok(FILES.has(file), `${name}: link to ${doc}`);
+      if (at !== "") assert.ok(anchorsOf(file).has(`at-${at}`), `${name}: no heading for ${doc} ${at}`);
+    }
+  }
+});
+
+test("markup in a document is text", () => {
+  const hostile = "# a <script>alert(1)</script>\n\n<img src=x onerror=alert(1)>\n\n[x](javascript:alert(1)) `<b>`\n\n"
+    + "[y](data:text/html,z) [z](//evil.test/) ![p](https://evil.test/p.png) [w](../../../etc/passwd)\n<!-- no -->\n";
+  const tree = markdown(hostile, around("docs/glossary.md"));
+  const kinds = elements(tree).map((one) => one.type).filter((type) => typeof type === "string");
+  assert.deepEqual([...new Set(kinds)].sort(), ["code", "h1", "p"]);
+  assert.ok(words(tree).includes("<script>alert(1)</script>") && words(tree).includes("<img src=x onerror=alert(1)>"));
+  assert.ok(words(tree).includes("<b>"));
+  assert.ok(elements(tree).every((one) => !one.props.href && !one.props.src && !one.props.to));
+});
+
+test("a link leads to a place, out of the documents, or nowhere", () => {
+  const isThere = (name: string) => PAGES.includes(name);
+  const to = (href: string) => {
+    const target = targetOf(href, "library/pid/README.md", isThere);
+    return target.kind === "place" ? `${target.place.doc} ${target.place.at}`.trim() : target.kind;
+  };
+  const cases: [string, string][] = [["../watchdog/README.md", "component/watchdog"],
+    ["../watchdog", "component/watchdog"],
+    ["../README.md#input-rule", "library/README.md input-rule"], ["#ports", "component/pid ports"],
+    ["../../docs/glossary.md", "docs/glossary.md"],
+    ["../../examples/02_cruise_control", "examples/02_cruise_control/README.md"],
+    ["pid.cc", "library/pid/pid.cc"], ["https://x.org/", "outside"], ["HTTPS://x.org/", "outside"],
+    ["../../../README.md", "none"], ["/etc/passwd", "none"], ["javascript:x", "none"], ["//x.org", "none"],
+    ["../../docs/gone.md", "none"], ["%", "none"]];
+  for (const [href, wanted] of cases) assert.equal(to(href), wanted, href);
+});
+
+test("the place stands behind the key, and a kept link has none", () => {
+  assert.equal(hashWith("#KEY&machine=a", { doc: "docs/a b.md", at: "x" }), "#KEY&machine=a&doc=docs/a%20b.md&at=x");
+  assert.equal(hashWith("#KEY&doc=a&at=b", { doc: "", at: "" }), "#KEY");
+  assert.equal(hashWith("", { doc: "component/pid", at: "" }), "#&doc=component/pid");
+  assert.deepEqual(placeOf("#KEY&machine=a&doc=docs/a%20b.md&at=x"), { doc: "docs/a b.md", at: "x" });
+  assert.deepEqual(placeOf("#KEY&doc=%"), { doc: "", at: "" });
+  assert.equal(anchorOf("Two `words`, q_ref"), "two-words-q_ref");
+});
+
+const component = (name: string, change: Partial<LibraryComponent>): LibraryComponent => ({
+  name, doc: "", file: "", rate_hz: null, aperiodic: false, time: null, papers: [], words: "", ports: [], ...change });
+const port = (name: string, unit = "1", doc = "") =>
+  ({ port: name, kind: "in-var", type: "float64", unit, shape: "", repeated: false, doc });
+const library: Library = {
+  components: [
+    component("pid_joint", { ports: [port("q_ref", "rad"), port("kp", "N.m/rad")], papers: ["astrom-2006"] }),
+    component("pid", { doc: "Controller of any quantity.", words: "bumpless gains" }),
+    component("arm", { ports: [port("tau", "N.m", "Wanted torque.")], words: "pid" })],
+  faults: [], documents: [{ name: "docs/howto/drill.md", title: "Drill the safe state" },
+    { name: "library/pid/README.md", title: "pid" }],
+};
+
+test("the search finds names, ports, units, papers, words and documents, the best first", () => {
+  const names = (query: string) => search(query, library).map((one) => one.name + (one.why && ` (${one.why})`));
+  assert.deepEqual(names(""), ["pid_joint", "pid", "arm"]);
+  assert.deepEqual(names("pid"), ["pid", "pid_joint", "arm (its sheet)"]);
+  assert.deepEqual(names("kp"), ["pid_joint (port kp)"]);
+  assert.deepEqual(names("N.m"), ["arm (unit N.m of tau)"]);
+  assert.deepEqual(names("torque"), ["arm (port tau)"]);
+  assert.deepEqual(names("Astrom"), ["pid_joint (paper astrom-2006)"]);
+  assert.deepEqual(names("any bump"), ["pid (its sheet)"]);
+  assert.deepEqual(names("drill"), ["Drill the safe state"]);
+  assert.deepEqual(names("pid nothing"), []);
+});
