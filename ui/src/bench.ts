@@ -6,7 +6,7 @@ import { draft } from "./draft";
 import type { BenchHello, Hello, MachineName } from "./protocol";
 import { Store, useStore } from "./store";
 import { joinPath } from "./text";
-import { view } from "./view";
+import { Mode, View, view } from "./view";
 
 interface BenchState { door: DoorState; sentence: string; hello: BenchHello | null; machines: MachineName[] | null }
 
@@ -44,9 +44,12 @@ async function machineOf(file: string, machines: MachineName[]): Promise<string>
   return (await Promise.all(asked)).find((name) => name !== "") ?? "";
 }
 
-/** Chooses what the page shows first: without a subsystem that runs FILE, the draft. The subsystem is that of the
- *  link; the one before, if the page is loaded again; that of the file, also when it starts later; the one before; the
- *  first of the list. */
+/** The mode that the page shows: without a subsystem that runs FILE the draft, until a person chooses. */
+export const modeOf = ({ mode, machine }: View, hello: BenchHello | null): Mode =>
+  hello === null || hello.file === null ? "look" : mode || (machine === "" ? "assemble" : "look");
+
+/** Chooses the subsystem that the page shows first: that of the link; the one before, if the page is loaded again; that
+ *  of the file, also when it starts later; the one before; the first of the list. */
 export function useChoice(): void {
   const { machines, hello } = useStore(bench);
   const [isDone, done] = useState(false);
@@ -54,8 +57,7 @@ export function useChoice(): void {
     if (isDone || !machines || !hello) return;
     const { machine: before, bench: pid } = view.get();
     const choose = (machine: string) => {
-      const isFirst = pid !== hello.pid && machine === "" && hello.file !== null;
-      view.set({ machine, bench: hello.pid, ...(isFirst ? { mode: "assemble" } : {}),
+      view.set({ machine, bench: hello.pid, ...(pid !== hello.pid && machine === "" ? { mode: "" } : {}),
         ...(machine === before ? {} : { chosen: [], variable: "" }) });
       if (machine !== "") done(true);
     };

@@ -105,7 +105,8 @@ export function DraftBanners({ state, why }: { state: DraftState; why: string })
         <div className="banner error"><p>What was started ended {output.ended}:</p>
           <pre data-output>{output.text}</pre></div>)}
       {message && (
-        <p className={`message ${message.isError ? "error" : "good"}`} role="alert"><span data-message>{message.text}</span>
+        <p className={`message ${message.isError ? "error" : "good"}`} role="alert">
+          <span data-message>{message.text}</span>
           <Button label="Dismiss" className="quiet" press={() => draft.dismiss()}>✕</Button></p>)}
     </div>
   );

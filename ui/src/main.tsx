@@ -4,7 +4,7 @@ import { useEffect, useMemo, useState } from "react";
 import { createRoot } from "react-dom/client";
 import { AssemblePage, markDraft } from "./assemble";
 import { Banner, Banners, benchBanner, machineBanners, MessageBox } from "./banners";
-import { bench, door, key, useChoice } from "./bench";
+import { bench, door, key, modeOf, useChoice } from "./bench";
 import { Canvas, useFit } from "./canvas";
 import { QuestionBox } from "./controls";
 import { draft } from "./draft";
@@ -97,14 +97,14 @@ const NO_MACHINE = new Store<MachineState | null>(null);
 function Modes({ machine, name }: { machine: Machine | null; name: string }) {
   const { door: benchDoor, sentence, hello, machines } = useStore(bench);
   const state = useStore<MachineState | null>(machine?.state ?? NO_MACHINE);
-  const { mode: wanted } = useStore(view);
+  const mode = modeOf(useStore(view), hello);
   const drafted = useStore(draft.state);
-  const mode = hello?.file ? wanted : "look";
   const isBenchOpen = benchDoor === "open";
   const banner: Banner | null = benchBanner(benchDoor, sentence);
   useRunningText(machine, runsFile(state, hello?.file ?? null), state?.version ?? 0);
   useEffect(() => { if (state) markMachine(state); }, [state]);
   useEffect(() => mark({ mode }), [mode]);
+  useEffect(() => { if (drafted.past.length > 0) view.set({ mode }); }, [drafted.past.length > 0]);  // at work
   useEffect(() => markDraft(drafted), [drafted]);
   return (
     <>
@@ -127,7 +127,7 @@ function names(machine: Machine | null): Names {
   const { description } = machine?.state.get() ?? { description: null };
   const { outline } = draft.state.get();
   const all: { tasks: { task: string }[]; variables: { variable: string; constant: boolean }[] } =
-    (view.get().mode === "assemble" && outline) || description || { tasks: [], variables: [] };
+    (modeOf(view.get(), bench.get().hello) === "assemble" && outline) || description || { tasks: [], variables: [] };
   return { tasks: all.tasks.map((one) => one.task),
     variables: all.variables.filter((one) => !one.constant).map((one) => one.variable) };
 }

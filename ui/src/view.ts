@@ -9,7 +9,8 @@ export type Panel = "events" | "receipts" | "profile" | "why";
 export type Mode = "look" | "assemble";
 
 export interface View {
-  mode: Mode;
+  /** That a person chose; "": the page shows what runs, or else the draft. */
+  mode: Mode | "";
   machine: string;
   /** Process of the chimera-web whose link was opened last: a page that is loaded again has the same one. */
   bench: number;
@@ -34,7 +35,7 @@ function kept(): Partial<View> {
 }
 
 export const view = new Store<View>({
-  mode: "look", machine: "", bench: 0,
+  mode: "", machine: "", bench: 0,
   chosen: [], variable: "", panel: "events", zoom: 1, ...kept(), question: null, isFinding: false,
   isHelping: false,
 });
