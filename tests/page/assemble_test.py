@@ -17,8 +17,8 @@ from page import Keys, quoted  # noqa: E402
 
 SOURCE = pathlib.Path(os.environ["CHIMERA_SOURCE"])
 VERIFY = SOURCE / "tests" / "verify"
-FAULTY = ("component_unknown", "configurations", "constant_unmet", "input_unmet", "loop_without_initial", "rate_missing",
-          "repeated_port", "resource_missing", "rtpu_unknown", "shape_clash", "two_producers", "unit_clash")
+FAULTY = ("component_unknown", "configurations", "constant_unmet", "input_unmet", "loop_without_initial",
+          "rate_missing", "repeated_port", "resource_missing", "rtpu_unknown", "shape_clash", "two_producers", "unit_clash")
 FIGURE_4 = """version: 1
 subsystem: puma_pid
 tasks:
@@ -71,7 +71,8 @@ class Acts(AssembleTest):
         for start, end in ((("source", "x"), ("twice", "x")), (("twice", "x"), ("source", "x"))):
             with self.subTest(start):
                 self.assemble(CHAIN, f"{start[0]}.yaml")
-                self.pull(start, end)
+                with self.one_act():
+                    self.pull(start, end)
                 self.await_verdict("legal")
                 self.page.click(self.page.button("Save FILE"))
                 self.page.await_root("touched", "no")
@@ -80,10 +81,7 @@ class Acts(AssembleTest):
     def test_a_line_between_two_outputs_is_refused_in_words(self):
         self.assemble(CHAIN)
         version = self.version()
-        try:
-            self.pull(("source", "x"), ("twice", "y"))
-        except AssertionError:
-            pass
+        self.pull(("source", "x"), ("twice", "y"))
         self.page.await_text("[data-message]", "both ports are outputs")
         self.assertEqual(self.version(), version)
 
@@ -106,7 +104,8 @@ class Acts(AssembleTest):
         self.assemble(PLANT.read_text())
         self.page.click("text.link[data-label=torque]")
         self.fill(rename("torque"), "moment")
-        self.assertEqual(self.text(), PLANT.read_text().replace("torque", "moment"))
+        head, body = PLANT.read_text().split("version", 1)
+        self.assertEqual(self.text(), head + "version" + body.replace("torque", "moment"))
         self.await_verdict("legal")
 
     def test_keys_of_a_task_are_fields(self):
@@ -141,7 +140,7 @@ class Acts(AssembleTest):
         self.page.choose("strong")
         self.fill(field("strong", "constants/k"), "5 N.s")
         self.assertIn("constants: {k: 5 N.s}", self.text())
-        self.page.press(Keys.ESCAPE)
+        self.choose_nothing()
         with self.one_act():
             self.page.one("#add-constants-name").send_keys("mass")
             self.page.one("#add-constants-value").send_keys("3 kg", Keys.ENTER)
@@ -157,7 +156,7 @@ class Acts(AssembleTest):
         with self.one_act():
             self.page.click("input[aria-label='strong in calm']")
         self.await_verdict("legal")
-        self.page.press(Keys.ESCAPE)
+        self.choose_nothing()
         self.page.script("document.querySelectorAll('details').forEach((e) => { e.open = true; })")
         self.press("Start with calm")
         self.assertIn("start: calm", self.text())
@@ -251,7 +250,8 @@ class Faults(AssembleTest):
             self.await_text(text)
 
     def test_a_cpu_without_room_offers_a_lower_rate(self):
-        self.assemble(CHAIN.replace("speed", "x").replace("20 Hz, constants: {k", "20 Hz, budget: 49 ms, constants: {k"))
+        text = CHAIN.replace("speed", "x").replace("constants: {k", "budget: 49 ms, constants: {k")
+        self.assemble(text)
         self.await_verdict("faulty")
         self.press("rate of 'twice': 10 Hz")
         self.await_verdict("legal")
@@ -290,6 +290,7 @@ class Text(AssembleTest):
         place = PLANT.read_text().index("trim:")
         self.page.script("const e = document.getElementById('draft-text'); e.focus();"
                          "e.setSelectionRange(arguments[0], arguments[0])", place)
+        self.page.press(Keys.ARROW_RIGHT)
         self.page.await_one(f"{self.page.box('trim')}.at-cursor")
 
     def test_words_of_the_file_are_never_markup(self):

@@ -107,9 +107,14 @@ class AssembleTest(PageTest):
         with self.one_act():
             self.page.click(self.page.button(label))
 
+    def choose_nothing(self):
+        self.page.script("document.activeElement.blur()")
+        self.page.press(Keys.ESCAPE)
+        self.page.await_one("#add-task-component")
+
     def add_task(self, component, name=""):
         if not self.page.all("#add-task-component"):
-            self.page.press(Keys.ESCAPE)
+            self.choose_nothing()
         with self.one_act():
             self.page.one("#add-task-component").send_keys(component)
             self.page.one("#add-task-name").send_keys(name, Keys.ENTER)
@@ -122,9 +127,8 @@ class AssembleTest(PageTest):
 
     def pull(self, start, end):
         """Pulls a line from port to port with the mouse."""
-        with self.one_act():
-            ActionChains(self.browser.driver, duration=0).move_to_element(self.page.one(port_of(*start))) \
-                .click_and_hold().move_to_element(self.page.one(port_of(*end))).release().perform()
+        ActionChains(self.browser.driver, duration=0).move_to_element(self.page.one(port_of(*start))) \
+            .click_and_hold().move_to_element(self.page.one(port_of(*end))).release().perform()
 
     def type_text(self, text):
         """Puts a text into the drawer at once, as a paste does."""
