@@ -81,9 +81,10 @@ class LibraryTest(PageTest):
     def test_pictures_and_code_are_shown(self):
         self.open("&doc=component/lowpass")
         self.await_heading("lowpass")
-        self.page.await_that("[...document.querySelectorAll('article img')].length === 2 && "
-                             "[...document.querySelectorAll('article img')].every(e => e.naturalWidth > 100)",
-                             "two pictures")
+        self.page.await_that("document.querySelectorAll('article img').length === 2", "two pictures")
+        widths = self.page.script("const all = [...document.querySelectorAll('article img')];"
+                                  "return Promise.all(all.map(e => e.decode())).then(() => all.map(e => e.naturalWidth))")
+        self.assertGreater(min(widths), 100)
         self.assertTrue(self.page.attribute("article img", "src").startswith("blob:"))
         self.page.script("[...document.querySelectorAll('article section[aria-label=Code] a')][0].click()")
         self.await_heading("library/lowpass/lowpass.cc")
@@ -106,10 +107,13 @@ class LibraryTest(PageTest):
         self.page.await_text("article .fault", "no document '../../etc/passwd'")
 
     def test_enter_puts_a_component_on_the_canvas_and_a_drop_links_it(self):
+        (self.place / "build/components").mkdir(parents=True)
+        (self.place / "build/components/cut.component.json").write_text("{")
         self.open(arguments=(self.place / "arm.yaml",))
         self.page.await_root("mode", "assemble")
         self.page.click(self.page.button("Library"))
         self.page.await_one(".found li")
+        self.page.await_text(".library nav details .fault", "cut.component.json: ")
         self.search("pid_joint")
         self.page.press(Keys.ENTER)
         self.page.await_one(self.page.box("pid_joint"))
