@@ -82,8 +82,8 @@ class LibraryTest(PageTest):
         self.open("&doc=component/lowpass")
         self.await_heading("lowpass")
         self.page.await_that("document.querySelectorAll('article img').length === 2", "two pictures")
-        widths = self.page.script("const all = [...document.querySelectorAll('article img')];"
-                                  "return Promise.all(all.map(e => e.decode())).then(() => all.map(e => e.naturalWidth))")
+        widths = self.page.script("const all = [...document.querySelectorAll('article img')], read = (e) => e.decode();"
+                                  "return Promise.all(all.map(read)).then(() => all.map((e) => e.naturalWidth));")
         self.assertGreater(min(widths), 100)
         self.assertTrue(self.page.attribute("article img", "src").startswith("blob:"))
         self.page.script("[...document.querySelectorAll('article section[aria-label=Code] a')][0].click()")
