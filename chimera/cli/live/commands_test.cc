@@ -88,7 +88,7 @@ TEST(Command, EveryMethodOfTheProtocolHasACommand) {
   std::set<std::string> asked = {"hello", "describe", "unsubscribe"};  // by several commands, beside their own
   asked.insert({"check", "schedule", "library"});                      // by editors: the command line has its own
   asked.insert({"plan", "cancel"});                                    // by `switch` with an option
-  asked.insert("machines");                                            // by the page, of chimera-web
+  asked.insert({"machines", "text"});                                  // by the page
   for (const RunningCommand& row : running_commands()) asked.insert(row.method);
   for (const control::MethodRule& method : control::methods()) EXPECT_TRUE(asked.contains(method.name)) << method.name;
   EXPECT_EQ(asked.size(), control::methods().size());
