@@ -18,7 +18,8 @@ from page import Keys, quoted  # noqa: E402
 SOURCE = pathlib.Path(os.environ["CHIMERA_SOURCE"])
 VERIFY = SOURCE / "tests" / "verify"
 FAULTY = ("component_unknown", "configurations", "constant_unmet", "input_unmet", "loop_without_initial",
-          "rate_missing", "repeated_port", "resource_missing", "rtpu_unknown", "shape_clash", "two_producers", "unit_clash")
+          "rate_missing", "repeated_port", "resource_missing", "rtpu_unknown", "shape_clash", "two_producers",
+          "unit_clash")
 FIGURE_4 = """version: 1
 subsystem: puma_pid
 tasks:
