@@ -46,6 +46,7 @@ std::string sentence(const Fault& fault) {
 void Report::locate(Fault& fault) const {
   if (keys_ == nullptr) return;
   const std::vector<std::string> names = keys_->names(fault.at.key);
+  fault.path.clear();
   for (const std::string& name : names) append_joined(fault.path, "/", name);
   if (names.size() < 2) return;
   if (fault.set.empty() && names[0] == "configurations") fault.set = names[1];

@@ -77,6 +77,9 @@ TEST(Report, FillsPathAndBoxFromThePlace) {
   const auto box = [](const std::string& text) {
     const ReadDescription reading = read_description(text, "a");
     const Fault& fault = reading.report.faults()[0];
+    Report again("a", reading.report.keys());
+    again.add_all(reading.report);
+    EXPECT_EQ(again.faults()[0].path, fault.path) << "its path is made anew, not longer";
     return fault.path + " set=" + fault.set + " task=" + fault.task + " port=" + fault.port;
   };
   const std::string head = "subsystem: a\ntasks:\n  pid:\n    ";

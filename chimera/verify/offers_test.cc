@@ -33,8 +33,11 @@ const Library& offers_library() {
        sample_component("deg", {port_in("x", "rad"), port_out("y", "deg")}, 0),
        sample_component("norate", {port_in("q", "rad")}, 0),
        sample_component("camera",
-                         {{.name = "eye", .kind = CHIMERA_RESOURCE, .type = CHIMERA_STRING, .element_size = 256}}),
+                        {{.name = "eye", .kind = CHIMERA_RESOURCE, .type = CHIMERA_STRING, .element_size = 256}}),
        sample_component("plant", {port_in("u", "V"), port_out("q", "rad")}),
+       sample_component(
+           "chain", {{.name = "mass", .unit = "kg", .kind = CHIMERA_IN_CONST, .has_range = true, .min = 2, .max = 9}}),
+       sample_component("scales", {{.name = "weight", .unit = "kg", .kind = CHIMERA_OUT_CONST}}),
        sample_component("join_mean", {ports_in("in", "U"), port_out("out", "U")}),
        sample_component("join_priority", {ports_in("in", "U"), port_out("out", "U"), port_out("chosen", "1")}),
        sample_component("select", {ports_in("in", "U"), port_in("which", "1"), port_out("out", "U")})},
@@ -78,7 +81,9 @@ TEST(Offers, DoNotLinkAGainToAVelocityOfANearName) {
 TEST(Offers, JoinTwoProducersInThreeWays) {
   const std::string text =
       std::string(kArmAlone) + "  spare: {component: arm, alias: {qd: qd_2}}\n  norate: {rate: 1 Hz}\n";
-  EXPECT_EQ(offered(text, "two-producers"), "join by mean | join by priority | join by selection");
+  EXPECT_EQ(offered(text, "two-producers"),
+            "join by mean | join by priority | join by selection | "
+            "link 'q' of 'spare' to a new variable 'q_2'");
 }
 
 TEST(Offers, AddTheProducerToTheConfiguration) {
@@ -106,6 +111,84 @@ TEST(Offers, WriteARateANearNameAndTakeOut) {
   EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm: {magic: 5 Hz}\n", "key-unknown"), "take it out");
   EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm:\noperator: {x: 1}\n", "unused"), "take it out");
   EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm:\noperator: {q: 1 rad}\n", "operator-produced"), "take it out");
+}
+
+TEST(Offers, TakeOutWhatTheDescriptionMayMiss) {
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm: {deadline: 1 min}\n", "time-range"), "take it out");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm:\n  perpetuum_mobile:\n", "component-unknown"), "take it out");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm:\nconfigurations: {run: [arm, zzzzzzz]}\n", "task-unknown"),
+            "take it out");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm: {alias: {zzzzzzz: q}}\n", "port-unknown"), "take it out");
+}
+
+TEST(Offers, WriteAWordOrAUnitThatIsExpected) {
+  const std::string rtpus = "rtpus: {servo: {cpu: 1, policy: fifo}}\n";
+  EXPECT_EQ(offered(kArmAlone + rtpus, "word-unknown"),
+            "write 'rm' | write 'edf' | write 'llf' | write 'muf' | take it out");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm: {rate: 50}\n", "quantity-bad"), "write '50 Hz' | take it out");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm: {budget: 5}\n", "quantity-bad"),
+            "write '5 us' | write '5 ms' | take it out");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  gauge:\noperator: {q_ref: 1}\n", "value-unit"), "write '1 rad'");
+  EXPECT_EQ(offered("tasks:\n  arm:\n", "key-missing"), "subsystem: untitled");
+}
+
+TEST(Offers, GiveAConstantItsSmallestLegalValueOrLinkItToAnOutput) {
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  chain:\n", "constant-unmet"), "constants: {mass: 2 kg}, to be changed");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  chain:\n  scales:\n", "constant-unmet"),
+            "constants: {mass: 2 kg}, to be changed | link to 'weight'");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  chain: {alias: {mass: m}}\n", "constant-unmet"),
+            "constants: {m: 2 kg}, to be changed");
+}
+
+TEST(Offers, PartTwoProducersOfAConstant) {
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  scales:\n  other: {component: scales}\n", "constant-two-producers"),
+            "link 'weight' of 'other' to a new variable 'weight_2'");
+}
+
+TEST(Offers, LowerTheHeaviestRateUntilItFitsOrMoveTheTask) {
+  const std::string task = "subsystem: a\ntasks:\n  arm: {rate: 1 kHz, budget: 800 us}\n";
+  const std::string other = "  arm2: {component: arm, alias: {q: q2, qd: qd2}, rate: 100 Hz, budget: 5 ms}\n";
+  EXPECT_EQ(offered(task + other, "utilisation"), "rate of 'arm': 500 Hz");
+  const std::string third = "  arm3: {component: arm, alias: {q: q3, qd: qd3}, rate: 100 Hz, budget: 6 ms}\n";
+  EXPECT_EQ(offered(task + other + third, "utilisation"),
+            "rate of 'arm': 250 Hz, rate of 'arm2': 50 Hz, rate of 'arm3': 50 Hz");
+  const std::string rtpus = "rtpus: {one: {cpu: 0}, also: {cpu: 0}, two: {cpu: 1}}\n";
+  EXPECT_EQ(offered(rtpus + task + other, "utilisation"), "rate of 'arm': 500 Hz | move 'arm' to rtpu 'two'");
+}
+
+TEST(Offers, GiveAnOutputThatClashesItsOwnVariable) {
+  const std::string text = std::string(kArmAlone) +
+                           "  deg: {rate: 1 Hz, alias: {x: angle, y: q}}\n"
+                           "configurations: {one: [arm], two: [deg]}\noperator: {angle: 1 rad}\n";
+  EXPECT_EQ(offered(text, "unit-clash"), "link 'y' of 'deg' to a new variable 'q_2'");
+}
+
+TEST(Offers, LinkAnInstanceOfARepeatedPortAndTakeOutTooMany) {
+  EXPECT_EQ(offered(std::string(kArmAlone) + "  join_mean: {rate: 1 Hz}\n", "repeated-port"),
+            "link to 'q' | link to 'qd'");
+  std::string many;
+  for (int i = 0; i < 18; ++i) many += i == 0 ? "q" : ", q";
+  EXPECT_EQ(
+      offered(std::string(kArmAlone) + "  join_mean: {rate: 1 Hz, alias: {in: [" + many + "]}}\n", "repeated-port"),
+      "take out all beyond 16");
+}
+
+TEST(Offers, PutAStandbyInItsPlace) {
+  const std::string text = "subsystem: a\nrtpus: {one: {cpu: 0}, two: {cpu: 1}}\ntasks:\n  arm: {rtpu: one}\n";
+  const std::string outputs = "  spare: {component: arm, rtpu: two, standby_for: arm, alias: {q: x}}\n";
+  EXPECT_EQ(offered(text + outputs, "standby-outputs"), "link 'q' to 'q'");
+  const std::string spare =
+      "  spare: {component: arm, rtpu: one, standby_for: arm}\n  gauge: {rtpu: two}\n"
+      "operator: {q_ref: 1 rad}\n";
+  EXPECT_EQ(offered(text + spare, "standby-same-rtpu"), "move 'spare' to rtpu 'two'");
+  EXPECT_EQ(offered(text + spare + "configurations: {run: [arm, gauge, spare]}\n", "standby-in-configuration"),
+            "take 'spare' out of 'run'");
+}
+
+TEST(Offers, AddATaskThatIsInNoConfiguration) {
+  EXPECT_EQ(
+      offered(std::string(kArmAlone) + "  deg: {rate: 1 Hz, alias: {x: q}}\nconfigurations: {run: [arm]}\n", "unused"),
+      "add 'deg' to 'run' | take it out");
 }
 
 TEST(Offers, NameAMissingResourceAndGiveALoopItsInitialValue) {

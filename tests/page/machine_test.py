@@ -1,18 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page before a real subsystem: chimera run, its manager and its processes, which the tests also end."""
 import pathlib
-import subprocess
 import sys
-import xml.etree.ElementTree as xml
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "harness"))
 
 from case import PageTest, main  # noqa: E402
+from drawing import expect_that_of_check  # noqa: E402
 from machine import Machine, await_that  # noqa: E402
-from web import BUILD  # noqa: E402
 from page import Keys  # noqa: E402
-
-SVG = "{http://www.w3.org/2000/svg}"
 
 
 class MachineTest(PageTest):
@@ -31,30 +27,7 @@ class MachineTest(PageTest):
 class Looking(MachineTest):
     def test_the_picture_is_that_of_check(self):
         self.look()
-        done = subprocess.run([BUILD / "bin" / "chimera", "check", self.machine.file, "--graph", "svg"],
-                              capture_output=True, text=True, check=True, cwd=self.machine.place)
-        root = xml.fromstring(done.stdout)
-        drawn = self.page.script("""
-          const at = (e, names) => names.map((name) => Number(e.getAttribute(name)));
-          const all = (selector, take) => [...document.querySelectorAll('svg.picture ' + selector)].map(take);
-          return {
-            boxes: all('rect.frame', (e) => at(e, ['x', 'y', 'width', 'height'])),
-            lines: all('.drawing line', (e) => at(e, ['x1', 'y1', 'x2', 'y2'])),
-            dots: all('.drawing circle', (e) => at(e, ['cx', 'cy'])),
-            texts: all('.labels text', (e) => [e.textContent, ...at(e, ['x', 'y'])])};""")
-
-        def at(element, names):
-            return [float(element.get(name)) for name in names]
-
-        boxes = [at(e, ("x", "y", "width", "height")) for e in root.iter(SVG + "rect") if e.get("rx")]
-        self.assertEqual(len(boxes), 5)
-        self.assertCountEqual(drawn["boxes"], boxes)
-        self.assertCountEqual(drawn["lines"], [at(e, ("x1", "y1", "x2", "y2")) for e in root.iter(SVG + "line")])
-        self.assertCountEqual(drawn["dots"], [at(e, ("cx", "cy")) for e in root.iter(SVG + "circle")])
-        texts = [[e.text, *at(e, ("x", "y"))] for e in root.iter(SVG + "text")]
-        self.assertGreater(len(drawn["texts"]), 10)
-        for text in drawn["texts"]:
-            self.assertIn(text, texts)
+        expect_that_of_check(self, self.machine.file, 5)
 
     def test_no_text_of_the_picture_covers_another(self):
         self.look()
