@@ -8,6 +8,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).parent / "harness"))
 
 import wire  # noqa: E402
+from access import faint, unnamed  # noqa: E402
 from case import PageTest, main  # noqa: E402
 from page import Keys  # noqa: E402
 
@@ -80,8 +81,10 @@ class LibraryTest(PageTest):
     def test_pictures_and_code_are_shown(self):
         self.open("&doc=component/lowpass")
         self.await_heading("lowpass")
-        self.page.await_that("[...document.querySelectorAll('article img')].length === 2 && "
-                             "[...document.querySelectorAll('article img')].every(e => e.naturalWidth > 100)", "two pictures")
+        self.page.await_that("document.querySelectorAll('article img').length === 2", "two pictures")
+        widths = self.page.script("const all = [...document.querySelectorAll('article img')], read = (e) => e.decode();"
+                                  "return Promise.all(all.map(read)).then(() => all.map((e) => e.naturalWidth));")
+        self.assertGreater(min(widths), 100)
         self.assertTrue(self.page.attribute("article img", "src").startswith("blob:"))
         self.page.script("[...document.querySelectorAll('article section[aria-label=Code] a')][0].click()")
         self.await_heading("library/lowpass/lowpass.cc")
@@ -102,6 +105,40 @@ class LibraryTest(PageTest):
         self.page.await_text("article .fault", "no component 'no_such'")
         self.page.open(self.web_server.link + "&doc=../../etc/passwd")
         self.page.await_text("article .fault", "no document '../../etc/passwd'")
+
+    def test_enter_puts_a_component_on_the_canvas_and_a_drop_links_it(self):
+        (self.place / "build/components").mkdir(parents=True)
+        (self.place / "build/components/cut.component.json").write_text("{")
+        self.open(arguments=(self.place / "arm.yaml",))
+        self.page.await_root("mode", "assemble")
+        self.page.click(self.page.button("Library"))
+        self.page.await_one(".found li")
+        self.page.await_text(".library nav details .fault", "cut.component.json: ")
+        self.search("pid_joint")
+        self.page.press(Keys.ENTER)
+        self.page.await_one(self.page.box("pid_joint"))
+        self.page.await_one("[data-port='pid_joint q_ref']")
+        self.page.await_that("[...document.querySelectorAll('datalist[id=\"values-pid_joint-tau_max\"] option')]"
+                             ".some(e => e.textContent === 'test of pid_joint')", "the values of the test")
+        self.page.one(SEARCH).send_keys(Keys.CONTROL + "a")
+        self.search("joint_trajectory")
+        self.page.script("""
+            const data = new DataTransfer(), port = document.querySelector("[data-port='pid_joint q_ref']");
+            const send = (name, to) => to.dispatchEvent(
+                new DragEvent(name, {dataTransfer: data, bubbles: true, cancelable: true}));
+            send('dragstart', document.querySelector("[data-found='component/joint_trajectory']"));
+            send('dragover', port);
+            send('drop', port);""")
+        self.page.await_one(self.page.box("joint_trajectory"))
+        self.page.await_one("[data-port='joint_trajectory q_ref'][aria-label*='linked to q_ref']")
+        self.assertEqual(self.page.root("undo"), "2")  # one act, one undo
+
+    def test_everybody_can_read_and_reach_the_library(self):
+        self.open("&doc=component/pid")
+        self.await_heading("pid")
+        self.page.await_one("[data-fits='measured'] a")
+        self.assertEqual(faint(self.browser), [])
+        self.assertEqual(unnamed(self.browser), [])
 
     def test_words_that_nothing_has_are_said(self):
         self.open()

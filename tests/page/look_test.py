@@ -200,7 +200,7 @@ class LookTest(PageTest):
         self.page.await_one(".finder input")
         self.page.press("task27", Keys.ENTER)
         self.page.await_one(f"{self.page.box('task27')}.chosen")
-        self.page.press("/")
+        self.page.press_with(Keys.CONTROL, "k")
         self.page.await_one(".finder input")
         self.page.press("v12", Keys.ENTER)
         self.page.await_one("[data-why=v12]")

@@ -91,11 +91,11 @@ function equations(text: string): ReactNode {
   );
 }
 
-function table(token: marked.Tokens.Table, around: Around): ReactNode {
+function table(token: marked.Tokens.Table, around: Around, section: string): ReactNode {
   const row = (cells: marked.Tokens.TableCell[], kind: "th" | "td") => cells.map((cell, i) =>
     createElement(kind, { key: i, scope: kind === "th" ? "col" : undefined }, inlines(cell.tokens, around)));
   return (
-    <table>
+    <table aria-label={section || "Table"}>
       <thead><tr>{row(token.header, "th")}</tr></thead>
       <tbody>{token.rows.map((cells, i) => <tr key={i}>{row(cells, "td")}</tr>)}</tbody>
     </table>
@@ -115,7 +115,7 @@ function block(token: marked.Token, around: Around, section: string): ReactNode 
     case "list":
       return createElement(token.ordered ? "ol" : "ul", token.ordered ? { start: token.start || 1 } : null,
         token.items.map((item, i) => <li key={i}>{blocks(item.tokens, around)}</li>));
-    case "table": return table(token, around);
+    case "table": return table(token, around, section);
     case "hr": return <hr />;
     case "space": case "def": return null;
     default: return inline(token, around);

@@ -5,7 +5,9 @@ import fs from "node:fs";
 import test from "node:test";
 import { Around, markdown } from "./document";
 import { formula, textOf } from "./math";
+import { addedTask, portFor } from "./library_acts";
 import { anchorOf, hashWith, placeOf, targetOf } from "./place";
+import type { Outline } from "./protocol";
 import { Library, LibraryComponent, search } from "./search";
 
 /** Names of all files below a folder of the checkout. */
@@ -138,6 +140,25 @@ const library: Library = {
   faults: [], documents: [{ name: "docs/howto/drill.md", title: "Drill the safe state" },
     { name: "library/pid/README.md", title: "pid" }],
 };
+
+test("a component is added under a free name, and linked where a port fits", () => {
+  const [loop, arm] = library.components as [LibraryComponent, LibraryComponent, LibraryComponent];
+  const input = { port: "q", declared: "q", kind: "in-var" as const, type: "float64", unit: "rad", shape: "",
+    solved: true, variable: "angle", parted: false, value: null, default: null, doc: "" };
+  const sensor = component("sensor", { ports: [{ ...port("speed", "rad/s"), kind: "out-var" },
+    { ...port("any", "U"), kind: "out-var" }, { ...port("at", "rad"), kind: "out-var", repeated: true }] });
+  assert.equal(portFor(input, sensor.ports)?.port, "at");
+  assert.equal(portFor({ ...input, unit: "K" }, sensor.ports)?.port, "any");
+  assert.equal(portFor({ ...input, declared: "any" }, sensor.ports)?.port, "any");
+  assert.equal(portFor({ ...input, kind: "resource" }, sensor.ports), undefined);
+  assert.equal(portFor({ ...input, type: "bool" }, sensor.ports), undefined);
+  assert.equal(portFor(input, arm.ports), undefined);
+  const outline = { tasks: [{ task: "sensor", ports: [input] }] } as unknown as Outline;
+  assert.deepEqual(addedTask(outline, "s", sensor, "sensor q"), ["sensor_2", [
+    { act: "add_task", name: "sensor_2", component: "sensor", subsystem: "s" },
+    { act: "link", task: "sensor_2", port: "at", variable: "angle", instance: 0 }]]);
+  assert.deepEqual(addedTask(null, "s", loop)[1].length, 1);
+});
 
 test("the search finds names, ports, units, papers, words and documents, the best first", () => {
   const names = (query: string) => search(query, library).map((one) => one.name + (one.why && ` (${one.why})`));

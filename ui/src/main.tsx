@@ -113,7 +113,10 @@ function Reading({ at, machine, canvas, why, isOpen }:
     const { outline, draft: now } = draft.state.get();
     const subsystem = outline?.subsystem || nameOfFile(now?.file ?? "");
     const [name, acts] = addedTask(outline, subsystem, component, port);
-    if (why === "") await draft.press(acts).then(() => choose([name]));
+    if (why !== "") return;
+    await draft.press(acts);
+    choose([name]);
+    go({ doc: "library", at: "" });
   };
   if (!isOpen) return <main><p className="hint">Connecting…</p></main>;
   return <LibraryPage call={callBench} place={at} go={go} close={() => go({ doc: "", at: "" })}

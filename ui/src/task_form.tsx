@@ -7,6 +7,7 @@ import { instanceActs, instanceOf, linkActs, memberActs, quoted, removedInstance
   } from "./edits";
 import { AddForm, EditChoice, EditField, MoreOf } from "./edit_field";
 import { faultsAt } from "./faults";
+import { OfferedValues } from "./offered_values";
 import type { Fault, Outline, OutlinePort, OutlineTask, Port } from "./protocol";
 import { rate } from "./text";
 import { wordsAt } from "./text_places";
@@ -51,13 +52,17 @@ function ValueField({ task, port, outline, why, label }: Omit<Props, "text" | "f
   const variable = outline.variables.find((one) => one.variable === port.variable && one.constant);
   const isResource = port.kind === "resource";
   if (path === "") return null;
-  return <EditField label={label} why={why}
+  const list = `values-${task.task}-${port.port}`;
+  return <>
+    {task.known && <OfferedValues id={list} component={task.component} port={port.declared} />}
+    <EditField label={label} why={why} list={list}
                     note={isResource ? "file, device or address" : label === "own value" ? "" : noteOf(port)}
                     name={`value of ${task.task} ${port.port}`} present={port.value ?? ""} title={port.doc}
                     mark={["field", `${task.task} ${path.split("/").slice(2).join("/")}`]}
                     placeholder={variable?.value ?? port.default ?? (port.kind === "out-var" ? "none" : "required")}
                     commit={(words) => draft.edit(
-                      valueActs(path, isResource ? quoted(words) : words, port.value !== null))} />;
+                      valueActs(path, isResource ? quoted(words) : words, port.value !== null))} />
+  </>;
 }
 
 const noteOf = ({ type, shape, unit }: OutlinePort) =>
