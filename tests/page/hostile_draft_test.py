@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import sys
@@ -13,7 +14,7 @@ import unittest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "processes"))
 from protocol_test import JUDGES  # noqa: E402
 from system import await_that  # noqa: E402
-from wire import Closed, Server  # noqa: E402
+from wire import BUILD, Closed, Server  # noqa: E402
 
 MIB = 1 << 20
 TEXT = """subsystem: subject
@@ -141,6 +142,34 @@ class Drafts(unittest.TestCase):
         with self.server.open() as page:
             page.begin("replace", version=2, text="#" * MIB)
             self.assertEqual(page.code(), 1009)
+
+    def test_components_that_come_are_known_to_the_next_analysis(self):
+        folder = self.place / "build" / "components"
+        self.file.write_text(TEXT.replace("t_counter", "of_my_own"))
+        with self.server.open() as page:
+            def task():
+                return page.call("draft")["analysis"]["outline"]["tasks"][0]
+
+            await_that(lambda: task()["component"] == "of_my_own", "the new file")
+            self.assertFalse(task()["known"])
+            folder.mkdir(parents=True)
+            (folder / "cut.component.json").write_text("{")
+            part = json.loads((BUILD / "components" / "t_counter.component.json").read_text())
+            own = folder / "of_my_own.component.json"
+            own.write_text(json.dumps({**part, "name": "of_my_own"}))
+
+            def fingerprint():  # the fault of the changed descriptor has the right one
+                said = " ".join(fault["message"] for fault in page.call("library")["faults"])
+                return re.search(r"its content gives (\w+)", said)
+
+            await_that(fingerprint, "a fault")
+            own.write_text(json.dumps({**part, "name": "of_my_own", "fingerprint": fingerprint()[1]}))
+            await_that(lambda: task()["known"], "the component")
+            library = page.call("library")
+            JUDGES["bench_library"].validate(library)
+            self.assertIn("of_my_own", [one["name"] for one in library["components"]])
+            self.assertEqual([one["file"] for one in library["faults"]], [str(folder / "cut.component.json")])
+            await_that(lambda: len(analysts(self.server.process.pid)) < 2, "the end of the analyst without it")
 
     def test_of_two_pages_one_edits_each_version(self):
         good = 0
