@@ -46,7 +46,8 @@ const Node* written_for(const Configuration& configuration, const ConfiguredTask
 }
 
 const Node* written_for(const Outline&, const OutlineTask&, const OutlinePort& port) {
-  return port.own.is_none() ? nullptr : &port.own;
+  static const Node kList;
+  return port.own.is_none() ? nullptr : port.is_own_item ? &kList : &port.own;
 }
 
 using Names = std::set<std::string, std::less<>>;

@@ -51,6 +51,7 @@ struct LinkedPort {
   std::string parted_from;                    ///< `variable` before a fault parted the port from it
   Place at;                                   ///< of the alias, otherwise of the task
   const Node* own = nullptr;                  ///< `constants`, `initial` or `resources` of the task
+  bool is_own_item = false;                   ///< `own` is an item of a written list
   ConstSource source = ConstSource::kNobody;  ///< in-const
   // Set by the rules of agreement:
   std::optional<std::uint32_t> type;

@@ -31,6 +31,7 @@ OutlinePort port_of(const LinkedPort& port) {
   out.is_parted = !port.parted_from.empty();
   out.variable = out.is_parted ? port.parted_from : port.variable;
   if (port.own != nullptr) out.own = *port.own;
+  out.is_own_item = port.is_own_item;
   if (port.is(CHIMERA_RESOURCE)) {
     out.is_solved = true;
     return out;

@@ -23,6 +23,7 @@ struct OutlinePort {
   std::string variable;     ///< that the text links; empty: none
   bool is_parted = false;   ///< a fault keeps the port apart from `variable`
   Node own;                 ///< written under `constants`, `initial` or `resources`; kNone: nothing
+  bool is_own_item = false;  ///< `own` is an item of a written list
   std::string preset;       ///< default or initial value of the component; empty: none
   std::string doc;
 };

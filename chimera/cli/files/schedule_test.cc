@@ -217,7 +217,8 @@ TEST(Schedule, ItsActsWriteOutTheRtpuThatATextWithoutRtpusHas) {
       "  b: {component: t_counter, rate: 20 Hz, budget: 9 ms, alias: {count: b_count, dt: b_dt, now: b_now,\n"
       "      deadline: b_deadline, cycles: b_cycles, dropped: b_dropped, illegal: b_illegal}}\n";
   std::string kinds;
-  for (const Json& remedy : analysed(text)["sets"][0]["cpus"][0]["remedies"]) {
+  const Json said = analysed(text);
+  for (const Json& remedy : said["sets"][0]["cpus"][0]["remedies"]) {
     kinds += kind_of(remedy) + " ";
     EXPECT_EQ(changed(text, remedy)["fits"], true) << remedy;
   }

@@ -176,7 +176,8 @@ void add_port(TaskModel& task, std::size_t task_index, std::uint32_t index, std:
   port.at = alias != nullptr ? alias->port.at : task.draft->name.at;
   port.own = own_value(*task.draft, declared);
   const bool has_list = port.own != nullptr && declared.repeated && port.own->is_list();
-  if (has_list && !port.is(CHIMERA_OUT_VAR)) port.own = &port.own->items[instance];
+  port.is_own_item = has_list && !port.is(CHIMERA_OUT_VAR);
+  if (port.is_own_item) port.own = &port.own->items[instance];
   if (is_linkable(declared.kind)) port.variable = declared.name;
   if (alias != nullptr) {
     port.variable = alias->variables[instance].text;
