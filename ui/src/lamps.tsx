@@ -59,7 +59,7 @@ export function Lamps({ state, machine, machineState, bench, why }: Props) {
   const { file, machine: machineLamp } = lamps(state);
   if (!now) return null;
   const sign = (lamp: string) => (lamp === "same" ? "=" : "≠");
-  const words = `draft ${sign(file)} file${file === "same" ? "" : shortNames(state.fromFile)}` +
+  const words = file === "same" && machineLamp === "same" ? "draft = file = machine" : `draft ${sign(file)} file${file === "same" ? "" : shortNames(state.fromFile)}` +
     (machineLamp === "none" ? (isRunning ? "" : ", no machine runs it")
       : `, draft ${sign(machineLamp)} machine${machineLamp === "same" ? "" : shortNames(state.fromMachine)}`);
   return (
