@@ -57,10 +57,8 @@ export function TextPanel({ text, why, place, atLine }:
     const field = area.current;
     if (field && shown.current !== now && wanted.current === null) {
       const [start, end] = [field.selectionStart, field.selectionEnd].map((at) => movedCursor(shown.current, now, at));
-      const top = field.scrollTop;
-      field.value = now;
+      field.value = now;  // it scrolls nothing; to ask for its place would cost a layout of the whole page
       field.setSelectionRange(start!, end!);
-      field.scrollTop = top;
     }
     shown.current = now;
   }, [now]);
