@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What pages, other programs and kills may do to the draft of chimera-web: no text is lost or overwritten unseen."""
+import contextlib
 import json
 import os
 import pathlib
@@ -140,7 +141,8 @@ class Drafts(unittest.TestCase):
             self.assertIsNone(nested["analysis"]["outline"])
             self.refused(page, "stale", "write", version=1)
         with self.server.open() as page:
-            page.begin("replace", version=2, text="#" * MIB)
+            with contextlib.suppress(OSError):  # the server may end the connection before it has read all
+                page.begin("replace", version=2, text="#" * MIB)
             self.assertEqual(page.code(), 1009)
 
     def test_components_that_come_are_known_to_the_next_analysis(self):
