@@ -195,6 +195,8 @@ void ManagerBackend::call(const control::MethodRule& method, const Json& paramet
     case MethodId::kDrill: return drill(request);
     case MethodId::kSave: return reply(saved_values(state()));
     case MethodId::kEnd: return end(request);
+    case MethodId::kSubscribe:
+    case MethodId::kUnsubscribe: return reply(RpcResponse::error(control::kNoMethod, "the server carries it out"));
     default: return reply(bench_alone());  // control::is_of_bench()
   }
 }

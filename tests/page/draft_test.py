@@ -13,7 +13,7 @@ from assembling import AssembleTest, field  # noqa: E402
 from case import main  # noqa: E402
 from machine import PLANT, Machine, await_that  # noqa: E402
 from page import Keys  # noqa: E402
-from system import Client  # noqa: E402
+from system import Client, kill  # noqa: E402
 from web import Web  # noqa: E402
 
 TEXT = PLANT.read_text()
@@ -160,10 +160,10 @@ class Deaths(DraftTest):
         self.assemble(TEXT)
         self.set_bias("3 m/s")
         before = await_that(self.analyst, "the analyst")
-        os.kill(before, signal.SIGSTOP)
+        kill(before, str(self.runtime), signal.SIGSTOP)
         self.type_into(field("operator/bias"), "2 m/s")
         await_that(lambda: self.sent_edits() == 2, "the edit on its way")
-        os.kill(before, signal.SIGKILL)
+        kill(before, str(self.runtime))
         self.page.await_that("document.querySelector('[aria-invalid=true]') || "
                              "document.getElementById('draft-text').value.includes('bias: 2 m/s')", "its end")
         self.page.press(Keys.ESCAPE)

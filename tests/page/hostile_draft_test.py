@@ -14,7 +14,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "processes"))
 from protocol_test import JUDGES  # noqa: E402
-from system import await_that  # noqa: E402
+from system import await_that, kill  # noqa: E402
 from wire import BUILD, Closed, Server  # noqa: E402
 
 MIB = 1 << 20
@@ -266,7 +266,7 @@ class Drafts(unittest.TestCase):
                 version = self.edit(page, rate(100 + i))["version"]
                 page.begin("edit", version=version, acts=[rate(200 + i)])
                 for analyst in analysts(self.server.process.pid):
-                    os.kill(analyst, signal.SIGKILL)
+                    kill(analyst, str(self.server.runtime))
                 answer = page.finish()
                 if "error" in answer:
                     self.assertEqual(answer["error"]["data"]["kind"], "analysis")
