@@ -32,7 +32,7 @@ cli::Table all_commands() {
   return kTable;
 }
 
-int carry_out(const cli::Call& call, const cli::Workplace& workplace) {
+int carry_out(const cli::Call& call, const Workplace& workplace) {
   for (const FileCommand& row : file_commands())
     if (&row.words == call.command) return row.carry_out(call, workplace);
   return cli::carry_out({call.value("--subsystem"), workplace.unit_files}, call, stdout, stderr);

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "chimera/cli/command/command.h"
-#include "chimera/cli/files/workplace.h"
+#include "chimera/catalogue/workplace.h"
 
 /// A command that needs no running subsystem. Plain value.
 struct FileCommand {
   chimera::cli::Command words;
   /// Returns the exit code; nullptr: the command is nothing without one of its own commands.
-  int (*carry_out)(const chimera::cli::Call& call, const chimera::cli::Workplace& workplace) = nullptr;
+  int (*carry_out)(const chimera::cli::Call& call, const chimera::Workplace& workplace) = nullptr;
 };
 
 /// The rows of one file each. Context of all: setup.
@@ -36,4 +36,4 @@ FileCommand version_row();
 /// All rows in the order of `chimera --help`.
 chimera::cli::Table all_commands();
 /// Carries out a call of any of them. Returns the exit code; may block.
-int carry_out(const chimera::cli::Call& call, const chimera::cli::Workplace& workplace);
+int carry_out(const chimera::cli::Call& call, const chimera::Workplace& workplace);

@@ -15,7 +15,7 @@ using cli::WordKind;
 
 namespace {
 
-int check(const Call& call, const cli::Workplace& workplace) {
+int check(const Call& call, const Workplace& workplace) {
   return print(cli::check({.file = call.operand(0),
                            .json = call.json,
                            .graph = call.value("--graph"),
@@ -24,7 +24,7 @@ int check(const Call& call, const cli::Workplace& workplace) {
                           workplace));
 }
 
-int schedule(const Call& call, const cli::Workplace& workplace) {
+int schedule(const Call& call, const Workplace& workplace) {
   return print(cli::schedule({.file = call.operand(0),
                               .profile = call.value("--profile"),
                               .svg = call.value("--svg"),
@@ -34,17 +34,17 @@ int schedule(const Call& call, const cli::Workplace& workplace) {
                              workplace));
 }
 
-int list(const Call& call, const cli::Workplace& workplace) { return print(cli::list(workplace, call.json)); }
+int list(const Call& call, const Workplace& workplace) { return print(cli::list(workplace, call.json)); }
 
-int describe(const Call& call, const cli::Workplace& workplace) {
+int describe(const Call& call, const Workplace& workplace) {
   return print(cli::describe_component(call.operand(0), workplace, call.json));
 }
 
 int make(cli::NewKind kind, const Call& call) {
-  return print(cli::new_project({.kind = kind, .name = call.operand(0)}, cli::program_path()));
+  return print(cli::new_project({.kind = kind, .name = call.operand(0)}, program_path()));
 }
 
-int new_component(const Call& call, const cli::Workplace&) {
+int new_component(const Call& call, const Workplace&) {
   using cli::NewKind;
   return make(call.has("--c")          ? NewKind::kComponentInC
               : call.has("--hardware") ? NewKind::kHardwareComponent
@@ -52,7 +52,7 @@ int new_component(const Call& call, const cli::Workplace&) {
               call);
 }
 
-int new_application(const Call& call, const cli::Workplace&) { return make(cli::NewKind::kApplication, call); }
+int new_application(const Call& call, const Workplace&) { return make(cli::NewKind::kApplication, call); }
 
 }  // namespace
 

@@ -75,7 +75,7 @@ std::string exact(double value) {
 }
 
 std::vector<std::string> face_of(const KeepRequest& request, const cli::RunPlan& plan, const std::string& socket) {
-  std::vector<std::string> words = {cli::program_path(), "attend", "--socket=" + socket,
+  std::vector<std::string> words = {program_path(), "attend", "--socket=" + socket,
                                     "--parent=" + std::to_string(::getpid())};
   words.insert(words.end(), request.face.begin(), request.face.end());
   for (const cli::Bound& bound : plan.bounds)
@@ -103,7 +103,7 @@ std::vector<std::string> limits_of(const cli::RunPlan& plan) {
 
 /// Beside this program.
 std::string sibling(const char* name) {
-  const std::string mine = cli::program_path();
+  const std::string mine = program_path();
   return mine.substr(0, mine.rfind('/') + 1) + name;
 }
 
@@ -183,14 +183,14 @@ Result<int> keep_nothing(const std::string& subsystem, const Library& library) {
 
 }  // namespace
 
-int keep_idle(const std::string& subsystem, const cli::Workplace& workplace) {
+int keep_idle(const std::string& subsystem, const Workplace& workplace) {
   if (auto may = may_share_memory_here(); !may) return cli::refuse_run({}, may.error(), stdout, stderr);
   const auto library = workplace.library();
   const auto code = library ? keep_nothing(subsystem, *library) : Result<int>(library.error());
   return code ? *code : cli::refuse_run({}, code.error(), stdout, stderr);
 }
 
-int keep(const KeepRequest& request, const cli::Workplace& workplace) {
+int keep(const KeepRequest& request, const Workplace& workplace) {
   if (auto may = may_share_memory_here(); !may) return cli::refuse_run(request.run, may.error(), stdout, stderr);
   int wrong = cli::kRefused;
   const auto plan = cli::plan_run(request.run, workplace, stdout, stderr, &wrong);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "chimera/cli/files/workplace.h"
+#include "chimera/catalogue/workplace.h"
 #include "chimera/cli/run/run.h"
 
 /// The request of a run, and the other settings of the keeper.
@@ -17,7 +17,7 @@ struct KeepRequest {
 };
 
 /// Answers the exit code of the run. Context: setup, the first thread; blocks for the duration.
-int keep(const KeepRequest& request, const chimera::cli::Workplace& workplace);
+int keep(const KeepRequest& request, const chimera::Workplace& workplace);
 
 /// A subsystem of that name with nothing loaded: serves `check`, `schedule` and `library` to editors until it is ended.
-int keep_idle(const std::string& subsystem, const chimera::cli::Workplace& workplace);
+int keep_idle(const std::string& subsystem, const chimera::Workplace& workplace);

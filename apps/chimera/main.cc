@@ -65,7 +65,7 @@ std::string help_of_program(const std::string& documents) {
 }
 
 int run_program(int argc, char** argv) {
-  const cli::Workplace workplace = cli::Workplace::around(cli::program_path());
+  const Workplace workplace = Workplace::around(program_path());
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   const cli::CallReading reading = cli::read_call(all_commands(), words, "chimera");
   const cli::Command* command = reading.call.command;

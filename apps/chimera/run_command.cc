@@ -266,7 +266,7 @@ int with_records(const Call& call, const AskedRun& asked, std::FILE* out, Body b
   return files.finish(out, stderr) ? code : kRefused;
 }
 
-int run(const Call& call, const cli::Workplace& workplace) {
+int run(const Call& call, const Workplace& workplace) {
   AskedRun asked;
   KeepRequest kept;
   if (!asked.read(call) || !read_group(call, "--observe-group", kept.observe_group) ||
@@ -289,7 +289,7 @@ int run(const Call& call, const cli::Workplace& workplace) {
       body, [&](const cli::BrokenRun& broken) { return cli::report_broken_run(asked.run, broken, stdout, stderr); });
 }
 
-int idle(const Call& call, const cli::Workplace& workplace) {
+int idle(const Call& call, const Workplace& workplace) {
   return keep_idle(call.has("--subsystem") ? call.value("--subsystem") : "idle", workplace);
 }
 
@@ -307,7 +307,7 @@ std::vector<cli::Bound> bounds_of(const Call& call) {
   return bounds;
 }
 
-int attend(const Call& call, const cli::Workplace&) {
+int attend(const Call& call, const Workplace&) {
   std::signal(SIGTERM, [](int) { cli::request_stop(); });
   sigset_t held;  // the keeper blocked it until this handler was set
   ::sigemptyset(&held);

@@ -16,13 +16,13 @@ using cli::WordKind;
 
 namespace {
 
-int shell_of(const Call& call, const cli::Workplace& workplace) {
+int shell_of(const Call& call, const Workplace& workplace) {
   return cli::interactive({call.value("--subsystem"), workplace.unit_files}, call.operand(0), call.has("--keep-going"));
 }
 
 constexpr std::size_t kMostBytesOfPage = 1 << 20;
 
-int pages(const Call& call, const cli::Workplace&) {
+int pages(const Call& call, const Workplace&) {
   const auto text = read_ordinary(call.operand(0), kMostBytesOfPage);
   if (!text) return print(cli::file_refusal(text.error(), false));
   const auto made = cli::page(*text, all_commands());
@@ -70,5 +70,5 @@ FileCommand pages_row() {
 
 FileCommand version_row() {
   return {.words = {.name = "--version", .help = "Print the version", .json = "", .is_hidden = true},
-          .carry_out = [](const Call&, const cli::Workplace&) { return print({CHIMERA_VERSION "\n", "", cli::kOk}); }};
+          .carry_out = [](const Call&, const Workplace&) { return print({CHIMERA_VERSION "\n", "", cli::kOk}); }};
 }

@@ -15,7 +15,7 @@ using Repeats = cli::Option::Repeats;
 
 namespace {
 
-int sweep(const Call& call, const cli::Workplace& workplace) {
+int sweep(const Call& call, const Workplace& workplace) {
   cli::SweepRequest request;
   request.over = call.values("--over");
   request.limit = seconds(600);

@@ -19,7 +19,7 @@ namespace {
 
 int usage(const std::string& what) { return print({"", "chimera test: " + what + "\n", kUsage}); }
 
-int test_cases(const Call& call, const cli::Workplace& workplace) {
+int test_cases(const Call& call, const Workplace& workplace) {
   cli::CasesRequest request{.places = call.operands,
                             .only = call.values("--case"),
                             .limit = seconds(600),
@@ -31,7 +31,7 @@ int test_cases(const Call& call, const cli::Workplace& workplace) {
   return cli::test_application(request, workplace, stdout, stderr);
 }
 
-int test_components(const Call& call, const cli::Workplace& workplace) {
+int test_components(const Call& call, const Workplace& workplace) {
   cli::TestOptions options{.components = call.operands,
                            .all = call.has("--all"),
                            .setup = call.value("--setup"),
@@ -43,7 +43,7 @@ int test_components(const Call& call, const cli::Workplace& workplace) {
   return print(cli::test_components(options, workplace));
 }
 
-int test(const Call& call, const cli::Workplace& workplace) {
+int test(const Call& call, const Workplace& workplace) {
   const auto is_given = [&call](std::initializer_list<const char*> options) {
     return std::any_of(options.begin(), options.end(), [&call](const char* option) { return call.has(option); });
   };

@@ -16,7 +16,7 @@ using cli::WordKind;
 
 namespace {
 
-int web(const Call& call, const cli::Workplace&) {
+int web(const Call& call, const Workplace&) {
   const std::string file = call.operand(0);
   const auto refuse = [&](const std::string& why, const std::string& where) {
     return print(cli::file_refusal(Message(why).error(ErrorCode::kRefused, where), call.json));
@@ -24,11 +24,11 @@ int web(const Call& call, const cli::Workplace&) {
   if (!file.empty())
     if (const std::string why = not_ordinary(file, static_cast<std::size_t>(-1)); !why.empty())
       return refuse(why, file);
-  const std::string own = cli::program_path();
+  const std::string own = program_path();
   std::vector<std::string> words = {own.substr(0, own.rfind('/') + 1) + "chimera-web"};
   if (call.json) words.push_back("--json");
   if (call.has("--port")) words.insert(words.end(), {"--port", call.value("--port")});
-  if (!file.empty()) words.push_back(cli::absolute_path(file));
+  if (!file.empty()) words.push_back(absolute_path(file));
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);

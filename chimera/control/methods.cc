@@ -24,6 +24,7 @@ constexpr MethodRule question(MethodId id, const char* name) { return {id, name,
 
 constexpr Parameter kTasks = {"tasks", Kind::kTexts, true};
 constexpr Parameter kText = {"text", Kind::kText, true}, kFile = {"file", Kind::kText, false};
+constexpr Parameter kVersion = count("version", 1, INT64_MAX, true);
 
 /// The signals that a client may name, a blank between each two: all before `wakeup`, which is `ring`.
 constexpr auto kSignals = [] {
@@ -51,7 +52,7 @@ constexpr MethodRule kMethods[] = {
     {MethodId::kPlan, "plan", Role::kObserve, false, false,
      {{"configuration", Kind::kText, false}, {"on", Kind::kTexts, false}, {"off", Kind::kTexts, false}}},
     {MethodId::kSubscribe, "subscribe", Role::kObserve, false, false,
-     {{"to", Kind::kText, true, "status events values tap machines"}, count("period_ms", 20, 60'000),
+     {{"to", Kind::kText, true, "status events values tap machines draft"}, count("period_ms", 20, 60'000),
       {"variables", Kind::kTexts, false}, count("since", 0, INT64_MAX)}},
     {MethodId::kUnsubscribe, "unsubscribe", Role::kObserve, false, false, {count("subscription", 1, INT64_MAX, true)}},
     {MethodId::kCheck, "check", Role::kObserve, false, true, {kText, kFile}},
@@ -71,11 +72,24 @@ constexpr MethodRule kMethods[] = {
     {MethodId::kSave, "save", Role::kConfigure, true, false, {}},
     {MethodId::kEnd, "end", Role::kConfigure, true, false, {count("code", 0, 255)}},
     question(MethodId::kMachines, "machines"),
+    {MethodId::kDraft, "draft", Role::kObserve, false, true, {}},
+    {MethodId::kEdit, "edit", Role::kConfigure, true, false, {kVersion, {"acts", Kind::kObjects, true}}},
+    {MethodId::kReplace, "replace", Role::kConfigure, true, false, {kVersion, kText}},
+    {MethodId::kRemedies, "remedies", Role::kObserve, false, true, {kVersion}},
+    {MethodId::kDifferences, "differences", Role::kObserve, false, true, {{"text", Kind::kText, false}}},
+    {MethodId::kWrite, "write", Role::kConfigure, true, false, {kVersion}},
+    {MethodId::kKeep, "keep", Role::kConfigure, true, false, {{"what", Kind::kText, true, "draft file"}}},
+    {MethodId::kStart, "start", Role::kConfigure, true, false, {}},
+    question(MethodId::kOutput, "output"),
 };
 // clang-format on
 
 bool is_texts(const Json& value) {
   return value.is_array() && std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_string(); });
+}
+
+bool is_objects(const Json& value) {
+  return value.is_array() && std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_object(); });
 }
 
 bool fits(Kind kind, const Json& value) {
@@ -87,13 +101,14 @@ bool fits(Kind kind, const Json& value) {
     case Kind::kCount:
       return value.is_whole() && value.as_int64() >= 0;
     case Kind::kObject: return value.is_object();
+    case Kind::kObjects: return is_objects(value);
   }
   return false;
 }
 
 const char* meaning(Kind kind) {
   constexpr const char* kWords[] = {"a text", "an array of texts", "true or false", "a whole number from 0 on",
-                                    "an object"};
+                                    "an object", "an array of objects"};
   return kWords[static_cast<unsigned>(kind)];
 }
 

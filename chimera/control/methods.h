@@ -13,7 +13,7 @@
 
 namespace chimera::control {
 
-enum class ParameterKind : unsigned char { kText, kTexts, kBool, kCount, kObject };
+enum class ParameterKind : unsigned char { kText, kTexts, kBool, kCount, kObject, kObjects };
 
 struct Parameter {
   const char* name = nullptr;
@@ -27,7 +27,7 @@ struct Parameter {
 enum class MethodId : unsigned char {
   kHello, kStatus, kDescribe, kGet, kProfile, kEvents, kReceipts, kWhy, kPlan, kSubscribe, kUnsubscribe, kCheck,
   kSchedule, kLibrary, kSignal, kRing, kSet, kFlag, kSwitch, kCancel, kDrill, kSave, kEnd,
-  kMachines
+  kMachines, kDraft, kEdit, kReplace, kRemedies, kDifferences, kWrite, kKeep, kStart, kOutput
 };
 
 struct MethodRule {
@@ -41,6 +41,8 @@ struct MethodRule {
 
 /// Every method once, in the order of MethodId.
 std::span<const MethodRule> methods() noexcept;
+/// True for the methods of chimera-web, which a subsystem refuses.
+constexpr bool is_of_bench(MethodId id) noexcept { return id >= MethodId::kMachines; }
 /// The rule of that name; nullptr: there is none.
 const MethodRule* find_method(std::string_view name) noexcept;
 /// Judges the parameters of a call: an error, or an answer without result when they are as the rule says.

@@ -24,6 +24,8 @@ TEST(Methods, AcceptTheParametersOfTheTable) {
   EXPECT_EQ(judged("ring", {{"tasks", {"lamp", "lamp"}}}), "");
   EXPECT_EQ(judged("set", {{"values", {{"kp", {1, 2}}}}}), "");
   EXPECT_EQ(judged("end", {{"code", 255}}), "");
+  EXPECT_EQ(judged("edit", {{"version", 1}, {"acts", Json::array({{{"act", "remove"}, {"path", "start"}}})}}), "");
+  EXPECT_EQ(judged("edit", {{"version", 1}, {"acts", Json::array()}}), "");
 }
 
 TEST(Methods, NameTheErrorInAParameter) {
@@ -36,6 +38,11 @@ TEST(Methods, NameTheErrorInAParameter) {
   EXPECT_EQ(judged("flag", {{"up", 1}}), "up: 'up' must be true or false");
   EXPECT_EQ(judged("ring", Json::object()), "tasks: 'ring' needs 'tasks'");
   EXPECT_EQ(judged("set", {{"values", Json::array()}}), "values: 'values' must be an object");
+  for (const Json& acts : {Json::object(), Json::array({1}), Json::array({Json::object(), nullptr}), Json("[]")})
+    EXPECT_EQ(judged("edit", {{"version", 1}, {"acts", acts}}), "acts: 'acts' must be an array of objects");
+  EXPECT_EQ(judged("write", Json::object()), "version: 'write' needs 'version'");
+  EXPECT_EQ(judged("write", {{"version", 0}}), "version: 'version' must be from 1 to 9223372036854775807");
+  EXPECT_EQ(judged("keep", {{"what", "both"}}), "what: 'what' must be draft or file");
   EXPECT_EQ(judged("events", {{"since", -1}}), "since: 'since' must be a whole number from 0 on");
   EXPECT_EQ(judged("events", {{"since", 1.5}}), "since: 'since' must be a whole number from 0 on");
   EXPECT_EQ(judged("events", {{"since", UINT64_MAX}}), "since: 'since' must be at most 9223372036854775807");
@@ -43,7 +50,7 @@ TEST(Methods, NameTheErrorInAParameter) {
   EXPECT_EQ(judged("subscribe", {{"to", "status"}, {"period_ms", 19}}),
             "period_ms: 'period_ms' must be from 20 to 60000");
   EXPECT_EQ(judged("subscribe", {{"to", "valeus"}}),
-            "to: 'to' must be status, events, values, tap or machines (values)");
+            "to: 'to' must be status, events, values, tap, machines or draft (values)");
   EXPECT_EQ(judged("signal", {{"signal", "spwan"}, {"tasks", {"a"}}}),
             "signal: 'signal' must be spawn, on, off, kill, clear or reinit (spawn)");
 }
@@ -68,7 +75,7 @@ TEST(Methods, ActsNeedTheRoleOperateOrMore) {
     acts += rule.is_act ? std::string(" ") + rule.name : "";
     EXPECT_EQ(static_cast<std::ptrdiff_t>(rule.id), &rule - methods().data()) << rule.name << ": keys of a table";
   }
-  EXPECT_EQ(acts, " signal ring set flag switch cancel drill save end");
+  EXPECT_EQ(acts, " signal ring set flag switch cancel drill save end edit replace write keep start");
   EXPECT_EQ(find_method("nothing"), nullptr);
 }
 

@@ -43,6 +43,7 @@ struct RenameKey {
   EditPath path;
   std::string to;
   std::vector<TaskPort> ports;  ///< ports linked to the variable or constant by their own name; each gets an alias
+  bool lacks_ports = false;     ///< `ports` is left out: name_ports() (verify/outline.h) fills it
 };
 
 struct AddTask {
@@ -63,6 +64,7 @@ struct JoinProducers {
   std::string variable;
   JoinBy by = JoinBy::kMean;
   std::vector<TaskPort> producers;  ///< output ports; a standby shares the input of its primary
+  bool lacks_ports = false;         ///< `producers` is left out, as RenameKey::ports
 };
 
 using EditAct = std::variant<SetValue, RemoveValue, RenameKey, AddTask, LinkPort, JoinProducers>;

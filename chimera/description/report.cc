@@ -32,11 +32,7 @@ std::string port_of(std::span<const std::string> names) {
 
 Json offers_json(const Fault& fault) {
   Json all = Json::array();
-  for (const Offer& offer : fault.offers) {
-    Json acts = Json::array();
-    for (const EditAct& act : offer.acts) acts.push_back(edit_json(act));
-    all.push_back({{"label", offer.label}, {"acts", std::move(acts)}});
-  }
+  for (const Offer& offer : fault.offers) all.push_back({{"label", offer.label}, {"acts", edits_json(offer.acts)}});
   return all;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the graph of a configuration: a box a task, a line a variable.
+// Makes the graph of a configuration or an outline: a box a task, a line a variable.
 #include "chimera/draw/graph_of.h"
 
 #include <algorithm>
@@ -35,33 +35,49 @@ std::string cut(const std::string& text) {
   return is_path ? ".." + text.substr(text.size() - kLongest + 2) : text.substr(0, kLongest - 2) + "..";
 }
 
-/// The value that the file writes for the port; empty for a list; none: the file writes no value.
-std::optional<std::string> written_at(const std::vector<NamedNode>& values, const std::string& port) {
-  const std::string declared = port.substr(0, port.find('['));
-  const auto at = std::ranges::find_if(values, [&](const NamedNode& each) { return each.name.text == declared; });
-  if (at == values.end()) return std::nullopt;
-  return at->value.is_scalar() ? cut(at->value.text) : "";
+/// The value that the file writes for a port; a null pointer: none.
+const Node* written_for(const Configuration& configuration, const ConfiguredTask& task, const ConfiguredPort& port) {
+  const std::vector<DraftTask>& drafts = configuration.draft().tasks;
+  const auto draft = std::ranges::find(drafts, task.name, [](const DraftTask& each) { return each.name.text; });
+  const std::vector<NamedNode>& values = port.kind == CHIMERA_RESOURCE ? draft->resources : draft->constants;
+  const std::string declared = port.name.substr(0, port.name.find('['));
+  const auto at = std::ranges::find(values, declared, [](const NamedNode& each) { return each.name.text; });
+  return at == values.end() ? nullptr : &at->value;
+}
+
+const Node* written_for(const Outline&, const OutlineTask&, const OutlinePort& port) {
+  return port.own.is_none() ? nullptr : &port.own;
 }
 
 using Names = std::set<std::string, std::less<>>;
 
-Box box_of(const ConfiguredTask& task, const DraftTask& draft, const Names& read_constants) {
+template <class Whole, class Task>
+Box box_of(const Whole& whole, const Task& task, const Names& read_constants) {
   Box box;
   box.name = task.name;
   box.component = task.component;
-  box.rate = rate_text(task.rate_hz);
-  for (const ConfiguredPort& port : task.ports) {
+  box.rate = task.rate_hz > 0 ? rate_text(task.rate_hz) : "";
+  for (const auto& port : task.ports) {
     const auto kind = kind_of(port.kind);
     if (!kind) continue;
-    const bool is_resource = *kind == PortKind::kResource;
-    const auto written = written_at(is_resource ? draft.resources : draft.constants, port.name);
+    const bool has_value = *kind == PortKind::kResource || *kind == PortKind::kInConst;
+    const Node* written = has_value ? written_for(whole, task, port) : nullptr;
     const bool is_read = *kind != PortKind::kOutConst || read_constants.contains(port.variable);
-    const bool is_default = *kind == PortKind::kInConst && port.variable.empty() && !written;
-    const bool has_value = is_resource || *kind == PortKind::kInConst;
-    box.ports.push_back(
-        {*kind, port.name, port.variable, has_value ? written.value_or("") : "", is_read && !is_default});
+    const bool is_default = *kind == PortKind::kInConst && port.variable.empty() && written == nullptr;
+    box.ports.push_back({*kind, port.name, port.variable,
+                         written != nullptr && written->is_scalar() ? cut(written->text) : "", is_read && !is_default});
   }
   return box;
+}
+
+/// Adds these tasks of a configuration or an outline.
+template <class Whole, class Tasks>
+void add_boxes(Graph& graph, const Whole& whole, const Tasks& tasks) {
+  Names read_constants;
+  for (const auto* task : tasks)
+    for (const auto& port : task->ports)
+      if (port.kind == CHIMERA_IN_CONST && !port.variable.empty()) read_constants.insert(port.variable);
+  for (const auto* task : tasks) graph.boxes.push_back(box_of(whole, *task, read_constants));
 }
 
 }  // namespace
@@ -72,17 +88,21 @@ Graph graph_of(const Configuration& configuration, const ConfiguredSet* set) {
   std::vector<const ConfiguredTask*> tasks;
   for (std::size_t t = 0; t < configuration.tasks().size(); ++t)
     if (set == nullptr || std::ranges::count(set->order, TaskId(t)) > 0) tasks.push_back(&configuration.tasks()[t]);
-  Names read_constants;
-  for (const ConfiguredTask* task : tasks)
-    for (const ConfiguredPort& port : task->ports)
-      if (port.kind == CHIMERA_IN_CONST && !port.variable.empty()) read_constants.insert(port.variable);
-  const std::vector<DraftTask>& drafts = configuration.draft().tasks;
-  for (const ConfiguredTask* task : tasks) {
-    const auto draft = std::ranges::find(drafts, task->name, [](const DraftTask& each) { return each.name.text; });
-    graph.boxes.push_back(box_of(*task, *draft, read_constants));
-  }
+  add_boxes(graph, configuration, tasks);
   for (const ConfiguredVariable& variable : configuration.variables())
     if (variable.is_given) graph.given.push_back(variable.name);
+  return graph;
+}
+
+Graph graph_of(const Outline& outline) {
+  Graph graph;
+  graph.title = outline.subsystem;
+  std::vector<const OutlineTask*> tasks;
+  for (const OutlineTask& task : outline.tasks) tasks.push_back(&task);
+  add_boxes(graph, outline, tasks);
+  for (const OutlineVariable& variable : outline.variables)
+    if (variable.origin == Origin::kOperator || variable.origin == Origin::kConstants)
+      graph.given.push_back(variable.name);
   return graph;
 }
 

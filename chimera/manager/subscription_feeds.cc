@@ -22,14 +22,14 @@ std::shared_ptr<const Json> shared(Json json) { return std::make_shared<const Js
 }  // namespace
 
 RpcResponse bench_alone() {
-  return RpcResponse::refused("bench", "a subsystem does not know which others run", "",
+  return RpcResponse::refused("bench", "the server of the page answers this, not a subsystem", "",
                               "ask the server of the page: `chimera web`");
 }
 
 RpcResponse SubscriptionFeeds::open(std::uint64_t subscription, const Json& parameters) {
   using To = Feed::To;
   const std::string to = parameters.at("to").as_string();
-  if (to == "machines") return bench_alone();
+  if (to == "machines" || to == "draft") return bench_alone();
   const auto names = control::texts(parameters, "variables");
   auto variables = variables_named(state_, names);
   if (const auto* refused = std::get_if<RpcResponse>(&variables)) return *refused;

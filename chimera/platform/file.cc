@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
@@ -58,6 +59,13 @@ std::uint64_t whole_bytes(int file, std::uint64_t bytes) {
     end = from;
   }
   return 0;
+}
+
+/// False with errno; EEXIST: there is a file at `path`, and it may not be replaced. NFS does not know the flag, but links.
+bool rename_part(const std::string& part, const std::string& path, bool may_replace) noexcept {
+  if (may_replace) return ::rename(part.c_str(), path.c_str()) == 0;
+  if (::renameat2(AT_FDCWD, part.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) == 0) return true;
+  return errno == EINVAL && ::link(part.c_str(), path.c_str()) == 0 && ::unlink(part.c_str()) == 0;
 }
 
 }  // namespace
@@ -124,12 +132,12 @@ bool make_private_folder(const std::string& path) {
   return ::mkdir(path.c_str(), 0700) == 0 || (::stat(path.c_str(), &state) == 0 && S_ISDIR(state.st_mode));
 }
 
-Result<PartFile> PartFile::open(const std::string& path) {
+Result<PartFile> PartFile::open(const std::string& path, unsigned mode) {
   struct stat there {};
   if (::stat(path.c_str(), &there) == 0 && !S_ISREG(there.st_mode))
     return Message("is no ordinary file").error(ErrorCode::kRefused, path);
   std::string part = path + "." + std::to_string(::getpid()) + ".part";
-  OwnedDescriptor file(::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  OwnedDescriptor file(::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode));
   if (file.fd < 0) return refusal("cannot be written", errno, path);
   return PartFile(path, std::move(part), std::move(file));
 }
@@ -138,11 +146,13 @@ PartFile::~PartFile() {
   if (file_.fd >= 0) ::unlink(part_.c_str());
 }
 
-Result<void> PartFile::put(std::string_view text) {
+Result<void> PartFile::put(std::string_view text, bool may_replace) {
   errno = ENOSPC;  // a short write sets no errno itself
-  const bool is_good = ::write(file_.fd, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
-                       ::fsync(file_.fd) == 0 && ::rename(part_.c_str(), path_.c_str()) == 0;
-  if (!is_good) return refusal("cannot be written", errno, path_);
+  if (::write(file_.fd, text.data(), text.size()) != static_cast<ssize_t>(text.size()) || ::fsync(file_.fd) != 0)
+    return refusal("cannot be written", errno, path_);
+  if (!rename_part(part_, path_, may_replace))
+    return errno == EEXIST ? Message("is there already").error(ErrorCode::kRefused, path_)
+                           : refusal("cannot be written", errno, path_);
   file_ = OwnedDescriptor();
   return {};
 }

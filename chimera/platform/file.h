@@ -59,16 +59,19 @@ bool make_private_folder(const std::string& path);
 class PartFile {
  public:
   /// Refuses, with the path in `where`, a place that holds no ordinary file ("is no ordinary file"), and a folder that
-  /// refuses a new file ("cannot be written: REASON").
-  static Result<PartFile> open(const std::string& path);
+  /// refuses a new file ("cannot be written: REASON"). `mode`: permissions of the file, less those of the umask.
+  static Result<PartFile> open(const std::string& path, unsigned mode = 0666);
   PartFile(PartFile&& other) noexcept = default;
   PartFile& operator=(PartFile&&) = delete;
   ~PartFile();
 
   /// Writes `text`, waits until the disk has it, and renames the file to its place, once. Refuses as open().
-  Result<void> put(std::string_view text);
+  Result<void> put(std::string_view text) { return put(text, true); }
+  /// As put(), and refuses if there is a file at the place: "is there already".
+  Result<void> put_new(std::string_view text) { return put(text, false); }
 
  private:
+  Result<void> put(std::string_view text, bool may_replace);
   PartFile(std::string path, std::string part, OwnedDescriptor file) noexcept
       : path_(std::move(path)), part_(std::move(part)), file_(std::move(file)) {}
 

@@ -126,6 +126,16 @@ TEST_F(PartFileTest, LeavesThePlaceAsItWasWhenPutFails) {
   EXPECT_EQ(content(), "before");
 }
 
+TEST_F(PartFileTest, RefusesToPutANewFileOverAnother) {
+  EXPECT_EQ(PartFile::open(path(), 0600)->put_new("after").error().message.view(), "is there already");
+  EXPECT_EQ(content(), "before");
+  fs::remove(path());
+  EXPECT_TRUE(PartFile::open(path(), 0600)->put_new("after"));
+  EXPECT_EQ(content(), "after");
+  EXPECT_EQ(files(), 1);
+  EXPECT_EQ(state_of_file(path())->mode, 0600u);
+}
+
 struct LineFileTest : FolderTest {};
 
 TEST_F(LineFileTest, IsMadeForThisUserOnlyAndGrowsAtItsEnd) {

@@ -42,9 +42,15 @@ constexpr timespec kRespite{0, 10'000'000};
 
 alignas(64) std::byte holder_stack[16 * 1024];
 
+/// In the child: a session of its own, and its standard streams.
+bool stand_apart(int output) noexcept {
+  const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  return ::setsid() >= 0 && nothing >= 0 && ::dup2(nothing, 0) >= 0 && ::dup2(output, 1) >= 0 && ::dup2(output, 2) >= 0;
+}
+
 // In the child, between fork and exec: nothing here may allocate, lock or return.
-[[noreturn]] void become(const char* program, char* const* words, std::span<const int> passed, int failed,
-                         int blocked) noexcept {
+[[noreturn]] void become(const char* program, char* const* words, std::span<const int> passed, int failed, int blocked,
+                         int output) noexcept {
   const int above = kFirst + static_cast<int>(passed.size());
   // Copy to higher numbers first: a descriptor to pass may itself be 3 or 4 here. exec closes the copies.
   int copies[kMaxPassed] = {};
@@ -57,6 +63,7 @@ alignas(64) std::byte holder_stack[16 * 1024];
   for (std::size_t i = 0; good && i < passed.size(); ++i) good = ::dup2(copies[i], kFirst + static_cast<int>(i)) >= 0;
   // Descriptors that the parent left open without close-on-exec end at exec too.
   good = good && ::close_range(static_cast<unsigned>(above), UINT_MAX, CLOSE_RANGE_CLOEXEC) == 0;
+  good = good && (output < 0 || stand_apart(output));
   const int passing_error = good ? 0 : errno;
   for (int number = 1; number < NSIG; ++number) ::signal(number, SIG_DFL);
   for (const int number : {SIGINT, SIGHUP, SIGPIPE, SIGXFSZ}) ::signal(number, SIG_IGN);
@@ -95,6 +102,15 @@ Message signal_text(int number) noexcept {
 
 Result<Process> Process::start(const char* program, std::span<const char* const> arguments,
                                std::span<const int> descriptors, int blocked) noexcept {
+  return start(program, arguments, descriptors, blocked, -1);
+}
+
+Result<Process> Process::start_apart(const char* program, std::span<const char* const> arguments, int output) noexcept {
+  return start(program, arguments, {}, 0, output);
+}
+
+Result<Process> Process::start(const char* program, std::span<const char* const> arguments,
+                               std::span<const int> descriptors, int blocked, int output) noexcept {
   const Message what = Message() << "program " << program;
   if (arguments.size() > kMaxArguments || descriptors.size() > kMaxPassed)
     return (Message() << what.view() << ": more than " << kMaxArguments << " arguments or " << kMaxPassed
@@ -111,7 +127,7 @@ Result<Process> Process::start(const char* program, std::span<const char* const>
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
   const pid_t pid = ::fork();
-  if (pid == 0) become(program, words, descriptors, failed.fd, blocked);
+  if (pid == 0) become(program, words, descriptors, failed.fd, blocked, output);
   const int fork_error = errno;
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   errno = fork_error;

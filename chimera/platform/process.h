@@ -40,6 +40,10 @@ class Process {
   static Result<Process> start(const char* program, std::span<const char* const> arguments,
                                std::span<const int> descriptors, int blocked = 0) noexcept;
 
+  /// Starts `program` as start() does, in a session of its own, without descriptors of this process: standard input is
+  /// /dev/null, standard output and standard error are `output`. No signal of a terminal reaches the child.
+  static Result<Process> start_apart(const char* program, std::span<const char* const> arguments, int output) noexcept;
+
   Process() noexcept = default;
   Process(Process&& other) noexcept : pidfd_(std::exchange(other.pidfd_, -1)), pid_(std::exchange(other.pid_, -1)) {}
   Process& operator=(Process&& other) noexcept;
@@ -56,6 +60,9 @@ class Process {
   bool signal(int number) const noexcept;
 
  private:
+  static Result<Process> start(const char* program, std::span<const char* const> arguments,
+                               std::span<const int> descriptors, int blocked, int output) noexcept;
+
   int pidfd_ = -1;
   pid_t pid_ = -1;
 };

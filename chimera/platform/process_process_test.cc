@@ -50,6 +50,24 @@ std::string output_of(const std::string& script, std::vector<int> more = {}) {
   return text;
 }
 
+TEST(Process, StartsApartWithoutStreamsAndDescriptorsOfItsParent) {
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);  // no close-on-exec: the child must not get them all the same
+  const std::array<const char*, 3> words = {
+      "sh", "-c", "ps -o sid= -p $$ | tr -d ' '; echo $$; cat; ls /proc/$$/fd | tr '\\n' ' '; echo error >&2"};
+  auto child = Process::start_apart("/bin/sh", words, ends[1]);
+  ASSERT_TRUE(child) << child.error().message.c_str();
+  const std::string own = std::to_string(child->pid());
+  ::close(ends[1]);
+  std::string text;
+  char bytes[512];
+  for (ssize_t n; (n = ::read(ends[0], bytes, sizeof bytes)) > 0;) text.append(bytes, static_cast<std::size_t>(n));
+  ::close(ends[0]);
+  ProcessEnd end;
+  EXPECT_TRUE(child->wait(end, kLimit));
+  EXPECT_EQ(text, own + "\n" + own + "\n0 1 2 error\n");
+}
+
 TEST(Process, ReportsTheEndOfItsChild) {
   auto child = shell("exit 7");
   ASSERT_TRUE(child.has_value()) << child.error().message.view();

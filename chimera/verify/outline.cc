@@ -57,6 +57,7 @@ OutlineTask task_of(const Model& model, const TaskModel& task) {
   const DraftTask& draft = *task.draft;
   OutlineTask out;
   out.name = task.name();
+  out.line = draft.name.at.line;
   out.component = draft.component.text;
   out.rtpu = model.rtpus[task.rtpu].name.text;
   out.rate_hz = task.rate_hz;
@@ -154,6 +155,7 @@ Json task_json(const OutlineTask& task) {
                         {"max_instances", port.max_instances},
                         {"doc", port.doc}});
   return {{"task", task.name},
+          {"line", task.line},
           {"component", task.component},
           {"known", task.is_known},
           {"doc", task.doc},
@@ -175,8 +177,10 @@ Json variable_json(const Outline& outline, const OutlineVariable& variable) {
   const char* origin = kOrigins[static_cast<std::size_t>(variable.origin)];
   const auto ends = [&](const std::vector<PortRef>& refs) {
     Json all = Json::array();
-    for (const PortRef ref : refs)
-      all.push_back({{"task", outline.tasks[ref.task].name}, {"port", outline.tasks[ref.task].ports[ref.port].name}});
+    for (const PortRef ref : refs) {
+      const auto [task, port] = task_port(outline, ref);
+      all.push_back({{"task", task}, {"port", port}});
+    }
     return all;
   };
   return {{"variable", variable.name},
@@ -202,6 +206,25 @@ Outline outline_of(const Model& model) {
   outline.start = model.start;
   outline.rtpus = model.rtpus;
   return outline;
+}
+
+TaskPort task_port(const Outline& outline, PortRef ref) {
+  return {outline.tasks[ref.task].name, outline.tasks[ref.task].ports[ref.port].name};
+}
+
+void name_ports(EditAct& act, const Outline& outline) {
+  if (auto* join = std::get_if<JoinProducers>(&act); join != nullptr && join->lacks_ports) {
+    const auto variable = std::ranges::find(outline.variables, join->variable, &OutlineVariable::name);
+    if (variable == outline.variables.end()) return;
+    for (const PortRef ref : variable->producers) join->producers.push_back(task_port(outline, ref));
+  }
+  auto* rename = std::get_if<RenameKey>(&act);
+  if (rename == nullptr || !rename->lacks_ports || rename->path.size() != 2) return;
+  const std::string &section = rename->path[0], &name = rename->path[1];
+  if (section != "operator" && section != "constants" && section != "variables") return;
+  for (const OutlineTask& task : outline.tasks)
+    for (const OutlinePort& port : task.ports)
+      if (port.variable == name && port.name == name) rename->ports.push_back({task.name, port.name});
 }
 
 Json outline_json(const Outline& outline) {

@@ -37,6 +37,7 @@ struct OutlineRepeated {
 
 struct OutlineTask {
   std::string name, component;
+  std::uint32_t line = 0;  ///< of the key in the text
   bool is_known = false;  ///< the library has the component; if not, there are no ports
   std::string doc;        ///< one sentence of the component
   std::string rtpu;
@@ -87,6 +88,12 @@ struct Outlined {
 /// Judges as verify() does, in the same pass. Context: setup.
 Outlined verify_with_outline(const ReadDescription& reading, const Library& library,
                              Overload overload = Overload::kRefused);
+
+/// The task and port at `ref`, as acts name them. Context: setup.
+TaskPort task_port(const Outline& outline, PortRef ref);
+/// Fills what an act leaves out: for `rename` the ports linked to the variable by their own name, for `join` all
+/// producers. Context: setup.
+void name_ports(EditAct& act, const Outline& outline);
 
 Json outline_json(const Outline& outline);
 

@@ -2,6 +2,8 @@
 // Stage 2 in one pass: links, calls every rule, and only then makes the configuration.
 #include "chimera/verify/verify.h"
 
+#include <algorithm>
+
 #include "chimera/catalogue/library.h"
 #include "chimera/verify/model.h"
 #include "chimera/verify/outline.h"
@@ -66,7 +68,12 @@ Verdict judge(const Draft& draft, const Library& library, Report report, Overloa
   judge_links(model);
   judge_values(model);
   judge_order(model);
-  if (verdict.report.is_legal()) verdict.configuration.emplace(model);
+  const auto is_overload = [](const Fault& fault) {
+    return fault.rule == "utilisation" && fault.severity == Severity::kError;
+  };
+  const auto overloads = std::ranges::count_if(verdict.report.faults(), is_overload);
+  if (verdict.report.errors() == static_cast<std::size_t>(overload == Overload::kShown ? overloads : 0))
+    verdict.configuration.emplace(model);
   if (outline != nullptr) *outline = outline_of(model);
   verdict.report.sort();
   return verdict;

@@ -12,14 +12,19 @@ namespace chimera {
 
 class Library;
 
-/// `configuration` exists exactly if the report has no error. It may come with warnings.
+/// `configuration` exists exactly if the report has no error, or only those of Overload::kShown. It may come with
+/// warnings.
 struct Verdict {
   std::optional<Configuration> configuration;
   Report report;
 };
 
-/// The result for budgets that exceed a CPU: an error, or a warning for commands that show what would fit.
-enum class Overload : std::uint8_t { kRefused, kTold };
+/// The result for budgets that exceed a CPU.
+enum class Overload : std::uint8_t {
+  kRefused,  ///< an error
+  kTold,     ///< a warning, for commands that show what would fit
+  kShown,    ///< an error; if there are no others, the configuration is made nevertheless
+};
 
 /// Judges a draft by every legality rule. Faults that follow from another fault are omitted. The configuration needs
 /// neither draft nor library afterwards. Context: setup.

@@ -2,10 +2,11 @@
 // The connection to chimera-web: which subsystems run, and which of them the page shows first.
 import { useEffect, useState } from "react";
 import { Door, DoorState } from "./door";
+import { draft } from "./draft";
 import type { BenchHello, Hello, MachineName } from "./protocol";
 import { Store, useStore } from "./store";
 import { joinPath } from "./text";
-import { view } from "./view";
+import { Mode, View, view } from "./view";
 
 interface BenchState { door: DoorState; sentence: string; hello: BenchHello | null; machines: MachineName[] | null }
 
@@ -14,13 +15,20 @@ export const [key = "", ...wishes] = location.hash.slice(1).split("&");
 export const bench = new Store<BenchState>({ door: "connecting", sentence: "", hello: null, machines: null });
 
 export const door = new Door("/bench", key, {
-  opened: (open) => {
-    void open.call("hello").then((hello: BenchHello) => bench.set({ hello }))
-      .then(() => open.call("subscribe", { to: "machines" })).catch(() => undefined);  // a loss is said by `changed`
-  },
+  opened: (open) => void begin(open).catch(() => undefined),  // a loss is said by `changed`
   changed: (state, sentence) => bench.set({ door: state, sentence }),
-  note: (method, parameters) => { if (method === "machines") bench.set({ machines: parameters.machines }); },
+  note: (method, parameters) => {
+    if (method === "machines") bench.set({ machines: parameters.machines });
+    if (method === "draft") draft.note(parameters);
+  },
 });
+
+async function begin(open: Door): Promise<void> {
+  const hello: BenchHello = await open.call("hello");
+  bench.set({ hello });
+  await open.call("subscribe", { to: "machines" });
+  if (hello.file !== null) await draft.begin(open);
+}
 
 /** The subsystem that runs the file of the link: asks each one for its file. "" if none runs it. */
 async function machineOf(file: string, machines: MachineName[]): Promise<string> {
@@ -36,6 +44,10 @@ async function machineOf(file: string, machines: MachineName[]): Promise<string>
   return (await Promise.all(asked)).find((name) => name !== "") ?? "";
 }
 
+/** The mode that the page shows: without a subsystem that runs FILE the draft, until a person chooses. */
+export const modeOf = ({ mode, machine }: View, hello: BenchHello | null): Mode =>
+  hello === null || hello.file === null ? "look" : mode || (machine === "" ? "assemble" : "look");
+
 /** Chooses the subsystem that the page shows first: that of the link; the one before, if the page is loaded again; that
  *  of the file, also when it starts later; the one before; the first of the list. */
 export function useChoice(): void {
@@ -45,7 +57,8 @@ export function useChoice(): void {
     if (isDone || !machines || !hello) return;
     const { machine: before, bench: pid } = view.get();
     const choose = (machine: string) => {
-      view.set({ machine, bench: hello.pid, ...(machine === before ? {} : { chosen: [], variable: "" }) });
+      view.set({ machine, bench: hello.pid, ...(pid !== hello.pid && machine === "" ? { mode: "" } : {}),
+        ...(machine === before ? {} : { chosen: [], variable: "" }) });
       if (machine !== "") done(true);
     };
     const wished = wishes.map((one) => one.split("=")).find(([name]) => name === "machine")?.[1];

@@ -4,17 +4,18 @@ import { useEffect, useRef, useState } from "react";
 import { ACTS } from "./acts";
 import { onEscape, Table } from "./controls";
 import type { MachineName } from "./protocol";
-import type { MachineState } from "./machine";
 import { choose, showVariable, view } from "./view";
+
+/** Of what runs, or of the draft. */
+export interface Names { tasks: string[]; variables: string[] }
 
 interface Found { kind: string; name: string; go: () => void }
 
 /** What `words` may mean: a name that begins with them comes first. */
-export function found(words: string, state: MachineState | null, machines: MachineName[]): Found[] {
+export function found(words: string, names: Names, machines: MachineName[]): Found[] {
   const all: Found[] = [
-    ...(state?.description?.tasks ?? []).map((t) => ({ kind: "task", name: t.task, go: () => choose([t.task]) })),
-    ...(state?.description?.variables ?? []).filter((v) => !v.constant).map((v) => ({
-      kind: "variable", name: v.variable, go: () => showVariable(v.variable) })),
+    ...names.tasks.map((name) => ({ kind: "task", name, go: () => choose([name]) })),
+    ...names.variables.map((name) => ({ kind: "variable", name, go: () => showVariable(name) })),
     ...machines.map((m) => ({ kind: "subsystem", name: m.name, go: () => view.set({ machine: m.name, chosen: [] }) })),
   ];
   const wanted = words.toLowerCase();
@@ -23,12 +24,12 @@ export function found(words: string, state: MachineState | null, machines: Machi
     .sort((a, b) => rank(a) - rank(b)).slice(0, 20);
 }
 
-export function Finder({ state, machines }: { state: MachineState | null; machines: MachineName[] }) {
+export function Finder({ names, machines }: { names: Names; machines: MachineName[] }) {
   const [words, type] = useState("");
   const [at, setAt] = useState(0);
   const input = useRef<HTMLInputElement>(null);
   useEffect(() => input.current?.focus(), []);
-  const list = found(words, state, machines);
+  const list = found(words, names, machines);
   const close = () => view.set({ isFinding: false });
   const take = (one: Found | undefined) => { close(); one?.go(); };
   return (
@@ -58,6 +59,9 @@ const KEYS: [string, string][] = [
   ["Enter, Space", "choose the box; with Shift or Ctrl several"], ["Ctrl-A in the picture", "choose all tasks"],
   ["Escape", "choose nothing; close a question"],
   ...ACTS.map((act): [string, string] => [act.key, `${act.name} the chosen tasks: ${act.help}`]),
+  ["F2", "Assemble: rename the chosen task or variable"], ["n", "Assemble: add a task"],
+  ["Delete", "Assemble: remove the chosen task"], ["Ctrl-Z, Ctrl-Y", "Assemble: undo an act, and do it again"],
+  ["Ctrl-S", "Assemble: save the draft to FILE"], ["Enter, Escape in a field", "Assemble: carry the act out; restore"],
   ["w", "why: where the values of the chosen task come from"], ["Shift-F", "raise the FLAG, at once"],
   ["Ctrl-K or /", "find anything by name"], ["+ - 0", "zoom of the picture; 0 fits it"], ["?", "this list"],
 ];

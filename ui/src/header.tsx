@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The line that is always there: which subsystem, what is in force, and the FLAG.
-import { useState } from "react";
+import { ReactNode, useState } from "react";
 import { Button, onEscape } from "./controls";
 import { forbidden, Machine, MachineState } from "./machine";
 import type { BenchHello, MachineName, Status } from "./protocol";
 import { loads } from "./load";
 import { SwitchMenu } from "./switch_menu";
-import { ask, view } from "./view";
+import { ask, Mode, view } from "./view";
 
 /** RUNNING, or the nearest trouble, in one or two words. */
 export function stateWord(state: MachineState): string {
@@ -111,24 +111,42 @@ export function CpuBars({ status, previous }: { status: Status; previous: Status
   );
 }
 
-interface Props {
-  machine: Machine | null; state: MachineState | null; machines: MachineName[]; bench: BenchHello | null; name: string;
+const MODES: [Mode, string, string][] = [["look", "Look", "see and hold what runs"],
+  ["assemble", "Assemble", "build what will run: "]];
+
+function Modes({ mode, file }: { mode: Mode; file: string }) {
+  return (
+    <div className="modes" role="group" aria-label="Mode">
+      {MODES.map(([name, words, title]) => (
+        <button key={name} type="button" data-mode-button={name} aria-pressed={mode === name}
+                title={name === "look" ? title : title + file} onClick={() => view.set({ mode: name })}>
+          {words}</button>))}
+    </div>
+  );
 }
 
-export function Header({ machine, state, machines, bench, name }: Props) {
-  const role = state?.hello?.role;
+interface Props {
+  machine: Machine | null; state: MachineState | null; machines: MachineName[]; bench: BenchHello | null; name: string;
+  mode: Mode; children?: ReactNode;
+}
+
+export function Header({ machine, state, machines, bench, name, mode, children }: Props) {
+  const role = mode === "look" ? state?.hello?.role : bench?.role;
+  const isLooking = mode === "look";
   return (
     <header>
       <MachineMenu machines={machines} name={name} />
+      {bench !== null && bench.file !== null && <Modes mode={mode} file={bench.file} />}
       {state && <strong className="state-word" data-state-word>{stateWord(state)}</strong>}
       {state?.status && <span className="in-force" data-in-force>
         {state.status.configuration === "" ? "no named configuration" : state.status.configuration}</span>}
-      {machine && state && <SwitchMenu machine={machine} state={state} />}
-      {machine && state && <MoreMenu machine={machine} state={state} />}
+      {isLooking && machine && state && <SwitchMenu machine={machine} state={state} />}
+      {isLooking && machine && state && <MoreMenu machine={machine} state={state} />}
       <Button label="Find" press={() => view.set({ isFinding: true })} title="Ctrl-K">Find</Button>
       <Button label="Help" press={() => view.set({ isHelping: true })} title="key ?">?</Button>
       {role !== undefined && role !== "configure" &&
         <span className="role" title="Acts that need more are grey and say why">{bench?.user ?? "you"}: {role}</span>}
+      {children}
       <span className="space" />
       {machine && state && <Flag machine={machine} state={state} />}
     </header>

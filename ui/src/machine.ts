@@ -108,6 +108,11 @@ export class Machine {
     }
   }
 
+  /** Asks what another version may not know: nothing is said of a refusal. */
+  find(method: string): Promise<any> {
+    return this.door.call(method).catch(() => null);
+  }
+
   /** The same for an act. */
   async act(method: string, params: object): Promise<any> {
     this.state.set({ isBusy: true, message: null });

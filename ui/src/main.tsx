@@ -1,29 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page: one connection to chimera-web, one to the chosen subsystem, and what they show.
-import { MouseEvent, useCallback, useEffect, useMemo, useRef, useState } from "react";
+import { useEffect, useMemo, useState } from "react";
 import { createRoot } from "react-dom/client";
+import { AssemblePage, markDraft } from "./assemble";
 import { Banner, Banners, benchBanner, machineBanners, MessageBox } from "./banners";
-import { bench, door, key, useChoice } from "./bench";
-import { Button, QuestionBox } from "./controls";
-import { Finder, Help } from "./finder";
+import { bench, door, key, modeOf, useChoice } from "./bench";
+import { Canvas, useFit } from "./canvas";
+import { QuestionBox } from "./controls";
+import { draft } from "./draft";
+import { Finder, Help, Names } from "./finder";
 import { CpuBars, Header } from "./header";
 import { Inspector } from "./inspector";
-import { takeKey } from "./keys";
+import { lookKeys, takeKey } from "./keys";
+import { Lamps, runsFile, useRunningText, whyNot } from "./lamps";
 import { Machine, MachineState } from "./machine";
+import { mark } from "./marks";
 import { Operator } from "./operator";
 import { Panels } from "./panels";
 import { PictureView } from "./picture";
 import type { BenchHello, MachineName } from "./protocol";
-import { useStore } from "./store";
-import { choose, showVariable, view, zoomBy } from "./view";
-
-/** Tests and style sheets read the state of the page from its root element. */
-function mark(names: Record<string, string | number>): void {
-  for (const [name, value] of Object.entries(names)) {
-    const { dataset } = document.documentElement;
-    if (dataset[name] !== String(value)) dataset[name] = String(value);
-  }
-}
+import { Store, useStore } from "./store";
+import { choose, showVariable, view } from "./view";
 
 function markMachine(state: MachineState): void {
   const last = state.events[state.events.length - 1]?.number ?? 0;
@@ -34,46 +31,22 @@ function markMachine(state: MachineState): void {
   });
 }
 
-/** A picture that does not fit is scrolled rather than drawn with letters that are too small to read. */
-const LEAST_FIT = 0.8;
-
-/** Moves the scrolled place while the background is pulled. */
-function pull(event: MouseEvent<HTMLDivElement>): void {
-  const place = event.currentTarget;
-  if (event.button !== 0 || (event.target as Element).closest("[data-task], .link")) return;
-  let { clientX, clientY } = event;
-  const move = (now: globalThis.MouseEvent) => {
-    place.scrollBy(clientX - now.clientX, clientY - now.clientY);
-    ({ clientX, clientY } = now);
-  };
-  const end = () => { window.removeEventListener("mousemove", move); window.removeEventListener("mouseup", end); };
-  window.addEventListener("mousemove", move);
-  window.addEventListener("mouseup", end);
-}
-
 /** Tasks whose rtpu has ended: their values are old. */
 function deadTasks(state: MachineState): Set<string> {
   const ended = new Set((state.status?.rtpus ?? []).filter((rtpu) => !rtpu.alive).map((rtpu) => rtpu.name));
   return new Set((state.status?.tasks ?? []).filter((task) => ended.has(task.rtpu)).map((task) => task.task));
 }
 
-function MachinePage({ machine, isBenchOpen }: { machine: Machine; isBenchOpen: boolean }) {
-  const state = useStore(machine.state);
+function MachinePage({ machine, state, isBenchOpen }:
+  { machine: Machine; state: MachineState; isBenchOpen: boolean }) {
   const { chosen, variable, panel, zoom } = useStore(view);
-  const place = useRef<HTMLDivElement>(null);
   const picture = state.description?.picture;
   const deadNames = [...deadTasks(state)].join("\n");
   const dead = useMemo(() => new Set(deadNames.split("\n")), [deadNames]);
-  const fit = useCallback(() => {
-    if (!place.current || !picture) return;
-    const { clientWidth, clientHeight } = place.current;
-    const whole = Math.min((clientWidth - 4) / picture.width, (clientHeight - 4) / picture.height);
-    view.set({ zoom: Math.max(LEAST_FIT, Math.min(1.5, whole)) });
-  }, [picture]);
-  useEffect(() => markMachine(state), [state]);
+  const [place, fit] = useFit(picture);
   useEffect(() => { if (state.version === 1) fit(); }, [state.version, fit]);
   useEffect(() => {
-    const take = (event: KeyboardEvent) => takeKey(event, machine, fit);
+    const take = (event: KeyboardEvent) => takeKey(event, machine, fit, lookKeys);
     window.addEventListener("keydown", take);
     return () => window.removeEventListener("keydown", take);
   }, [machine, fit]);
@@ -83,12 +56,7 @@ function MachinePage({ machine, isBenchOpen }: { machine: Machine; isBenchOpen: 
       <MessageBox machine={machine} state={state} />
       {state.status && <CpuBars status={state.status} previous={state.previous} />}
       <main className={isBenchOpen && state.door === "open" && !state.isSilent ? "" : "stale"}>
-        <div className="zoom" role="toolbar" aria-label="Zoom of the picture">
-          <Button label="Zoom in" title="key +" press={() => zoomBy(1.2)}>+</Button>
-          <Button label="Zoom out" title="key -" press={() => zoomBy(1 / 1.2)}>−</Button>
-          <Button label="Fit the picture" title="key 0" press={fit}>fit</Button>
-        </div>
-        <div ref={place} className="canvas" onMouseDown={pull}>
+        <Canvas place={place} fit={fit}>
           {picture && state.status
             ? <PictureView picture={picture} tasks={state.status.tasks} before={state.previous?.tasks ?? []} dead={dead}
                            values={machine.values} zoom={zoom} chosen={chosen} variable={variable} choose={choose}
@@ -96,7 +64,7 @@ function MachinePage({ machine, isBenchOpen }: { machine: Machine; isBenchOpen: 
             : <p className="hint">{state.door === "gone" ? `${state.name} does not run.` : "Connecting…"}</p>}
           {picture && picture.boxes.length === 0 &&
             <p className="hint">Nothing is loaded: `chimera run FILE` loads tasks.</p>}
-        </div>
+        </Canvas>
         <aside aria-label="Details">
           <Operator machine={machine} state={state} />
           <Inspector machine={machine} state={state} chosen={chosen} />
@@ -109,7 +77,7 @@ function MachinePage({ machine, isBenchOpen }: { machine: Machine; isBenchOpen: 
 
 function NoMachine({ hello, machines }: { hello: BenchHello | null; machines: MachineName[] | null }) {
   useEffect(() => {
-    const take = (event: KeyboardEvent) => takeKey(event, null, () => undefined);
+    const take = (event: KeyboardEvent) => takeKey(event, null, () => undefined, lookKeys);
     window.addEventListener("keydown", take);
     return () => window.removeEventListener("keydown", take);
   }, []);
@@ -124,18 +92,48 @@ function NoMachine({ hello, machines }: { hello: BenchHello | null; machines: Ma
   );
 }
 
-function HeaderOf({ machine, name }: { machine: Machine; name: string }) {
-  const { machines, hello } = useStore(bench);
-  const state = useStore(machine.state);
-  return <Header machine={machine} state={state} machines={machines ?? []} bench={hello} name={name} />;
+const NO_MACHINE = new Store<MachineState | null>(null);
+
+function Modes({ machine, name }: { machine: Machine | null; name: string }) {
+  const { door: benchDoor, sentence, hello, machines } = useStore(bench);
+  const state = useStore<MachineState | null>(machine?.state ?? NO_MACHINE);
+  const mode = modeOf(useStore(view), hello);
+  const drafted = useStore(draft.state);
+  const isBenchOpen = benchDoor === "open";
+  const banner: Banner | null = benchBanner(benchDoor, sentence);
+  useRunningText(machine, runsFile(state, hello?.file ?? null), state?.version ?? 0);
+  useEffect(() => { if (state) markMachine(state); }, [state]);
+  useEffect(() => mark({ mode }), [mode]);
+  useEffect(() => { if (drafted.past.length > 0) view.set({ mode }); }, [drafted.past.length > 0]);  // at work
+  useEffect(() => markDraft(drafted), [drafted]);
+  return (
+    <>
+      <Header machine={machine} state={state} machines={machines ?? []} bench={hello} name={name} mode={mode}>
+        {mode === "assemble" && <Lamps state={drafted} machine={machine} machineState={state} bench={hello}
+                                       why={whyNot(hello, isBenchOpen)} />}
+      </Header>
+      <QuestionBox />
+      {banner && <Banners banners={[banner]} />}
+      {mode === "assemble" && hello
+        ? <AssemblePage machine={machine} machineState={state} bench={hello} isOpen={isBenchOpen} />
+        : machine && state ? <MachinePage key={name} machine={machine} state={state} isBenchOpen={isBenchOpen} />
+        : <NoMachine hello={hello} machines={machines} />}
+    </>
+  );
 }
 
-function FinderOf({ machine }: { machine: Machine | null }) {
-  return <Finder state={machine?.state.get() ?? null} machines={bench.get().machines ?? []} />;
+/** The names that Ctrl-K finds: of the draft in the mode Assemble, else of what runs. */
+function names(machine: Machine | null): Names {
+  const { description } = machine?.state.get() ?? { description: null };
+  const { outline } = draft.state.get();
+  const all: { tasks: { task: string }[]; variables: { variable: string; constant: boolean }[] } =
+    (modeOf(view.get(), bench.get().hello) === "assemble" && outline) || description || { tasks: [], variables: [] };
+  return { tasks: all.tasks.map((one) => one.task),
+    variables: all.variables.filter((one) => !one.constant).map((one) => one.variable) };
 }
 
 function Page() {
-  const { door: benchDoor, sentence, hello, machines } = useStore(bench);
+  const { door: benchDoor, machines } = useStore(bench);
   const { machine: name, isFinding, isHelping } = useStore(view);
   const [machine, setMachine] = useState<Machine | null>(null);
   useChoice();
@@ -148,16 +146,10 @@ function Page() {
   useEffect(() => machine?.retry(), [machine, machines]);
   useEffect(() => mark({ bench: benchDoor, machines: (machines ?? []).length }), [benchDoor, machines]);
   useEffect(() => { document.title = name === "" ? "Chimera" : `${name} - Chimera`; }, [name]);
-  const banner: Banner | null = benchBanner(benchDoor, sentence);
   return (
     <>
-      {machine ? <HeaderOf machine={machine} name={name} />
-        : <Header machine={null} state={null} machines={machines ?? []} bench={hello} name={name} />}
-      <QuestionBox />
-      {banner && <Banners banners={[banner]} />}
-      {machine ? <MachinePage key={name} machine={machine} isBenchOpen={benchDoor === "open"} />
-        : <NoMachine hello={hello} machines={machines} />}
-      {isFinding && <FinderOf machine={machine} />}
+      <Modes machine={machine} name={name} />
+      {isFinding && <Finder names={names(machine)} machines={machines ?? []} />}
       {isHelping && <Help />}
     </>
   );

@@ -9,7 +9,7 @@ import { besidePort, LiveValues } from "./values";
 /** Room right of a port for its value, and places of texts around it: docs/formats/web.md, "The picture". */
 const BELOW = 9, BELOW_NAME = 15, RIGHT = 4, STUB = 20;
 
-interface ValueProps { port: PicturePort; values: LiveValues }
+interface ValueProps { port: PicturePort & { variable: string }; values: LiveValues }
 
 /** The latest value of the variable at a port. Its text changes without React. */
 const PortValue = memo(function PortValue({ port, values }: ValueProps) {
@@ -28,6 +28,8 @@ const PortValue = memo(function PortValue({ port, values }: ValueProps) {
                x={port.x + (isOut ? RIGHT : -STUB)} y={port.y + (isOut ? BELOW : BELOW_NAME)}
                textAnchor={isOut ? "start" : "end"} />;
 });
+
+const isLinked = (port: PicturePort): port is PicturePort & { variable: string } => port.variable !== null;
 
 interface BoxProps {
   box: PictureBox; rateHz: number; state: State; isDead: boolean; isMissing: boolean; isChosen: boolean;
@@ -56,7 +58,7 @@ const TaskBox = memo(function TaskBox(
 });
 
 /** Lines, dots and names: they change with the description alone. */
-const Drawing = memo(function Drawing({ picture, variable }: { picture: Picture; variable: string }) {
+export const Drawing = memo(function Drawing({ picture, variable }: { picture: Picture; variable: string }) {
   const look = (name: string) => (name !== "" && name === variable ? "chosen" : undefined);
   const arrow = (at: string, wanted: string) => (at === wanted || at === "both" ? "url(#arrow)" : undefined);
   return (
@@ -72,7 +74,7 @@ const Drawing = memo(function Drawing({ picture, variable }: { picture: Picture;
 /** Names of variables outside of the boxes lead to the variable; inside of a box every press chooses the task. */
 const isLink = (label: PictureLabel) => label.variable !== null && (label.style === "soft" || label.style === "given");
 
-const Labels = memo(function Labels({ picture, variable, showVariable }:
+export const Labels = memo(function Labels({ picture, variable, showVariable }:
   { picture: Picture; variable: string; showVariable: (variable: string) => void }) {
   return (
     <g className="labels">
@@ -84,7 +86,7 @@ const Labels = memo(function Labels({ picture, variable, showVariable }:
   );
 });
 
-const Definitions = () => (
+export const Definitions = () => (
   <defs>
     <marker id="arrow" viewBox="0 0 8 8" refX="8" refY="4" markerWidth="7" markerHeight="7" orient="auto-start-reverse">
       <path d="M0,0 L8,4 L0,8 z" />
@@ -95,13 +97,8 @@ const Definitions = () => (
   </defs>
 );
 
-interface Props {
-  picture: Picture; tasks: TaskStatus[]; before: TaskStatus[]; dead: Set<string>; values: LiveValues; zoom: number;
-  chosen: string[]; variable: string; choose: (tasks: string[]) => void; showVariable: (variable: string) => void;
-}
-
-export function PictureView(
-  { picture, tasks, before, dead, values, zoom, chosen, variable, choose, showVariable }: Props) {
+/** Boxes as buttons: presses, arrow keys, and which box Tab reaches. */
+export function useBoxes(picture: Picture, chosen: string[], choose: (tasks: string[]) => void) {
   const root = useRef<SVGSVGElement>(null);
   const latest = useRef({ chosen, picture });
   latest.current = { chosen, picture };
@@ -118,9 +115,20 @@ export function PictureView(
     } else return;
     event.preventDefault();
   }).current;
+  const focused = chosen.find((task) => picture.boxes.some((box) => box.task === task)) ?? picture.boxes[0]?.task;
+  return { root, pick, move, focused };
+}
+
+interface Props {
+  picture: Picture; tasks: TaskStatus[]; before: TaskStatus[]; dead: Set<string>; values: LiveValues; zoom: number;
+  chosen: string[]; variable: string; choose: (tasks: string[]) => void; showVariable: (variable: string) => void;
+}
+
+export function PictureView(
+  { picture, tasks, before, dead, values, zoom, chosen, variable, choose, showVariable }: Props) {
+  const { root, pick, move, focused } = useBoxes(picture, chosen, choose);
   const status = new Map(tasks.map((task) => [task.task, task]));
   const earlier = new Map(before.map((task) => [task.task, task]));
-  const focused = chosen.find((task) => picture.boxes.some((box) => box.task === task)) ?? picture.boxes[0]?.task;
   return (
     <svg ref={root} className="picture" viewBox={`0 0 ${picture.width} ${picture.height}`} width={picture.width * zoom}
          height={picture.height * zoom} role="group" aria-label={`Tasks of ${picture.title}`}>
@@ -134,7 +142,7 @@ export function PictureView(
                         choose={pick} move={move} />;
       })}
       <Labels picture={picture} variable={variable} showVariable={showVariable} />
-      {picture.ports.filter((p) => p.kind === "out-var" && p.variable !== "").map((p) => (
+      {picture.ports.filter(isLinked).filter((p) => p.kind === "out-var").map((p) => (
         <PortValue key={`${p.task} ${p.port}`} port={p} values={values} />))}
       {givenPorts(picture).map((p) => <PortValue key={`${p.task} ${p.port}`} port={p} values={values} />)}
     </svg>
@@ -142,7 +150,7 @@ export function PictureView(
 }
 
 /** In-ports whose variable has no box: the operator's, whose value stands at the port. */
-function givenPorts(picture: Picture): PicturePort[] {
+function givenPorts(picture: Picture): (PicturePort & { variable: string })[] {
   const given = new Set(picture.labels.filter((l) => l.style === "given").map((l) => l.variable));
-  return picture.ports.filter((p) => p.kind === "in-var" && given.has(p.variable));
+  return picture.ports.filter(isLinked).filter((p) => p.kind === "in-var" && given.has(p.variable));
 }

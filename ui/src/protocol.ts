@@ -64,7 +64,9 @@ export interface Variable {
 }
 
 export interface PictureBox { task: string; x: number; y: number; width: number; height: number }
-export interface PicturePort { task: string; port: string; kind: Port["kind"]; variable: string; x: number; y: number }
+export interface PicturePort {
+  task: string; port: string; kind: Port["kind"]; variable: string | null; x: number; y: number;
+}
 export interface PictureLine {
   variable: string; x1: number; y1: number; x2: number; y2: number; arrow: "" | "end" | "start" | "both";
 }
@@ -167,3 +169,69 @@ export interface RpcError {
   data?: { kind?: string; where?: string; remedy?: string; nearest?: string; needs?: string; has?: string;
     tasks?: string[] };
 }
+
+// ---- The draft: docs/formats/web.md, "The draft" and "The outline"; docs/formats/edit.md.
+
+export interface TaskPort { task: string; port: string }
+
+export type EditAct =
+  | { act: "set"; path: string; value: string }
+  | { act: "remove"; path: string }
+  | { act: "rename"; path: string; to: string }
+  | { act: "add_task"; name: string; component: string; subsystem: string }
+  | { act: "link"; task: string; port: string; variable: string; instance: number | null }
+  | { act: "join"; variable: string; by: "mean" | "priority" | "select" };
+
+export interface Fault {
+  rule: string; severity: "error" | "warning"; line: number; column: number; found: string; expected: string;
+  nearest: string; message: string; remedy: string; set: string; task: string; port: string; path: string;
+}
+
+export interface OutlinePort {
+  port: string; declared: string; kind: Port["kind"]; type: string; unit: string; shape: string; solved: boolean;
+  variable: string | null; parted: boolean; value: string | null; default: string | null; doc: string;
+}
+
+export interface OutlineTask {
+  task: string; line: number; component: string; known: boolean; doc: string; rtpu: string; rate_hz: number | null;
+  own_rate: boolean; budget_ns: number | null; criticality: string; standby_for: string | null;
+  ports: OutlinePort[];
+  repeated: { port: string; kind: Port["kind"]; instances: number; max_instances: number; doc: string }[];
+}
+
+export interface OutlineVariable {
+  variable: string; constant: boolean; origin: "operator" | "constants" | "default" | null; value: string | null;
+  type: string; unit: string; shape: string; producers: TaskPort[]; consumers: TaskPort[];
+}
+
+export interface Outline {
+  subsystem: string; start: string; tasks: OutlineTask[]; variables: OutlineVariable[];
+  configurations: { configuration: string; tasks: string[]; safe_when: string | null }[];
+  rtpus: { rtpu: string; cpu: number; policy: string; executor: string }[];
+}
+
+export interface ScheduledTask { task: string; guarantee: "yes" | "no" | "not-stated" | "not-decided" }
+
+export interface ScheduledCpu {
+  cpu: number; fits: boolean; utilisation: number; limit: number; tasks: ScheduledTask[]; give_way: string[];
+  remedies: { label: string; acts: EditAct[] }[];
+}
+
+export interface Schedule { fits: boolean; sets: { name: string; fits: boolean; cpus: ScheduledCpu[] }[] }
+
+export interface Analysis {
+  version: number; text: string; report: { legal: boolean; errors: number; warnings: number; faults: Fault[] };
+  outline: Outline | null; picture: Picture | null; schedule: Schedule | null;
+}
+
+/** What a notification of the draft brings. */
+export interface DraftNews {
+  version: number; file: string; exists: boolean; touched: boolean; outside: boolean; problem: string | null;
+}
+
+export interface DraftAnswer extends DraftNews { analysis: Analysis }
+
+/** An edit that was tried: after it the fault is gone. */
+export interface Offer { fault: number; label: string; acts: EditAct[] }
+
+export interface LibraryComponent { name: string; doc: string; file: string }

@@ -3,10 +3,16 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { ACTS, questionBefore } from "./acts";
+import { instanceActs, linkActs, memberActs, pulledActs, quoted, removedTask, renameActs, rtpuActs, valueActs,
+  valuePath } from "./edits";
+import { boxOf, cpuVerdicts, faultsAt } from "./faults";
+import { stepped } from "./history";
 import { loads } from "./load";
 import { elements, forbidden } from "./machine";
-import type { Picture, RtpuStatus, Status, TaskStatus } from "./protocol";
+import type { EditAct, Fault, Outline, OutlinePort, OutlineTask, Picture, RtpuStatus, Schedule, Status, TaskStatus,
+  } from "./protocol";
 import { neighbours, step, toggled } from "./selection";
+import { indexAt, lineAt, membersAt, movedCursor, taskAt, wordsAt } from "./text_places";
 import { clock, count, duration, joinPath, rate, scalar, short, sliderRange, valueText, withUnit } from "./text";
 
 test("a number has three significant digits and at most seven characters", () => {
@@ -136,4 +142,159 @@ test("a person is asked only before the kill of a task that is ON", () => {
   const question = questionBefore(kill, [task("pid", {}), task("arm", { state: "OFF" })], () => undefined);
   assert.equal(question?.title, "Kill pid?");
   assert.equal(question?.button, "Kill pid, arm");
+});
+
+const TEXT = `# A loop.
+subsystem: loop
+constants: {gain: 2, "name: odd": 'a, b'}
+tasks:
+  path: {component: source, rate: 1 kHz, alias: {out: q_ref}}   # {not: this}
+  pid:
+    rate: 2 kHz  # twice
+    on_miss: {switch: safe,
+              }
+    constants:
+      rate: 3
+    in: [a, "b c",
+         d]
+  arm:
+operator: {kp: 1}
+configurations:
+  run: [path, pid, arm]
+  safe: {tasks: [arm], safe_when: 'v < 1'}
+  hold:
+    - arm  # alone
+    - pid
+`;
+
+test("the text shows how a value is written, in brackets and in lines", () => {
+  const cases: [string, string | null][] = [["subsystem", "loop"], ["tasks/path/rate", "1 kHz"],
+    ["tasks/pid/rate", "2 kHz"],
+    ["tasks/pid/on_miss", "{switch: safe,\n              }"], ["tasks/pid/constants/rate", "3"], ["tasks/arm", ""],
+    ["tasks/arm/rate", null], ["tasks/path/not", null], ["constants/gain", "2"], ["constants/name: odd", "'a, b'"],
+    ["tasks/path/alias/out", "q_ref"], ["operator/kp", "1"], ["configurations/safe/safe_when", "'v < 1'"],
+    ["none", null]];
+  for (const [path, words] of cases) assert.equal(wordsAt(TEXT, path), words, path);
+  assert.equal(wordsAt(TEXT.replace(/\n/g, "\r\n"), "tasks/pid/rate"), "2 kHz");
+  assert.equal(wordsAt("", "tasks"), null);
+  assert.deepEqual(membersAt(TEXT, "configurations/run"),
+    { path: "configurations/run", members: ["path", "pid", "arm"] });
+  assert.deepEqual(membersAt(TEXT, "configurations/safe"), { path: "configurations/safe/tasks", members: ["arm"] });
+  assert.deepEqual(membersAt(TEXT, "configurations/hold"), { path: "configurations/hold", members: ["arm", "pid"] });
+  assert.equal(membersAt(TEXT, "configurations/none"), null);
+});
+
+test("a line of the text belongs to its task", () => {
+  const tasks = [{ task: "path", line: 5 }, { task: "pid", line: 6 }, { task: "arm", line: 14 }];
+  const found = [1, 4, 5, 6, 9, 13, 14, 15, 17].map((line) => taskAt(TEXT, tasks, line));
+  assert.deepEqual(found, ["", "", "path", "pid", "pid", "pid", "arm", "", ""]);
+  assert.equal(lineAt(TEXT, indexAt(TEXT, 7, 5)), 7);
+  assert.ok(TEXT.slice(indexAt(TEXT, 7, 5)).startsWith("rate: 2 kHz"));
+  assert.equal(indexAt(TEXT, 999), TEXT.length);
+});
+
+test("the cursor stays at its words when another act changes the text", () => {
+  assert.equal(movedCursor("abcdef", "abXcdef", 1), 1);
+  assert.equal(movedCursor("abcdef", "abXcdef", 4), 5);
+  assert.equal(movedCursor("abcdef", "ef", 5), 1);
+  assert.equal(movedCursor("abcdef", "ef", 2), 0);
+  assert.equal(movedCursor("", "abc", 0), 0);
+});
+
+const outlinePort = (port: string, kind: OutlinePort["kind"], variable: string | null): OutlinePort => ({
+  port, declared: port.replace(/\[.*/, ""), kind, type: "float64", unit: "1", shape: "", solved: true, variable,
+  parted: false, value: null, default: null, doc: "" });
+const outlineTask = (task: string, line: number, ports: OutlinePort[], standby_for: string | null): OutlineTask => ({
+  task, line, component: task, known: true, doc: "", rtpu: "main", rate_hz: null, own_rate: false, budget_ns: null,
+  criticality: "low", standby_for, ports, repeated: [] });
+const outline: Outline = {
+  subsystem: "loop", start: "run", variables: [], rtpus: [],
+  tasks: [
+    outlineTask("path", 5, [outlinePort("out", "out-var", "q_ref"), outlinePort("goal", "in-const", "goal")], null),
+    outlineTask("pid", 6, [outlinePort("in[0]", "in-var", "a"), outlinePort("in[1]", "in-var", "b")], "arm"),
+    outlineTask("arm", 14, [outlinePort("x", "in-var", null), outlinePort("model", "resource", null)], null)],
+  configurations: ["run", "safe", "hold"].map((configuration) => (
+    { configuration, tasks: membersAt(TEXT, `configurations/${configuration}`)!.members, safe_when: null })),
+};
+const link = (task: string, port: string, variable: string, instance: number | null = null): EditAct[] =>
+  [{ act: "link", task, port, variable, instance }];
+
+test("what is typed in a field is one act", () => {
+  assert.deepEqual(valueActs("tasks/pid/rate", "1 kHz", true),
+    [{ act: "set", path: "tasks/pid/rate", value: "1 kHz" }]);
+  assert.deepEqual(valueActs("tasks/pid/rate", "", true), [{ act: "remove", path: "tasks/pid/rate" }]);
+  assert.deepEqual(valueActs("tasks/pid/rate", "", false), []);
+  assert.deepEqual(linkActs("pid", outlinePort("in[1]", "in-var", "b"), "c"), link("pid", "in", "c", 1));
+  assert.deepEqual(linkActs("arm", outlinePort("x", "in-var", "b"), ""), link("arm", "x", "x"));
+  assert.equal(valuePath("path", outlinePort("goal[2]", "in-const", null)), "tasks/path/constants/goal/2");
+  assert.equal(valuePath("arm", outlinePort("model", "resource", null)), "tasks/arm/resources/model");
+  assert.equal(valuePath("arm", outlinePort("x", "in-var", null)), "");
+  assert.deepEqual(["a.xml", "0:100", "a: b", "#x", '"x"', ""].map(quoted),
+    ["a.xml", "0:100", '"a: b"', '"#x"', '"x"', ""]);
+  assert.deepEqual(instanceActs("sum", { port: "in", kind: "in-var", instances: 2, max_instances: 4, doc: "" }, "c"),
+    [{ act: "set", path: "tasks/sum/alias/in/2", value: "c" }]);
+  assert.deepEqual(rtpuActs(TEXT, "main", "cpu", "2"), [{ act: "set", path: "rtpus/main", value: "{cpu: 2}" }]);
+  const q = { variable: "q", constant: false, origin: null, value: null, type: "", unit: "", shape: "", producers: [],
+    consumers: [] };
+  assert.deepEqual(renameActs(q, "p"), [{ act: "rename", path: "variables/q", to: "p" }]);
+  assert.deepEqual(renameActs({ ...q, origin: "operator" }, "p"), [{ act: "rename", path: "operator/q", to: "p" }]);
+});
+
+test("a pulled line links the reader to the variable of the producer, from either end", () => {
+  const out = { task: "path", port: "out" }, x = { task: "arm", port: "x" }, second = { task: "pid", port: "in[1]" };
+  assert.deepEqual(pulledActs(outline, out, x), link("arm", "x", "q_ref"));
+  assert.deepEqual(pulledActs(outline, x, out), link("arm", "x", "q_ref"));
+  assert.deepEqual(pulledActs(outline, second, x), link("arm", "x", "b"));
+  assert.deepEqual(pulledActs(outline, out, second), link("pid", "in", "q_ref", 1));
+  assert.deepEqual(pulledActs(outline, out, out), []);
+  assert.equal(typeof pulledActs(outline, out, { task: "path", port: "goal" }), "string");
+  assert.equal(typeof pulledActs(outline, out, { task: "arm", port: "model" }), "string");
+});
+
+test("a task leaves its configurations and standbys with it", () => {
+  assert.deepEqual(memberActs(TEXT, outline, "safe", "pid", true),
+    [{ act: "set", path: "configurations/safe/tasks", value: "[arm, pid]" }]);
+  assert.deepEqual(memberActs(TEXT, outline, "run", "pid", true), []);
+  assert.deepEqual(removedTask(TEXT, outline, "arm"), [
+    { act: "set", path: "configurations/run", value: "[path, pid]" },
+    { act: "set", path: "configurations/safe/tasks", value: "[]" },
+    { act: "set", path: "configurations/hold", value: "[pid]" },
+    { act: "remove", path: "tasks/pid/standby_for" }, { act: "remove", path: "tasks/arm" }]);
+});
+
+test("each act is one step back, and a new act forgets the steps forward", () => {
+  let history = stepped({ past: [], future: [] }, "act", "a", "b");
+  assert.deepEqual(stepped(history, "act", "b", "b"), history);
+  history = stepped(history, "act", "b", "c");
+  assert.deepEqual(history, { past: ["a", "b"], future: [] });
+  history = stepped(history, "undo", "c", "b");
+  assert.deepEqual(history, { past: ["a"], future: ["c"] });
+  assert.deepEqual(stepped(history, "redo", "b", "c"), { past: ["a", "b"], future: [] });
+  assert.deepEqual(stepped(history, "act", "b", "x"), { past: ["a", "b"], future: [] });
+});
+
+test("a fault leads to its box and port", () => {
+  const fault = (change: Partial<Fault>): Fault => ({ rule: "", severity: "error", line: 1, column: 1, found: "",
+    expected: "", nearest: "", message: "bad", remedy: "", set: "", task: "", port: "", path: "", ...change });
+  const faults = [fault({ task: "pid", port: "in", message: "one" }), fault({ task: "arm", port: "x", message: "two" }),
+    fault({ task: "arm", severity: "warning" })];
+  assert.equal(faultsAt(faults, "pid", "in[1]"), "one");
+  assert.equal(faultsAt(faults, "arm"), "two");
+  assert.equal(faultsAt(faults, "arm", "xy"), "");
+  assert.equal(boxOf(faults[1]!, outline), "arm");
+  assert.equal(boxOf(fault({ path: "tasks/pid/rate" }), outline), "pid");
+  assert.equal(boxOf(fault({ path: "tasks/none/rate" }), outline), "");
+});
+
+test("a CPU is judged by its worst set", () => {
+  const cpu = (utilisation: number, fits: boolean, guarantee: "yes" | "no" | "not-stated") => ({
+    cpu: 1, fits, utilisation, limit: 0.93,
+    give_way: fits ? [] : ["log"], remedies: [], tasks: [{ task: "pid", guarantee }] });
+  const schedule: Schedule = { fits: false, sets: [{ name: "a", fits: true, cpus: [cpu(0.9, true, "yes")] },
+    { name: "b", fits: false, cpus: [cpu(0.5, false, "no")] }] };
+  const notes = (...sets: Schedule["sets"]) =>
+    cpuVerdicts({ fits: true, sets }).map((one) => `${one.set}: ${one.note}`);
+  assert.deepEqual(notes(...schedule.sets), ["b: may miss deadlines: pid; the rest fits without log"]);
+  assert.deepEqual(notes(schedule.sets[0]!), ["a: all keep their deadlines"]);
+  assert.deepEqual(notes({ name: "c", fits: true, cpus: [cpu(0, true, "not-stated")] }), ["c: without a budget: pid"]);
 });

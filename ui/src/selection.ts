@@ -13,7 +13,7 @@ export function toggled(tasks: string[], task: string): string[] {
 export function neighbours(picture: Picture, task: string, isForward: boolean): string[] {
   const [here, there] = isForward ? ["out-var", "in-var"] : ["in-var", "out-var"];
   const variables = new Set(
-    picture.ports.filter((p) => p.task === task && p.kind === here && p.variable !== "").map((p) => p.variable));
+    picture.ports.filter((p) => p.task === task && p.kind === here && p.variable !== null).map((p) => p.variable));
   const found = picture.ports.filter((p) => p.kind === there && p.task !== task && variables.has(p.variable));
   return [...new Set(found.map((p) => p.task))];
 }

@@ -6,7 +6,11 @@ import { Store } from "./store";
 
 export type Panel = "events" | "receipts" | "profile" | "why";
 
+export type Mode = "look" | "assemble";
+
 export interface View {
+  /** That a person chose; "": the page shows what runs, or else the draft. */
+  mode: Mode | "";
   machine: string;
   /** Process of the chimera-web whose link was opened last: a page that is loaded again has the same one. */
   bench: number;
@@ -19,7 +23,7 @@ export interface View {
   isHelping: boolean;
 }
 
-const KEPT: (keyof View)[] = ["machine", "bench", "chosen", "variable", "panel", "zoom"];
+const KEPT: (keyof View)[] = ["mode", "machine", "bench", "chosen", "variable", "panel", "zoom"];
 const NAME = "chimera";
 
 function kept(): Partial<View> {
@@ -31,7 +35,7 @@ function kept(): Partial<View> {
 }
 
 export const view = new Store<View>({
-  machine: "", bench: 0,
+  mode: "", machine: "", bench: 0,
   chosen: [], variable: "", panel: "events", zoom: 1, ...kept(), question: null, isFinding: false,
   isHelping: false,
 });

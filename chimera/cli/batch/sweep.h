@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chimera/cli/batch/measured_run.h"
-#include "chimera/cli/files/workplace.h"
+#include "chimera/catalogue/workplace.h"
 
 namespace chimera::cli {
 

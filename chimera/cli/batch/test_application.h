@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "chimera/base/time.h"
-#include "chimera/cli/files/workplace.h"
+#include "chimera/catalogue/workplace.h"
 
 namespace chimera::cli {
 

@@ -8,7 +8,7 @@
 
 #include "chimera/base/time.h"
 #include "chimera/cli/files/file_refusal.h"
-#include "chimera/cli/files/workplace.h"
+#include "chimera/catalogue/workplace.h"
 
 namespace chimera::cli {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "chimera/cli/files/file_refusal.h"
-#include "chimera/cli/files/workplace.h"
+#include "chimera/catalogue/workplace.h"
 #include "chimera/verify/configuration.h"
 #include "chimera/verify/setting.h"
 #include "chimera/verify/verify.h"

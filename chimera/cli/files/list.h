@@ -5,7 +5,7 @@
 #include <string>
 
 #include "chimera/cli/files/file_refusal.h"
-#include "chimera/cli/files/workplace.h"
+#include "chimera/catalogue/workplace.h"
 
 namespace chimera::cli {
 

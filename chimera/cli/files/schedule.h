@@ -7,7 +7,7 @@
 
 #include "chimera/analysis/schedule_report.h"
 #include "chimera/cli/files/file_refusal.h"
-#include "chimera/cli/files/workplace.h"
+#include "chimera/catalogue/workplace.h"
 #include "chimera/verify/setting.h"
 
 namespace chimera::cli {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "chimera/cli/files/file_refusal.h"
-#include "chimera/cli/files/workplace.h"
+#include "chimera/catalogue/workplace.h"
 #include "chimera/cli/run/application.h"
 #include "chimera/runtime/record/tap_record.h"
 #include "chimera/verify/setting.h"

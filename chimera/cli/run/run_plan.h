@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "chimera/catalogue/library.h"
-#include "chimera/cli/files/workplace.h"
+#include "chimera/catalogue/workplace.h"
 #include "chimera/cli/run/expectation.h"
 #include "chimera/cli/run/measure.h"
 #include "chimera/cli/run/own_process.h"

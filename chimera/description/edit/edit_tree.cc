@@ -14,6 +14,7 @@
 #include "chimera/description/keys.h"
 #include "chimera/description/edit/rename_tree.h"
 #include "chimera/description/edit/same_value.h"
+#include "chimera/description/yaml_reader.h"
 #include "chimera/description/yaml_words.h"
 #include "chimera/text/nearest.h"
 
@@ -197,6 +198,7 @@ Node* found(Node& root, const EditPath& path) {
 }
 
 Result<Node*> made(Node& root, const EditPath& path) {
+  if (path.size() > kMaxNesting) return no_edit({path[0]}, "the path is too deep for a description");
   Node* node = &root;
   for (std::size_t i = 0; i < path.size(); ++i) {
     const EditPath here(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(i) + 1);

@@ -9,6 +9,7 @@
 #include "chimera/platform/descriptor.h"
 #include "chimera/platform/local_socket.h"
 #include "chimera/platform/shared_memory.h"
+#include "chimera/text/json.h"
 
 namespace chimera::manager {
 namespace {
@@ -27,10 +28,19 @@ Result<Question> question_in(const QuestionMessage& asked, int passed) {
   const auto frozen = FrozenBytes::open(passed);
   if (!frozen) return frozen.error();
   const auto bytes = frozen->bytes();
-  if (bytes.size() <= asked.file_bytes + asked.text_bytes)
+  const std::size_t before = std::size_t{asked.file_bytes} + asked.text_bytes;
+  if (bytes.size() <= before + asked.with_bytes)
     return Error{ErrorCode::kBadInput, std::string_view("truncated"), std::string_view("question")};
   const char* begin = reinterpret_cast<const char*>(bytes.data());
-  return Question{asked.kind, {begin, asked.file_bytes}, {begin + asked.file_bytes, asked.text_bytes}};
+  return Question{asked.kind,
+                  {begin, asked.file_bytes},
+                  {begin + asked.file_bytes, asked.text_bytes},
+                  {begin + before, asked.with_bytes},
+                  asked.version};
+}
+
+std::string refusal_json(const Error& error) {
+  return Json{{"message", error.message.c_str()}, {"where", error.where.c_str()}}.dump();
 }
 
 /// False if the manager is gone.
@@ -40,12 +50,15 @@ bool answer(const Channel& channel, const QuestionMessage& asked, int passed, co
   if (!question) return false;
   FrozenBytes bytes;
   try {
-    const std::string text = answer_of(*question, library);
-    auto frozen = FrozenBytes::create("answer", std::as_bytes(std::span(text)));
-    if (frozen && text.size() <= kMaxAnalysis) {
+    const auto answered = answer_of(*question, library);
+    const AnalystAnswer answer = answered ? *answered : AnalystAnswer{refusal_json(answered.error()), {}};
+    const std::string both = answer.json + answer.edited;
+    auto frozen = FrozenBytes::create("answer", std::as_bytes(std::span(both)));
+    if (frozen && both.size() <= kMaxAnalysis) {
       bytes = *std::move(frozen);
-      told.what = QuestionMessage::What::kAnswer;
-      told.text_bytes = text.size();
+      told.what = answered ? QuestionMessage::What::kAnswer : QuestionMessage::What::kRefusal;
+      told.text_bytes = static_cast<std::uint32_t>(answer.json.size());
+      told.with_bytes = static_cast<std::uint32_t>(answer.edited.size());
     }
   } catch (const std::bad_alloc&) {
   }

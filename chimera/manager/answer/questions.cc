@@ -24,30 +24,48 @@ RpcResponse given_up(const std::string& why) {
   return RpcResponse::refused("analysis", why, "text", "ask `chimera check` or `chimera schedule` with the file");
 }
 
-/// A large text is sent directly from the memory of the analyst's answer.
-RpcResponse answer_in(int passed, std::size_t text_bytes) {
-  auto opened = FrozenBytes::open(passed);
-  if (!opened || opened->bytes().size() < text_bytes) return given_up("the answer of the analysis cannot be read");
-  const auto frozen = std::make_shared<const FrozenBytes>(*std::move(opened));
-  const std::string_view text(reinterpret_cast<const char*>(frozen->bytes().data()), text_bytes);
-  if (text_bytes > control::kPiece) return RpcResponse::in_pieces(std::make_shared<control::TextPieces>(frozen, text));
-  return RpcResponse::ready(std::make_shared<const std::string>(text));
+/// An answer in the memory of the analyst. A large text is sent directly from there.
+struct PassedAnswer {
+  RpcResponse response = given_up("the answer of the analysis cannot be read");
+  std::shared_ptr<const FrozenBytes> memory;
+  std::string_view edited;
+
+  PassedAnswer(int passed, const QuestionMessage& told) {
+    auto opened = FrozenBytes::open(passed);
+    if (!opened || opened->bytes().size() < std::size_t{told.text_bytes} + told.with_bytes) return;
+    memory = std::make_shared<const FrozenBytes>(*std::move(opened));
+    const std::string_view both(reinterpret_cast<const char*>(memory->bytes().data()), memory->bytes().size());
+    const std::string_view text = both.substr(0, told.text_bytes);
+    edited = both.substr(text.size(), told.with_bytes);
+    if (told.what == QuestionMessage::What::kRefusal) {
+      const Json refusal = Json::parse_or_none(text).value_or(Json());
+      response = RpcResponse::refused("edit", text_at(refusal, "message"), text_at(refusal, "where"));
+    } else if (text.size() > control::kPiece) {
+      response = RpcResponse::in_pieces(std::make_shared<control::TextPieces>(memory, text));
+    } else {
+      response = RpcResponse::ready(std::make_shared<const std::string>(text));
+    }
+  }
+};
+
+std::size_t bytes_in(const Question& question) {
+  return question.file.size() + question.text.size() + question.with.size();
 }
 
 }  // namespace
 
 Questions::~Questions() { end_analyst(); }
 
-void Questions::ask(Question question, std::uint64_t connection, control::Reply reply, Nanoseconds now) {
-  std::size_t own = 0, bytes = question.text.size();
+void Questions::ask(Question question, std::uint64_t connection, Take take, Nanoseconds now) {
+  std::size_t own = 0, bytes = bytes_in(question);
   for (const Waiting& one : waiting_) {
     own += one.connection == connection ? 1 : 0;
-    bytes += one.question.text.size();
+    bytes += bytes_in(one.question);
   }
-  if (own >= kMaxQuestionsOfConnection) return reply(too_many("4 analyses of this connection are under way"));
-  if (waiting_.size() >= kMaxQuestions) return reply(too_many("64 analyses are under way"));
-  if (bytes > kMaxQuestionBytes) return reply(too_many("analyses of 16 MiB of text are under way"));
-  waiting_.push_back({std::move(question), connection, std::move(reply)});
+  if (own >= kMaxQuestionsOfConnection) return take(too_many("4 analyses of this connection are under way"), {});
+  if (waiting_.size() >= kMaxQuestions) return take(too_many("64 analyses are under way"), {});
+  if (bytes > kMaxQuestionBytes) return take(too_many("analyses of 16 MiB of text are under way"), {});
+  waiting_.push_back({std::move(question), connection, std::move(take)});
   pass_on(now);
 }
 
@@ -83,7 +101,8 @@ void Questions::take_answer(Nanoseconds now) {
     answer_first(
         given_up("the analysis was given up: it needs more than 1 GiB of memory, or its answer more than 32 MiB"), now);
   } else if (is_asked) {
-    answer_first(answer_in(passed, told.text_bytes), now);
+    const PassedAnswer answer(passed, told);
+    answer_first(answer.response, now, answer.edited);
   } else if (got == Channel::Got::kClosed) {
     const bool was_under_way = is_under_way_;
     const std::string how = how_it_ended();
@@ -92,12 +111,12 @@ void Questions::take_answer(Nanoseconds now) {
   }
 }
 
-void Questions::answer_first(const RpcResponse& answer, Nanoseconds now) {
+void Questions::answer_first(const RpcResponse& answer, Nanoseconds now, std::string_view edited) {
   is_under_way_ = false;
   since_ = now;
   Waiting first = std::move(waiting_.front());
   waiting_.pop_front();
-  first.reply(answer);
+  first.take(answer, edited);
 }
 
 /// The oldest question of the connection whose turn it is, so that many questions of one connection do not delay the
@@ -145,10 +164,14 @@ bool Questions::start(Nanoseconds now) {
 
 bool Questions::send_first() {
   const Question& question = waiting_.front().question;
-  const std::string both = question.file + question.text + "\n";
-  const auto frozen = FrozenBytes::create("question", std::as_bytes(std::span(both)));
-  const QuestionMessage asked{QuestionMessage::What::kQuestion, question.kind, number_, question.file.size(),
-                              question.text.size()};
+  const std::string all = question.file + question.text + question.with + "\n";
+  const auto frozen = FrozenBytes::create("question", std::as_bytes(std::span(all)));
+  const QuestionMessage asked{.kind = question.kind,
+                              .file_bytes = static_cast<std::uint32_t>(question.file.size()),
+                              .text_bytes = static_cast<std::uint32_t>(question.text.size()),
+                              .with_bytes = static_cast<std::uint32_t>(question.with.size()),
+                              .number = number_,
+                              .version = question.version};
   return frozen && channel_.send(bytes_of(asked), frozen->descriptor());
 }
 

@@ -6,6 +6,7 @@
 #include <deque>
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "chimera/base/time.h"
 #include "chimera/control/rpc_response.h"
@@ -25,6 +26,10 @@ inline constexpr Nanoseconds kAnalystIdle = seconds(10);
 /// Context: setup; blocks only for the start of a process.
 class Questions {
  public:
+  /// Takes the one answer of a question. `edited`: the text after the acts of a draft; else empty. It is there during
+  /// the call alone.
+  using Take = std::function<void(const control::RpcResponse& answer, std::string_view edited)>;
+
   /// `program` is chimera-manager, `bundle` the descriptor of the bundle; both outlive it. `tell` logs an event with
   /// the given text.
   Questions(std::string program, int bundle, std::function<void(const std::string&)> tell)
@@ -34,9 +39,9 @@ class Questions {
   /// Kills the analyst, even during a question.
   ~Questions();
 
-  /// Queues a question of a connection. `reply` gets its one answer, maybe at once: a refusal if too many questions
+  /// Queues a question of a connection. `take` gets its one answer, maybe at once: a refusal if too many questions
   /// wait.
-  void ask(Question question, std::uint64_t connection, control::Reply reply, Nanoseconds now);
+  void ask(Question question, std::uint64_t connection, Take take, Nanoseconds now);
   /// The connection is closed: its questions are removed, and a question under way is given up.
   void forget(std::uint64_t connection);
 
@@ -53,11 +58,11 @@ class Questions {
   struct Waiting {
     Question question;
     std::uint64_t connection;
-    control::Reply reply;
+    Take take;
   };
 
   void take_answer(Nanoseconds now);
-  void answer_first(const control::RpcResponse& answer, Nanoseconds now);
+  void answer_first(const control::RpcResponse& answer, Nanoseconds now, std::string_view edited = {});
   void pass_on(Nanoseconds now);
   bool start(Nanoseconds now);
   bool send_first();

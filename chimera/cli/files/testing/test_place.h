@@ -10,7 +10,7 @@
 #include <string>
 
 #include "chimera/base/testing/tree_path.h"
-#include "chimera/cli/files/workplace.h"
+#include "chimera/catalogue/workplace.h"
 #include "chimera/description/draft.h"
 #include "chimera/verify/verify.h"
 

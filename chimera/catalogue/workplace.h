@@ -8,7 +8,7 @@
 #include "chimera/base/result.h"
 #include "chimera/catalogue/library.h"
 
-namespace chimera::cli {
+namespace chimera {
 
 /// Folders and files, in the order in which they are searched. Context: setup.
 struct Workplace {
@@ -33,4 +33,4 @@ std::string absolute_path(const std::string& path);
 /// The path of the running program. Context: setup.
 std::string program_path();
 
-}  // namespace chimera::cli
+}  // namespace chimera

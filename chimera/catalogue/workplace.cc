@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds the installed components, units and templates from the place of the program and from the environment.
-#include "chimera/cli/files/workplace.h"
+#include "chimera/catalogue/workplace.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -8,7 +8,7 @@
 #include "chimera/text/nearest.h"
 #include "chimera/units/unit_system.h"
 
-namespace chimera::cli {
+namespace chimera {
 
 Workplace Workplace::around(const std::string& program) {
   const std::string folder = program.substr(0, program.rfind('/'));
@@ -60,4 +60,4 @@ std::string program_path() {
   return error ? std::string("chimera") : path.string();
 }
 
-}  // namespace chimera::cli
+}  // namespace chimera

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/cli/files/workplace.h"
+#include "chimera/catalogue/workplace.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "chimera/base/testing/tree_path.h"
 
-namespace chimera::cli {
+namespace chimera {
 namespace {
 
 TEST(Workplace, SearchesThePathBeforeTheFoldersOfTheProgram) {
@@ -57,7 +57,7 @@ TEST(Workplace, FindsTheComponentsThatAreBuiltBesideADescription) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(ProgramPath, IsThisProgram) { EXPECT_NE(program_path().find("/cli_test"), std::string::npos); }
+TEST(ProgramPath, IsThisProgram) { EXPECT_NE(program_path().find("/catalogue_test"), std::string::npos); }
 
 }  // namespace
-}  // namespace chimera::cli
+}  // namespace chimera

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// The faults of the draft, each with the edits that were tried; the load of each CPU, judged without a run.
+import { Button } from "./controls";
+import { draft } from "./draft";
+import { cpuVerdicts } from "./faults";
+import type { Analysis, Fault, Offer } from "./protocol";
+
+const MOST_SHOWN = 200;
+
+export function FaultList({ analysis, offers, why, go }:
+  { analysis: Analysis; offers: Offer[]; why: string; go: (fault: Fault) => void }) {
+  const { faults, errors, warnings } = analysis.report;
+  return (
+    <section className="faults" aria-label="Faults">
+      <h2>Faults {errors}{warnings > 0 && `, warnings ${warnings}`}</h2>
+      {analysis.report.legal && <p className="hint">The draft is legal.</p>}
+      <ol aria-label="Faults, in order of their place">
+        {faults.slice(0, MOST_SHOWN).map((fault, number) => (
+          <li key={number} data-fault={number} className={fault.severity}
+              onClick={(event) => { if (!(event.target as Element).closest("button")) go(fault); }}>
+            <span role="button" tabIndex={0} className="link" onKeyDown={(event) => {
+              if (event.key !== " " && event.key !== "Enter") return;
+              event.preventDefault();
+              go(fault);
+            }}>
+              {fault.severity === "warning" && "warning: "}{fault.message}</span>
+            <span className="soft"> {fault.line > 0 && `line ${fault.line}`} {fault.remedy}</span>
+            <span className="acts">{offers.filter((offer) => offer.fault === number).map((offer) => (
+              <Button key={offer.label} label={offer.label} forbidden={why}
+                      press={() => void draft.press(offer.acts)} />))}</span>
+          </li>))}
+      </ol>
+      {faults.length > MOST_SHOWN && <p className="hint">{faults.length - MOST_SHOWN} more are not shown.</p>}
+    </section>
+  );
+}
+
+export function DraftCpus({ analysis, why }: { analysis: Analysis; why: string }) {
+  const { schedule, outline } = analysis;
+  if (!schedule) return outline && outline.tasks.length > 0
+    ? <div className="cpus"><span className="hint">The load of each CPU is judged when the draft is legal.</span></div>
+    : null;
+  return (
+    <div className="cpus" role="group" aria-label="Load of each CPU">
+      {cpuVerdicts(schedule).map((cpu) => {
+        const name = `cpu${cpu.cpu} in ${cpu.set}`;
+        const words = `${name}: ${cpu.utilisation.toFixed(2)} of ${cpu.limit}; ${cpu.note}`;
+        return (
+          <div key={cpu.cpu} className={`cpu${cpu.fits ? "" : " over"}`} data-cpu={cpu.cpu}>
+            <span>{name}</span>
+            <svg viewBox="0 0 100 10" preserveAspectRatio="none" role="img" aria-label={words}>
+              <rect className="trough" x="0" y="0" width="100" height="10" />
+              <rect className="used" x="0" y="0" width={Math.min(100, 100 * cpu.utilisation)} height="10" />
+              <rect className="capacity" x={Math.min(99, 100 * cpu.limit)} y="0" width="1" height="10" />
+            </svg>
+            <span className="figures-cpu">{cpu.utilisation.toFixed(2)} / {cpu.limit}</span>
+            <span className="note">{cpu.note}</span>
+            {cpu.remedies.map((remedy) => (
+              <Button key={remedy.label} label={remedy.label} forbidden={why}
+                      press={() => void draft.press(remedy.acts)} />))}
+          </div>);
+      })}
+    </div>
+  );
+}
