@@ -5,12 +5,13 @@
 #include <charconv>
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <new>
 #include <string_view>
 
 #include "chimera/base/hosted/terminal_text.h"
+#include "chimera/catalogue/workplace.h"
 #include "chimera/control/running.h"
+#include "chimera/control/state_folder.h"
 #include "chimera/platform/socket_place.h"
 #include "chimera/platform/standard_streams.h"
 #include "chimera/web/web_server.h"
@@ -24,9 +25,7 @@ constexpr std::string_view kNoMemory = "chimera-web: out of memory\n";
 void tell(const std::string& sentence) { std::fprintf(stderr, "chimera-web: %s\n", plain_line(sentence).c_str()); }
 
 int serve(const web::WebRequest& request, bool json) {
-  std::error_code error;
-  const std::string program = std::filesystem::read_symlink("/proc/self/exe", error).string();
-  auto page = web::read_page(program);
+  auto page = web::read_page(program_path());
   if (!page) return tell(std::string(page.error().where.view()) + ": " + page.error().message.c_str()), 1;
   auto server = web::WebServer::open(request, *std::move(page), tell);
   if (!server) return tell(server.error().message.c_str()), 1;
@@ -47,7 +46,14 @@ int main(int argc, char** argv) {
     ::_exit(1);
   });
   bool json = false;
-  web::WebRequest request{{}, {CHIMERA_VERSION, "", std::string(socket_folder().view()), control::kServiceFolder}};
+  const std::string program = program_path(), state = control::state_folder();
+  web::WebRequest request{{}, {.program = CHIMERA_VERSION,
+                               .file = "",
+                               .own_folder = std::string(socket_folder().view()),
+                               .service_folder = control::kServiceFolder,
+                               .programs = program.substr(0, program.rfind('/')),
+                               .drafts = state.empty() ? "" : state + "/drafts",
+                               .workplace = Workplace::around(program)}};
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
     if (word == "--json") {
@@ -61,7 +67,7 @@ int main(int argc, char** argv) {
       tell("is started by `chimera web`, with [--json] [--port N] [FILE]; `chimera web --help` says more");
       return 2;
     } else {
-      request.facts.file = word;
+      request.facts.file = absolute_path(std::string(word));
     }
   }
   return serve(request, json);

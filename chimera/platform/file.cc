@@ -94,6 +94,10 @@ std::int64_t read_at(int file, std::uint64_t offset, std::span<std::byte> to) no
   return static_cast<std::int64_t>(done);
 }
 
+bool free_bytes_before(int file, std::uint64_t offset) noexcept {
+  return ::fallocate(file, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(offset)) == 0;
+}
+
 std::optional<FileState> state_of_file(const std::string& path) {
   struct stat state {};
   if (::stat(path.c_str(), &state) != 0) return std::nullopt;

@@ -32,6 +32,10 @@ std::int64_t file_size(int file) noexcept;
 /// an error of the system. Context: setup; may block on the disk.
 std::int64_t read_at(int file, std::uint64_t offset, std::span<std::byte> to) noexcept;
 
+/// Gives the room of all bytes before `offset` back to the file system; they then read as zeros. False if the file
+/// system cannot do that. Context: setup; may block.
+bool free_bytes_before(int file, std::uint64_t offset) noexcept;
+
 /// Two different states mean that the file has changed.
 struct FileState {
   std::uint64_t inode = 0;

@@ -50,6 +50,20 @@ TEST(FileBytes, ReadsAtAPlaceUntilTheEnd) {
   EXPECT_EQ(read_at(-1, 0, std::as_writable_bytes(std::span(text))), -1);
 }
 
+TEST_F(FolderTest, FreesTheFirstBytesOfAGrowingFile) {
+  write(std::string(1 << 20, 'x'));
+  auto file = open_to_append(path());
+  ASSERT_TRUE(file);
+  struct stat before {}, after {};
+  ASSERT_EQ(::fstat(file->fd, &before), 0);
+  if (!free_bytes_before(file->fd, 1 << 19)) GTEST_SKIP() << "this file system cannot do it";
+  ASSERT_EQ(::write(file->fd, "end", 3), 3);
+  ASSERT_EQ(::fstat(file->fd, &after), 0);
+  EXPECT_EQ(after.st_size, (1 << 20) + 3);
+  EXPECT_LE(after.st_blocks, before.st_blocks / 2 + 16);
+  EXPECT_EQ(content().substr((1 << 20) - 2), "xxend");
+}
+
 struct FileStateTest : FolderTest {
   FileStateTest() {
     write("before");

@@ -23,29 +23,90 @@ constexpr Nanoseconds kListingPeriod = seconds(1);
 constexpr Nanoseconds kStartTime = seconds(2);      // a new socket file may not listen yet
 constexpr Nanoseconds kAskingPeriod = seconds(10);  // the file of a killed keeper stays
 
+RpcResponse no_draft() {
+  return RpcResponse::refused("draft", "this page has no draft: no FILE was named", "", "type `chimera web FILE`");
+}
+
 }  // namespace
 
-void Bench::call(const control::MethodRule& method, const Json&, const control::Caller& caller, control::Reply reply) {
-  if (method.id == MethodId::kHello) return reply(RpcResponse::good(hello(caller.role)));
-  if (method.id == MethodId::kMachines) return reply(RpcResponse::good(*machines()));
+Bench::Bench(BenchFacts facts, Clock& clock, std::function<void(const std::string&)> tell)
+    : facts_(std::move(facts)),
+      clock_(clock),
+      library_(facts_.workplace, facts_.file, facts_.program, clock),
+      analyses_(facts_.programs + "/chimera-manager", library_, clock, tell),
+      run_(facts_.programs + "/chimera", facts_.drafts) {
+  if (!facts_.file.empty()) draft_.emplace(facts_.file, facts_.drafts, analyses_, clock, std::move(tell));
+}
+
+void Bench::call(const control::MethodRule& method, const Json& parameters, const control::Caller& caller,
+                 control::Reply reply) {
+  switch (method.id) {
+    case MethodId::kHello: return reply(RpcResponse::good(hello(caller.role)));
+    case MethodId::kMachines: return reply(RpcResponse::good(*machines()));
+    case MethodId::kLibrary: return (void)library_.version(), reply(library_.answer());
+    case MethodId::kOutput: return run_.serve(clock_.now()), reply(run_.output());
+    case MethodId::kStart: return reply(start());
+    default: break;
+  }
+  if (control::is_of_bench(method.id)) return call_draft(method.id, parameters, caller, reply);
   reply(RpcResponse::error(control::kNoMethod,
                            "'" + std::string(method.name) + "' is a method of a subsystem: connect to /machine/NAME",
                            {{"where", "method"}}));
 }
 
+void Bench::call_draft(MethodId method, const Json& parameters, const control::Caller& caller,
+                       const control::Reply& reply) {
+  if (draft_) return draft_->call(method, parameters, caller, reply);
+  reply(no_draft());
+}
+
+RpcResponse Bench::start() {
+  if (!draft_) return no_draft();
+  run_.serve(clock_.now());
+  if (RpcResponse refused = draft_->may_start(); !refused.is_good()) return refused;
+  return run_.start(facts_.file);
+}
+
+void Bench::forget(std::uint64_t connection) {
+  analyses_.forget(connection);
+  if (draft_) draft_->forget(connection);
+}
+
 RpcResponse Bench::open(std::uint64_t subscription, const Json& parameters) {
-  if (parameters.at("to").as_string() != "machines")
-    return RpcResponse::error(control::kBadParameters, "'to' must be machines; a subsystem has the others",
+  const std::string to = parameters.at("to").as_string();
+  if (to == "draft" && !draft_) return no_draft();
+  if (to != "machines" && to != "draft")
+    return RpcResponse::error(control::kBadParameters, "'to' must be machines or draft; a subsystem has the others",
                               {{"where", "to"}, {"nearest", "machines"}});
-  sent_[subscription] = nullptr;
+  sent_[subscription] = {to == "draft", nullptr};
   return {};
 }
 
 std::shared_ptr<const Json> Bench::pull(std::uint64_t subscription) {
-  std::shared_ptr<const Json>& sent = sent_.at(subscription);
-  const auto& present = machines();
-  if (sent != nullptr && *sent == *present) return nullptr;
-  return sent = present;
+  Sent& sent = sent_.at(subscription);
+  const auto present = sent.is_of_draft ? std::make_shared<const Json>(draft_->note()) : machines();
+  if (sent.last != nullptr && *sent.last == *present) return nullptr;
+  return sent.last = present;
+}
+
+std::vector<int> Bench::descriptors() const {
+  std::vector<int> all = analyses_.descriptors();
+  all.push_back(run_.descriptor());
+  return all;
+}
+
+Nanoseconds Bench::next_due() const noexcept {
+  return std::min(analyses_.next_due(), draft_ ? draft_->next_due() : kNever);
+}
+
+void Bench::serve() {
+  analyses_.serve();
+  if (draft_) draft_->serve();
+  run_.serve(clock_.now());
+}
+
+void Bench::finish() {
+  if (draft_) draft_->keep();
 }
 
 OwnedDescriptor Bench::connect(const std::string& machine) {

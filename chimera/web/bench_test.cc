@@ -25,9 +25,10 @@ struct BenchTest : ::testing::Test {
   void SetUp() override {
     char made[] = "/tmp/chimera-bench-XXXXXX";
     place = ::mkdtemp(made);
-    bench.emplace(BenchFacts{"1.2.3", "/a/arm.yaml", own(), service()}, clock);
+    bench.emplace(facts("/a/arm.yaml"), clock, [](const std::string&) {});
   }
   void TearDown() override { std::filesystem::remove_all(place); }
+  BenchFacts facts(const std::string& file) const { return {"1.2.3", file, own(), service(), place, "", {}}; }
   std::string own() const { return place + "/own"; }
   std::string service() const { return place + "/service"; }
   static SocketPlace listen(const std::string& folder, const std::string& name) {
@@ -57,7 +58,7 @@ TEST_F(BenchTest, SaysWhoItIs) {
   EXPECT_EQ(hello["pid"].as_int64(), own_process_id());
   EXPECT_EQ(hello["folder"], Json(std::filesystem::current_path().string()));
   EXPECT_FALSE(hello["host"].as_string().empty());
-  bench.emplace(BenchFacts{"1.2.3", "", own(), service()}, clock);
+  bench.emplace(facts(""), clock, [](const std::string&) {});
   EXPECT_TRUE((*call("hello").result)["file"].is_null());
 }
 

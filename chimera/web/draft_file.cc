@@ -76,6 +76,17 @@ std::optional<KeptText> kept_in(std::string_view content, const std::string& fil
 
 }  // namespace
 
+Result<void> make_drafts_folder(const std::string& folder) {
+  if (folder.empty()) return Message("is named neither by XDG_STATE_HOME nor by HOME").error(ErrorCode::kRefused, "$HOME");
+  const fs::path above = fs::path(folder).parent_path();
+  std::error_code error;
+  fs::create_directories(above.parent_path(), error);
+  if (!make_private_folder(above.string()) || !make_private_folder(folder) || !is_safe_folder(folder.c_str()))
+    return Message("is no folder of this user alone, or cannot be made").error(ErrorCode::kRefused, folder);
+  fs::permissions(folder, fs::perms::owner_all, error);
+  return {};
+}
+
 std::string text_problem(std::string_view text) {
   Report report;
   (void)check_text_limits(text, report);  // of the other limits the analysis speaks
@@ -137,19 +148,13 @@ KeptDraft::KeptDraft(std::string folder, std::string file, std::function<void(co
 /// From now on no other process keeps this draft.
 Result<void> KeptDraft::claim() {
   if (claim_.fd >= 0) return {};
-  const auto refuse = [this](const std::string& why) { return Message(why).error(ErrorCode::kRefused, path_); };
-  if (folder_.empty()) return refuse("neither XDG_STATE_HOME nor HOME names a folder");
-  std::error_code error;
-  fs::create_directories(fs::path(folder_).parent_path().parent_path(), error);
-  if (!make_private_folder(fs::path(folder_).parent_path().string()) || !make_private_folder(folder_) ||
-      !is_safe_folder(folder_.c_str()))
-    return refuse("its folder is not for this user alone, or cannot be made");
-  fs::permissions(folder_, fs::perms::owner_all, error);
+  if (auto made = make_drafts_folder(folder_); !made) return made;
   const std::string name = "chimera-draft-" + std::to_string(own_user()) + "-" + sum_of(path_);
   claim_ = claim_name(name);
   if (claim_.fd >= 0) return remove_parts(), Result<void>();
   const int process = errno == EADDRINUSE ? holder_of_name(name).process : 0;
-  return refuse("another chimera web (process " + std::to_string(process) + ") keeps the draft of this file");
+  return (Message() << "another chimera web (process " << process << ") keeps the draft of this file")
+      .error(ErrorCode::kRefused, path_);
 }
 
 /// What a process left that was killed while it wrote.

@@ -13,6 +13,9 @@
 
 namespace chimera::web {
 
+/// Makes the folder of kept drafts, for this user alone. Refuses, with the path in `where`. Context: setup; may block.
+Result<void> make_drafts_folder(const std::string& folder);
+
 /// "" for a text that a description may be; else why it is none, as "has more than 262144 bytes". Context: setup.
 std::string text_problem(std::string_view text);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "chimera/description/report.h"
 #include "chimera/text/json.h"
 
 namespace chimera::web {
@@ -191,12 +192,16 @@ void DraftMethods::analyse() {
 
 void DraftMethods::take_analysis(const Analysis& asked, const RpcResponse& given) {
   if (!(asked == analysis_)) return;  // a later one is under way, or there already
-  if (given.is_good()) {
+  if (asked.version != draft_.version()) {
+    analysis_ = {};
+    if (!waiters_.empty()) analyse();
+  } else if (given.is_good()) {
     analysis_.text = text_of(given);
-    return answer_all({});
+    answer_all({});
+  } else {
+    analysis_ = {};
+    answer_all(given);
   }
-  analysis_ = {};
-  answer_all(given);
 }
 
 /// `given`: the refusal of the analysis; good: it is there.

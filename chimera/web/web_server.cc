@@ -13,9 +13,8 @@
 #include <vector>
 
 #include "chimera/control/closings.h"
-#include "chimera/control/control_server.h"
 #include "chimera/platform/local_socket.h"
-#include "chimera/platform/process_state.h"
+#include "chimera/web/bench_server.h"
 #include "chimera/web/gate.h"
 #include "chimera/web/limits.h"
 #include "chimera/web/page_key.h"
@@ -36,7 +35,7 @@ Nanoseconds now() { return LinuxClock().now(); }
 /// The acceptor, the server of the bench and all connections. Context: setup.
 class WebServer::Loop {
  public:
-  Loop(PageContents page, PageKey key, BenchFacts facts, Tell tell);
+  Loop(PageContents page, PageKey key, BenchFacts facts, const Tell& tell);
   ~Loop();
 
   Result<void> open(std::optional<std::uint16_t> port);
@@ -50,7 +49,7 @@ class WebServer::Loop {
   /// A connected socket to the server that the verdict names; none, with the reason for the browser.
   std::optional<LocalSocket> door_to(const GateVerdict& verdict, websocket::close_reason& why);
   void refuse(const std::string& sentence) { refusals_.add(0, sentence, now()); }
-  void machine_ended() { bench_.look_again(); }
+  void machine_ended() { bench_.bench().look_again(); }
   void leave(const std::shared_ptr<Connection>& connection);
 
  private:
@@ -66,9 +65,7 @@ class WebServer::Loop {
   asio::io_context io_{1};
   PageContents page_;
   PageKey key_;
-  LinuxClock clock_;
-  Bench bench_;
-  std::unique_ptr<control::ControlServer> control_;
+  BenchServer bench_;
   control::Closings refusals_;
   tcp::acceptor acceptor_{io_};
   asio::signal_set signals_{io_};
@@ -322,9 +319,9 @@ void WebServer::Connection::check_open(Nanoseconds at) {
   socket_.async_ping({}, [self = shared_from_this()](Code) {});
 }
 
-WebServer::Loop::Loop(PageContents page, PageKey key, BenchFacts facts, Tell tell)
-    : page_(std::move(page)), key_(std::move(key)), bench_(std::move(facts), clock_) {
-  refusals_.report_to(std::move(tell));
+WebServer::Loop::Loop(PageContents page, PageKey key, BenchFacts facts, const Tell& tell)
+    : page_(std::move(page)), key_(std::move(key)), bench_(std::move(facts), tell) {
+  refusals_.report_to(tell);
 }
 
 WebServer::Loop::~Loop() {
@@ -332,9 +329,7 @@ WebServer::Loop::~Loop() {
 }
 
 Result<void> WebServer::Loop::open(std::optional<std::uint16_t> port) {
-  auto server = control::ControlServer::open(-1, bench_, own_user(), {});
-  if (!server) return server.error();
-  control_ = *std::move(server);
+  if (auto opened = bench_.open(); !opened) return opened;
   Code error;
   for (int one = port.value_or(kFirstPort); one <= port.value_or(kLastPort); ++one) {
     acceptor_.close(error);
@@ -350,7 +345,7 @@ Result<void> WebServer::Loop::open(std::optional<std::uint16_t> port) {
         .error(ErrorCode::kSystem);
   }
   link_ = "http://127.0.0.1:" + std::to_string(acceptor_.local_endpoint().port()) + "/#" + key_.text();
-  bench_ready_.assign(control_->descriptor());
+  bench_ready_.assign(bench_.descriptor());
   signals_.add(SIGINT);
   signals_.add(SIGTERM);
   signals_.async_wait([this](Code, int) { end(); });
@@ -361,6 +356,7 @@ Result<void> WebServer::Loop::open(std::optional<std::uint16_t> port) {
 
 void WebServer::Loop::run() {
   io_.run();
+  bench_.bench().finish();
   all_.clear();
 }
 
@@ -378,12 +374,11 @@ std::optional<LocalSocket> WebServer::Loop::door_to(const GateVerdict& verdict, 
     asio::local::connect_pair(mine, other, error);
     if (!error) {
       other.native_non_blocking(true, error);
-      const control::PeerIdentity peer{own_user(), control::Role::kConfigure, 0};
-      control_->enter(OwnedDescriptor(other.release()), peer, now());
+      bench_.enter(other.release());
       return mine;
     }
   } else {
-    OwnedDescriptor door = bench_.connect(verdict.machine);
+    OwnedDescriptor door = bench_.bench().connect(verdict.machine);
     error = Code(errno, boost::system::system_category());
     if (door.fd >= 0) mine.assign({}, door.fd, error);
     if (mine.is_open()) {
@@ -465,8 +460,8 @@ void WebServer::Loop::wait_for_bench() {
 }
 
 void WebServer::Loop::serve_bench() {
-  control_->serve(now());
-  const Nanoseconds due = control_->next_due();
+  bench_.serve();
+  const Nanoseconds due = bench_.next_due();
   bench_timer_.cancel();
   if (due == kNever) return;
   bench_timer_.expires_after(std::chrono::nanoseconds(std::max<std::int64_t>((due - now()).count, 0)));
@@ -492,7 +487,7 @@ void WebServer::run() { loop_->run(); }
 Result<std::unique_ptr<WebServer>> WebServer::open(const WebRequest& request, PageContents page, Tell tell) {
   auto key = PageKey::make();
   if (!key) return key.error();
-  auto loop = std::make_unique<Loop>(std::move(page), *std::move(key), request.facts, std::move(tell));
+  auto loop = std::make_unique<Loop>(std::move(page), *std::move(key), request.facts, tell);
   if (const auto opened = loop->open(request.port); !opened) return opened.error();
   return std::unique_ptr<WebServer>(new WebServer(std::move(loop)));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The mode Assemble: the draft of FILE as a picture, as fields and as text.
-import { useEffect, useMemo, useState } from "react";
+import { memo, useEffect, useMemo, useState } from "react";
 import { AddTask, AssemblyForm, VariableForm } from "./assembly_form";
 import { MessageBox } from "./banners";
 import { Canvas, useFit } from "./canvas";
@@ -14,9 +14,10 @@ import { assembleKeys, takeKey } from "./keys";
 import { DraftBanners, runsFile, whyNot } from "./lamps";
 import { Machine, MachineState } from "./machine";
 import { mark } from "./marks";
-import type { BenchHello, Fault, Outline, TaskPort } from "./protocol";
+import type { BenchHello, Fault, LibraryComponent, Outline, TaskPort } from "./protocol";
 import { useStore } from "./store";
 import { TaskForm } from "./task_form";
+import { duration } from "./text";
 import { taskAt } from "./text_places";
 import { TextPanel, TextPlace } from "./text_panel";
 import { choose, showVariable, view } from "./view";
@@ -33,7 +34,7 @@ export function markDraft(state: DraftState): void {
 }
 
 /** Names for fields: variables and constants with unit and producer, components, reactions. */
-function Lists({ outline, state }: { outline: Outline | null; state: DraftState }) {
+const Lists = memo(function Lists({ outline, library }: { outline: Outline | null; library: LibraryComponent[] }) {
   const known = (isConstant: boolean) => (outline?.variables ?? []).filter((one) => one.constant === isConstant)
     .map((one) => (
       <option key={one.variable} value={one.variable}>{one.unit === "1" ? "" : `${one.unit}, `}{
@@ -45,14 +46,14 @@ function Lists({ outline, state }: { outline: Outline | null; state: DraftState 
     <>
       <datalist id="known">{known(false)}</datalist>
       <datalist id="constants-known">{known(true)}</datalist>
-      <datalist id="components">{state.library.map((one) => <option key={one.name} value={one.name}>{one.doc}</option>)}
+      <datalist id="components">{library.map((one) => <option key={one.name} value={one.name}>{one.doc}</option>)}
       </datalist>
       <datalist id="reactions">{plain(["continue", "hold", "skip", "abort", "demote", "error", "flag", "stop",
         ...switches])}</datalist>
       <datalist id="fault-reactions">{plain(["error", "flag", "stop", ...switches])}</datalist>
     </>
   );
-}
+});
 
 function Empty({ state, why }: { state: DraftState; why: string }) {
   const { file, exists, analysis } = state.draft!;
@@ -71,6 +72,18 @@ function Empty({ state, why }: { state: DraftState; why: string }) {
 function standingStill(state: DraftState, why: string): string {
   const { outline, text } = state.draft!.analysis;
   return why || (outline || text.trim() === "" ? "" : "the text is no YAML: mend the text first");
+}
+
+function pressPort({ task, port }: TaskPort): void {
+  choose([task]);
+  window.setTimeout(() => focusField("link", `${task} ${port}`), 0);  // when the fields of the task are there
+}
+
+function link(from: TaskPort, to: TaskPort): void {
+  const { outline } = draft.state.get();
+  const acts = outline ? pulledActs(outline, from, to) : [];
+  if (typeof acts === "string") draft.say(acts, true);
+  else void draft.press(acts);
 }
 
 interface Props { machine: Machine | null; machineState: MachineState | null; bench: BenchHello; isOpen: boolean }
@@ -108,23 +121,16 @@ export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
     const there = { line: Math.max(1, fault.line), column: fault.column, isFocused: true };
     window.setTimeout(() => setPlace(there), 0);  // after the line of the box
   };
-  const pressPort = ({ task: name, port }: TaskPort) => {
-    choose([name]);
-    window.setTimeout(() => focusField("link", `${name} ${port}`), 0);  // when the fields of the task are there
-  };
-  const link = (from: TaskPort, to: TaskPort) => {
-    const acts = outline ? pulledActs(outline, from, to) : [];
-    if (typeof acts === "string") draft.say(acts, true);
-    else void draft.press(acts);
-  };
   const status = runsFile(machineState, bench.file)
-    ? machineState?.status?.tasks.find((one) => one.task === task?.task) : undefined;
+    ? machineState?.status?.tasks.find((one) => one.task === task?.task && one.cycles > 0) : undefined;
+  const measured = status
+    ? `measured ${duration(status.execution_ns.mean)}, longest ${duration(status.execution_ns.max)}` : "";
   return (
     <>
       <DraftBanners state={state} why={why} />
       {machine && machineState?.message && <MessageBox machine={machine} state={machineState} />}
       <DraftCpus analysis={analysis} why={still} />
-      <Lists outline={outline} state={state} />
+      <Lists outline={outline} library={state.library} />
       <main className={hasPicture && !analysis.picture ? "last" : ""}>
         <Canvas place={canvas} fit={fit}>
           {hasPicture && picture
@@ -136,8 +142,8 @@ export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
         <aside aria-label="Details">
           {still !== "" && <p className="hint">{still}</p>}
           {outline && (of ? <VariableForm key={variable} of={of} why={still} />
-            : task ? <TaskForm key={task.task} outline={outline} task={task} text={text} why={still} status={status}
-                               faults={analysis.report.faults} />
+            : task ? <TaskForm key={task.task} outline={outline} task={task} text={text} why={still}
+                               measured={measured} faults={analysis.report.faults} />
             : <AssemblyForm outline={outline} text={text} why={still} file={now.file} />)}
         </aside>
       </main>

@@ -54,7 +54,7 @@ interface Props {
   why: string;
 }
 
-export function DraftPicture(props: Props) {
+export const DraftPicture = memo(function DraftPicture(props: Props) {
   const { picture, faults, zoom, chosen, variable, cursorTask, choose, showVariable } = props;
   const { root, pick, move, focused } = useBoxes(picture, chosen, choose);
   const [pull, setPull] = useState<Pull | null>(null);
@@ -116,4 +116,4 @@ export function DraftPicture(props: Props) {
                      markerStart={pull.from.kind.startsWith("in") ? "url(#arrow)" : undefined} />}
     </svg>
   );
-}
+});

@@ -21,6 +21,8 @@ interface Props {
   list?: string;
 }
 
+const idOf = (mark: Props["mark"]) => mark.join("-").replace(/\s/g, "~");
+
 export function EditField(
   { label, name, present, mark, why, commit, placeholder, note = "", title = "", list }: Props) {
   const [typed, type] = useState<string | null>(null);
@@ -36,7 +38,7 @@ export function EditField(
     if (sentence === "") type((now) => (now === sent.current ? null : now));
     if (sentence === "") sent.current = null;
   };
-  const id = `${mark[0]}-${mark[1]}`;
+  const id = idOf(mark);
   return (
     <div className="field line">
       <label htmlFor={id}>{label}{note !== "" && <span className="unit"> {note}</span>}</label>
@@ -60,7 +62,7 @@ export function EditField(
 export function EditChoice({ label, name, present, mark, why, commit, options }:
   Omit<Props, "placeholder" | "note" | "title" | "list"> & { options: [value: string, words: string][] }) {
   const [refusal, refuse] = useState("");
-  const id = `${mark[0]}-${mark[1]}`;
+  const id = idOf(mark);
   const known = options.some(([value]) => value === present) ? options : [[present, present] as const, ...options];
   return (
     <div className="field line">

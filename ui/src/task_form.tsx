@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The chosen task of the draft: its keys, ports and configurations, each a field.
+import { memo } from "react";
 import { Button } from "./controls";
 import { draft } from "./draft";
 import { instanceActs, instanceOf, linkActs, memberActs, quoted, removedInstance, removedTask, valueActs, valuePath,
   } from "./edits";
 import { AddForm, EditChoice, EditField, MoreOf } from "./edit_field";
 import { faultsAt } from "./faults";
-import type { Fault, Outline, OutlinePort, OutlineTask, Port, TaskStatus } from "./protocol";
-import { duration, rate } from "./text";
+import type { Fault, Outline, OutlinePort, OutlineTask, Port } from "./protocol";
+import { rate } from "./text";
 import { wordsAt } from "./text_places";
 import { choose } from "./view";
 
@@ -125,12 +126,11 @@ function Memberships({ outline, task, text, why }: Omit<Props, "faults">) {
 
 const LEVELS: [string, string][] = ["low", "medium", "high"].map((level) => [level, level]);
 
-export function TaskForm({ status, ...props }: Props & { status: TaskStatus | undefined }) {
+/** `measured`: figures of the machine that runs FILE; "": none. */
+export const TaskForm = memo(function TaskForm({ measured, ...props }: Props & { measured: string }) {
   const { outline, task, text, why } = props;
   const { task: name } = task;
   const key = { task, text, why };
-  const measured = status && status.cycles > 0
-    ? `measured ${duration(status.execution_ns.mean)}, longest ${duration(status.execution_ns.max)}` : "";
   const set = (path: string) => (words: string) =>
     draft.edit(valueActs(`tasks/${name}/${path}`, words, wordsAt(text, `tasks/${name}/${path}`) !== null));
   const standby = wordsAt(text, `tasks/${name}/standby_for`);
@@ -168,4 +168,4 @@ export function TaskForm({ status, ...props }: Props & { status: TaskStatus | un
               press={() => void draft.press(removedTask(text, outline, name))} />
     </article>
   );
-}
+});
