@@ -61,7 +61,8 @@ const KEYS: [string, string][] = [
   ...ACTS.map((act): [string, string] => [act.key, `${act.name} the chosen tasks: ${act.help}`]),
   ["F2", "Assemble: rename the chosen task or variable"], ["n", "Assemble: add a task"],
   ["Delete", "Assemble: remove the chosen task"], ["Ctrl-Z, Ctrl-Y", "Assemble: undo an act, and do it again"],
-  ["Ctrl-S", "Assemble: save the draft to FILE"], ["Enter, Escape in a field", "Assemble: carry the act out; restore"],
+  ["Ctrl-S", "Assemble: save the draft to FILE"], ["t", "Assemble: try the draft in virtual time"],
+  ["s", "Look: the scope"], ["Enter, Escape in a field", "Assemble: carry the act out; restore"],
   ["w", "why: where the values of the chosen task come from"], ["Shift-F", "raise the FLAG, at once"],
   ["Ctrl-K or /", "find anything by name"], ["+ - 0", "zoom of the picture; 0 fits it"], ["?", "this list"],
 ];

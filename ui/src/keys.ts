@@ -7,6 +7,7 @@ import { raiseFlag } from "./header";
 import { begin } from "./inspector";
 import type { Machine } from "./machine";
 import { undoKey } from "./text_panel";
+import { tryDraft } from "./trial";
 import { choose, view, zoomBy } from "./view";
 
 function isTypedInto(target: EventTarget | null): boolean {
@@ -27,6 +28,7 @@ export const lookKeys: Keys = (event, machine) => {
   const act = ACTS.find((one) => one.key === event.key);
   if (act && machine && chosen.length > 0) begin(machine, act, chosen);
   else if (event.key === "w") view.set({ panel: "why", variable: "" });
+  else if (event.key === "s") view.set({ panel: "scope" });
   else return false;
   return true;
 };
@@ -45,6 +47,7 @@ export const assembleKeys: Keys = (event) => {
   const [task] = view.get().chosen;
   if (event.key === "F2") document.querySelector<HTMLInputElement>("aside input[data-rename]")?.select();
   else if (event.key === "n") addTask();
+  else if (event.key === "t") void tryDraft();
   else if (event.key === "Delete" && outline?.tasks.some((one) => one.task === task))
     void draft.press(removedTask(now?.analysis.text ?? "", outline, task!));
   else return false;
