@@ -146,8 +146,11 @@ RpcResponse check_word(const Parameter& parameter, const std::string& word) {
 RpcResponse check_count(const Parameter& parameter, std::uint64_t count) {
   if (count >= parameter.least && count <= parameter.most) return {};
   const bool has_limit = parameter.most < INT64_MAX;
-  const std::string range = has_limit ? "from " + std::to_string(parameter.least) + " to " : "at most ";
-  return bad(in_quotes(parameter.name) + " must be " + range + std::to_string(parameter.most), parameter.name);
+  const std::string least = std::to_string(parameter.least), most = std::to_string(parameter.most);
+  const std::string range = has_limit                  ? "from " + least + " to " + most
+                            : count < parameter.least ? "at least " + least
+                                                      : "at most " + most;
+  return bad(in_quotes(parameter.name) + " must be " + range, parameter.name);
 }
 
 RpcResponse check_value(const Parameter& parameter, const Json& value) {

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <optional>
 
+#include "chimera/base/testing/tree_path.h"
 #include "chimera/platform/local_socket.h"
 #include "chimera/platform/process_state.h"
 #include "chimera/platform/socket_place.h"
@@ -133,6 +135,53 @@ TEST_F(BenchTest, NotifiesAtOnceAndAtEachChange) {
   pass(seconds(1));
   EXPECT_EQ(bench->pull(2)->dump(), R"({"machines":[]})");
   EXPECT_EQ(bench->pull(2), nullptr);
+}
+
+TEST_F(BenchTest, WithoutFileThereIsNoDraft) {
+  bench.emplace(facts(""), clock, [](const std::string&) {});
+  for (const char* method :
+       {"draft", "edit", "replace", "remedies", "differences", "write", "keep", "start"}) {
+    EXPECT_EQ(call(method).code, control::kRefused) << method;
+    EXPECT_EQ(call(method).detail("kind"), "draft") << method;
+  }
+  EXPECT_EQ(bench->open(1, {{"to", "draft"}}).detail("kind"), "draft");
+  EXPECT_EQ(call("output").result->dump(), R"({"ended":null,"pid":null,"text":""})");
+}
+
+TEST_F(BenchTest, NotifiesOfTheDraftAtOnceAndAtEachChange) {
+  const std::string file = place + "/arm.yaml";
+  bench.emplace(facts(file), clock, [](const std::string&) {});
+  EXPECT_TRUE(bench->open(1, {{"to", "draft"}}).is_good());
+  EXPECT_EQ(bench->pull(1)->dump(Json::Style::kAsMade),
+            "{\"version\":1,\"file\":\"" + file +
+                "\",\"exists\":false,\"touched\":false,\"outside\":false,\"problem\":null}");
+  EXPECT_EQ(bench->pull(1), nullptr);
+  std::ofstream(file) << "a: 1";
+  pass(milliseconds(499));
+  EXPECT_EQ(bench->pull(1), nullptr);
+  pass(milliseconds(1));
+  EXPECT_EQ((*bench->pull(1))["version"], Json(2));
+  EXPECT_EQ(bench->pull(1), nullptr);
+}
+
+TEST_F(BenchTest, ListsComponentsAndDescriptorsThatCannotBeRead) {
+  BenchFacts made = facts(place + "/arm.yaml");
+  made.workplace.unit_files = {source_path("share/chimera/units.xml")};
+  bench.emplace(made, clock, [](const std::string&) {});
+  const auto faults = [this] { return Json::parse(*call("library").text)["faults"]; };
+  EXPECT_EQ(faults().size(), 0u);
+  std::filesystem::create_directories(place + "/build/components");
+  std::ofstream(place + "/build/components/cut.component.json") << "{";
+  EXPECT_EQ(faults().size(), 0u) << "folders are read once a second";
+  pass(seconds(1));
+  ASSERT_EQ(faults().size(), 1u);
+  EXPECT_EQ(faults()[0]["file"], Json(place + "/build/components/cut.component.json"));
+  EXPECT_FALSE(faults()[0]["message"].as_string().empty());
+  made.workplace.unit_files = {"/nowhere/units.xml"};
+  bench.emplace(made, clock, [](const std::string&) {});
+  EXPECT_EQ(call("library").detail("kind"), "library");
+  const control::RpcResponse draft = call("draft");
+  EXPECT_TRUE(draft.is_good()) << "the text is there without components";
 }
 
 TEST_F(BenchTest, RefusesWhatASubsystemAnswers) {

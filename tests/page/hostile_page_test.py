@@ -343,6 +343,15 @@ class Hostile(unittest.TestCase):
                 note = json.loads(page.message())
                 self.assertEqual(note["params"]["machines"], [])
 
+    def test_without_file_there_is_no_draft(self):
+        with self.server.open() as page:
+            for method, parameters in (("draft", {}), ("edit", {"version": 1, "acts": []}), ("start", {}),
+                                       ("replace", {"version": 1, "text": ""}), ("remedies", {"version": 1}),
+                                       ("differences", {}), ("write", {"version": 1}), ("keep", {"what": "file"})):
+                answer = page.ask(method, **parameters)
+                JUDGES["answer"].validate(answer)
+                self.assertEqual(answer["error"]["data"]["kind"], "draft", method)
+
 
 def descriptors(pid):
     return len(os.listdir(f"/proc/{pid}/fd"))

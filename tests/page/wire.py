@@ -23,15 +23,16 @@ FIELDS = {"Connection": "keep-alive, Upgrade", "Upgrade": "websocket", "Sec-WebS
 class Server:
     """A chimera-web at a free port, with a folder of sockets of its own."""
 
-    def __init__(self, *words, port=0, runtime=None, prefix=(), stdout=subprocess.PIPE):
+    def __init__(self, *words, port=0, runtime=None, state=None, prefix=(), stdout=subprocess.PIPE):
         self.place = pathlib.Path(tempfile.mkdtemp(prefix="chimera-page-"))
         self.runtime = runtime or self.place
         (self.runtime / "chimera").mkdir(mode=0o700, exist_ok=True)
         self.errors = open(self.place / "errors", "w+b")
         self.process = subprocess.Popen(
-            [*prefix, str(BUILD / "bin" / "chimera-web"), "--port", str(port), *words], stdin=subprocess.DEVNULL,
-            stdout=stdout, stderr=self.errors,
-            env=dict(os.environ, XDG_RUNTIME_DIR=str(self.runtime), ASAN_OPTIONS=QUIET))
+            [*prefix, str(BUILD / "bin" / "chimera-web"), "--port", str(port), *map(str, words)],
+            stdin=subprocess.DEVNULL, stdout=stdout, stderr=self.errors,
+            env=dict(os.environ, XDG_RUNTIME_DIR=str(self.runtime), ASAN_OPTIONS=QUIET,
+                     XDG_STATE_HOME=str(state or self.place / "state")))
         self.link = self.process.stdout.readline().decode().strip() if stdout == subprocess.PIPE else ""
         if self.link:
             address, self.key = self.link.split("/#")
@@ -158,11 +159,24 @@ class WebSocket:
                 if last:
                     return text.decode()
 
-    def call(self, method, **parameters):
+    def begin(self, method, **parameters):
+        """Sends a request: finish() reads its answer."""
         self.number += 1
         self.send(json.dumps({"jsonrpc": "2.0", "id": self.number, "method": method, "params": parameters}))
+
+    def finish(self):
+        """The answer to the last request: a result, or an error."""
         while (answer := json.loads(self.message())).get("id") != self.number:
             pass
+        return answer
+
+    def ask(self, method, **parameters):
+        self.begin(method, **parameters)
+        return self.finish()
+
+    def call(self, method, **parameters):
+        answer = self.ask(method, **parameters)
+        assert "result" in answer, answer
         return answer["result"]
 
     def code(self):

@@ -122,7 +122,9 @@ GOOD = {"hello": {}, "status": {}, "describe": {"picture": True, "configuration"
         "signal": {"signal": "on", "tasks": ["steady"]}, "ring": {"tasks": ["steady"]},
         "set": {"values": {"level": 2}}, "flag": {"up": False},
         "switch": {"configuration": "all", "wait_ms": 1000}, "cancel": {}, "drill": {"wait_ms": 100}, "save": {},
-        "end": {"code": 0}, "machines": {}}
+        "end": {"code": 0}, "machines": {}, "draft": {}, "edit": {"version": 1, "acts": [{"act": "remove"}]},
+        "replace": {"version": 1, "text": "a"}, "remedies": {"version": 1}, "differences": {"text": "a"},
+        "write": {"version": 1}, "keep": {"what": "file"}, "start": {}, "output": {}}
 VALUES = [None, True, "", "nothing", [], ["count", 1], {}, -1, 0, 1, 1.5, 19, 20, 255, 256, 1000, 1001, 60000, 60001,
           2 ** 63 - 1]
 
