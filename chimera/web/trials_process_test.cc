@@ -194,7 +194,7 @@ TEST_F(TrialsTest, HaltsWithAnInterruptAndKillsWhatGoesOn) {
   EXPECT_EQ(result(2)["why"], Json("its 60 s are over"));
   clock.advance(Trials::kEndLimit);
   const Json second = ended(2);
-  EXPECT_EQ(second["ended"].dump(), R"({"signal":"signal 9 (SIGKILL)"})");
+  EXPECT_EQ(second["ended"].dump(), R"x({"signal":"signal 9 (SIGKILL)"})x");
   EXPECT_EQ(second["why"], Json("its 60 s are over"));
   EXPECT_EQ(trials->next_due(), kNever);
 }
@@ -207,7 +207,9 @@ TEST_F(TrialsTest, RunsFourAtATimeAndKeepsTheLastTen) {
   for (std::uint64_t number = 1; number <= 11; ++number) {
     std::ofstream(trial_folder(number) + "/go") << "";
     (void)ended(number);
-    if (number <= 9) ASSERT_TRUE(try_it().is_good()) << number;
+    if (number <= 9) {
+      ASSERT_TRUE(try_it().is_good()) << number;
+    }
   }
   EXPECT_FALSE(fs::exists(trial_folder(1)));
   EXPECT_FALSE(fs::exists(trial_folder(3)));
