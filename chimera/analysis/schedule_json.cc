@@ -2,7 +2,9 @@
 // Writes a schedule report as JSON.
 
 #include "chimera/analysis/schedule_report.h"
+#include "chimera/analysis/schedule_words.h"
 #include "chimera/description/criticality.h"
+#include "chimera/description/edit_json.h"
 #include "chimera/schedule/utilisation.h"
 #include "chimera/text/json.h"
 
@@ -66,6 +68,13 @@ class Pages {
   }
 
   Json remedy(const Remedy& remedy) const {
+    Json said = change(remedy);
+    said["label"] = remedy_text(configuration_, remedy);
+    said["acts"] = edits_json(remedy_acts(configuration_, remedy));
+    return said;
+  }
+
+  Json change(const Remedy& remedy) const {
     if (remedy.kind == Remedy::Kind::kExecutor) return {{"rtpu", rtpu_name(remedy.rtpu)}, {"executor", "preemptive"}};
     Json said = {{"task", name(remedy.task)}};
     switch (remedy.kind) {

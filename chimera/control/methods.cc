@@ -59,6 +59,7 @@ constexpr MethodRule kMethods[] = {
     {MethodId::kCheck, "check", Role::kObserve, false, true, {kText, kFile}},
     {MethodId::kSchedule, "schedule", Role::kObserve, false, true, {kText, kFile}},
     question(MethodId::kLibrary, "library"),
+    question(MethodId::kText, "text"),
     {MethodId::kSignal, "signal", Role::kOperate, true, false,
      {{"signal", Kind::kText, true, kSignals.data()}, kTasks}},
     {MethodId::kRing, "ring", Role::kOperate, true, false, {kTasks}},

@@ -26,7 +26,7 @@ struct Parameter {
 /// Number of the function that carries a method out: the key of a ControlBackend's table.
 enum class MethodId : unsigned char {
   kHello, kStatus, kDescribe, kGet, kProfile, kEvents, kReceipts, kWhy, kPlan, kSubscribe, kUnsubscribe, kCheck,
-  kSchedule, kLibrary, kSignal, kRing, kSet, kFlag, kSwitch, kCancel, kDrill, kSave, kEnd,
+  kSchedule, kLibrary, kText, kSignal, kRing, kSet, kFlag, kSwitch, kCancel, kDrill, kSave, kEnd,
   kMachines, kDraft, kEdit, kReplace, kRemedies, kDifferences, kWrite, kKeep, kStart, kOutput,
   kTry, kScope, kResult, kHalt
 };

@@ -77,8 +77,9 @@ class KeyReader {
   std::optional<std::size_t> count_or_null(const char* key) {
     const Json* value = find(key);
     if (value == nullptr || value->is_null()) return std::nullopt;
-    if (!value->is_whole() || value->as_int64() < 0) refuse(key, "expected null or a whole number from 0 on");
-    return value->as_uint64();
+    if (value->is_whole() && value->as_int64() >= 0) return value->as_uint64();
+    refuse(key, "expected null or a whole number from 0 on");
+    return std::nullopt;
   }
 
   std::vector<TaskPort> ports(const char* key, bool& is_missing) {

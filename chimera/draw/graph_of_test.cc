@@ -29,7 +29,7 @@ Descriptor component(std::string name, std::vector<PortDescriptor> ports) {
   return made;
 }
 
-Configuration legal(std::string_view text) {
+const Library& drawn_library() {
   static const Library kLibrary = Library::of(
       {component("robot", {port("tau", CHIMERA_IN_VAR), port("q", CHIMERA_OUT_VAR), port("gear", CHIMERA_OUT_CONST),
                            port("spare", CHIMERA_OUT_CONST), port("device", CHIMERA_RESOURCE)}),
@@ -37,7 +37,11 @@ Configuration legal(std::string_view text) {
                          port("limit", CHIMERA_IN_CONST, true), port("rest", CHIMERA_IN_CONST, true)}),
        component("push", {port("tau", CHIMERA_OUT_VAR)})},
       our_units());
-  Verdict verdict = verify(read_description(text, "demo.yaml"), kLibrary);
+  return kLibrary;
+}
+
+Configuration legal(std::string_view text) {
+  Verdict verdict = verify(read_description(text, "demo.yaml"), drawn_library());
   EXPECT_TRUE(verdict.configuration) << verdict.report.text();
   return *std::move(verdict.configuration);
 }
@@ -93,6 +97,24 @@ TEST(GraphOf, CutsALongValueAndNamesWhatTheOperatorGives) {
       "subsystem: demo\ntasks:\n  robot: {resources: {device: /dev/serial/by-id/usb-arm-0}}\noperator: {tau: 1}\n"));
   EXPECT_EQ(graph.given, std::vector<std::string>{"tau"});
   EXPECT_EQ(graph.boxes[0].ports.back().written, "..serial/by-id/usb-arm-0");
+}
+
+TEST(GraphOf, DrawsAnIllegalOutlineAsItsTextLinksIt) {
+  const Outlined outlined = verify_with_outline(
+      read_description("subsystem: demo\ntasks:\n  push: {alias: {tau: gear}}\n"
+                       "  law: {rate: 50 Hz, constants: {limit: 2}}\n  robot: {alias: {tau: q}}\n"
+                       "  lost: {component: nothing}\n  other: {component: push, alias: {tau: gear}}\n",
+                       "demo.yaml"),
+      drawn_library());
+  ASSERT_FALSE(outlined.verdict.configuration);
+  const Graph graph = graph_of(*outlined.outline);
+  EXPECT_EQ(text_of(graph),
+            "push push 1 kHz: out tau=gear\n"
+            "law law 50 Hz: in q=q out tau=tau in-const limit=2\n"
+            "robot robot 1 kHz: in tau=q out q=q resource device=\n"
+            "lost nothing :\n"
+            "other push 1 kHz: out tau=gear\n");
+  EXPECT_NE(svg(graph).find("</svg>"), std::string::npos);
 }
 
 }  // namespace

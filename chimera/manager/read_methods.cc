@@ -55,6 +55,11 @@ std::optional<RpcResponse> ReadMethods::answer(MethodId method, const Json& para
       return why(parameters);
     case MethodId::kLibrary:
       return made_once(library_, [&] { return library_json(state_); });
+    case MethodId::kText:
+      return made_once(text_, [&] {
+        const Bundle& bundle = state_.bundle;
+        return Json{{"file", bundle.file}, {"text", bundle.is_idle() ? Json() : Json(bundle.description)}};
+      });
     default:
       return std::nullopt;
   }

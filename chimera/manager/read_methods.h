@@ -31,7 +31,7 @@ class ReadMethods {
 
   const ManagerState& state_;
   // Answers that never change, made at the first request.
-  std::shared_ptr<const std::string> library_;
+  std::shared_ptr<const std::string> library_, text_;
   std::map<std::string, std::shared_ptr<const std::string>> descriptions_;  // by "", "picture" or "picture NAME"
 };
 

@@ -26,7 +26,7 @@ TEST_F(ReadMethodsTest, AnswersOnlyMethodsThatChangeNothing) {
     const Json parameters = rule.id == MethodId::kWhy ? Json{{"variable", "x"}} : Json::object();
     if (ask(rule.id, parameters)) answered += std::string(rule.name) + " ";
   }
-  EXPECT_EQ(answered, "hello status describe get profile events why library ");
+  EXPECT_EQ(answered, "hello status describe get profile events why library text ");
 }
 
 TEST_F(ReadMethodsTest, HelloNamesTheRoleOfTheClient) {
@@ -41,6 +41,12 @@ TEST_F(ReadMethodsTest, BuildsEachTextOfTheBundleOnce) {
   const auto library = ask(MethodId::kLibrary)->text;
   EXPECT_NE(*library, *first);
   EXPECT_EQ(ask(MethodId::kLibrary)->text, library);
+}
+
+TEST_F(ReadMethodsTest, HandsOutTheTextThatRuns) {
+  const auto text = ask(MethodId::kText)->text;
+  EXPECT_EQ(Json::parse(*text), Json({{"file", "fake.yaml"}, {"text", kFakeText}}));
+  EXPECT_EQ(ask(MethodId::kText)->text, text);
 }
 
 TEST_F(ReadMethodsTest, DrawsEachPictureOnce) {

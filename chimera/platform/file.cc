@@ -61,7 +61,7 @@ std::uint64_t whole_bytes(int file, std::uint64_t bytes) {
   return 0;
 }
 
-/// False with errno; EEXIST: there is a file at `path`, and it may not be replaced. NFS does not know the flag, but links.
+/// False with errno; EEXIST: there is a file at `path`, and it may not be replaced. NFS has no such flag, but links.
 bool rename_part(const std::string& part, const std::string& path, bool may_replace) noexcept {
   if (may_replace) return ::rename(part.c_str(), path.c_str()) == 0;
   if (::renameat2(AT_FDCWD, part.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) == 0) return true;

@@ -80,7 +80,9 @@ bool stand_apart(const ChildPlace& place, pid_t parent) noexcept {
   good = good && (place.output < 0 || stand_apart(place, parent));
   const int passing_error = good ? 0 : errno;
   for (int number = 1; number < NSIG; ++number) ::signal(number, SIG_DFL);
-  for (const int number : {SIGINT, SIGHUP, SIGPIPE, SIGXFSZ}) ::signal(number, SIG_IGN);
+  for (const int number : {SIGPIPE, SIGXFSZ}) ::signal(number, SIG_IGN);
+  if (place.output < 0)  // else no terminal sends these
+    for (const int number : {SIGINT, SIGHUP}) ::signal(number, SIG_IGN);
   sigset_t mask;
   ::sigemptyset(&mask);
   if (blocked != 0) ::sigaddset(&mask, blocked);

@@ -49,7 +49,7 @@ class Process {
                                std::span<const int> descriptors, int blocked = 0) noexcept;
 
   /// Starts `program` as start() does, in a session of its own, without descriptors of this process: standard input is
-  /// /dev/null. No signal of a terminal reaches the child.
+  /// /dev/null. No signal of a terminal reaches the child, which ignores neither SIGINT nor SIGHUP.
   static Result<Process> start_apart(const char* program, std::span<const char* const> arguments,
                                      const ChildPlace& place) noexcept;
 

@@ -79,6 +79,37 @@ TEST(Outline, NamesUnsolvedUnitsAsDeclaredAndCountsInstances) {
   EXPECT_EQ(two["repeated"][0]["instances"], 2);
 }
 
+TEST(Outline, HasTheLineOfEachTask) {
+  const Json of = outline_for("subsystem: a\ntasks:\n  source:\n\n  sink: {rate: 1 Hz}\n");
+  EXPECT_EQ(of["tasks"][0]["line"], 3);
+  EXPECT_EQ(of["tasks"][1]["line"], 5);
+}
+
+/// The ports that an act gets from the outline of `text`: "task.port ".
+std::string named(EditAct act, const std::string& text) {
+  name_ports(act, *verify_with_outline(read_description(text, "a.yaml"), drawn_library()).outline);
+  std::string all;
+  const auto* rename = std::get_if<RenameKey>(&act);
+  for (const TaskPort& each : rename != nullptr ? rename->ports : std::get<JoinProducers>(act).producers)
+    all += each.task + '.' + each.port + ' ';
+  return all;
+}
+
+TEST(Outline, NamesThePortsThatAnActLeavesOut) {
+  const std::string text =
+      "subsystem: a\ntasks:\n  source:\n  other: {component: source}\n  sink: {constants: {gain: 1}}\n"
+      "  free: {component: sink, alias: {angle: angle}}\n  far: {component: sink, alias: {angle: q}}\n"
+      "constants: {gain: 2}\noperator: {q: 1 rad}\n";
+  EXPECT_EQ(named(RenameKey{{"variables", "angle"}, "b", {}, true}, text),
+            "source.angle other.angle sink.angle free.angle ");
+  EXPECT_EQ(named(RenameKey{{"constants", "gain"}, "b", {}, true}, text), "free.gain far.gain ");
+  EXPECT_EQ(named(RenameKey{{"operator", "q"}, "b", {}, true}, text), "");
+  EXPECT_EQ(named(RenameKey{{"tasks", "angle"}, "b", {}, true}, text), "");
+  EXPECT_EQ(named(RenameKey{{"variables", "angle"}, "b", {}, false}, text), "");
+  EXPECT_EQ(named(JoinProducers{"angle", JoinBy::kMean, {}, true}, text), "source.angle other.angle ");
+  EXPECT_EQ(named(JoinProducers{"nothing", JoinBy::kMean, {}, true}, text), "");
+}
+
 TEST(Outline, ShowsValuesOfTheFileAndOfTheOperatorWithTheirText) {
   const Json of = outline_for(
       "subsystem: a\nrtpus: {servo: {cpu: 1, policy: muf, executor: preemptive}}\n"

@@ -77,7 +77,8 @@ std::optional<KeptText> kept_in(std::string_view content, const std::string& fil
 }  // namespace
 
 Result<void> make_drafts_folder(const std::string& folder) {
-  if (folder.empty()) return Message("is named neither by XDG_STATE_HOME nor by HOME").error(ErrorCode::kRefused, "$HOME");
+  if (folder.empty())
+    return Message("is named neither by XDG_STATE_HOME nor by HOME").error(ErrorCode::kRefused, "the state folder");
   const fs::path above = fs::path(folder).parent_path();
   std::error_code error;
   fs::create_directories(above.parent_path(), error);
@@ -157,7 +158,7 @@ Result<void> KeptDraft::claim() {
       .error(ErrorCode::kRefused, path_);
 }
 
-/// What a process left that was killed while it wrote.
+/// Removes the parts of files of a process that was killed while it wrote.
 void KeptDraft::remove_parts() const {
   const std::string name = fs::path(path_).filename().string() + ".";
   std::error_code error;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the draft has on the disk: FILE itself, and the kept draft in the state folder. docs/formats/web.md, "The draft".
+// The files of the draft: FILE itself, and the kept draft in the state folder. docs/formats/web.md, "The draft".
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 #include "chimera/base/time.h"
 #include "chimera/platform/descriptor.h"
 #include "chimera/platform/file.h"
-#include "chimera/web/draft.h"
+#include "chimera/web/page_draft.h"
 
 namespace chimera::web {
 

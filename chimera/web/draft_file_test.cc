@@ -28,7 +28,9 @@ struct DraftFileTest : ::testing::Test {
     return all.str();
   }
   std::string problem() { return file.read().problem; }
-  KeptDraft keeper() { return {place + "/state/drafts", path, [this](const std::string& text) { told += text + "\n"; }}; }
+  KeptDraft keeper() {
+    return {place + "/state/drafts", path, [this](const std::string& text) { told += text + "\n"; }};
+  }
 
   char made[40] = "/tmp/chimera_draft_XXXXXX";
   std::string place, path = place + "/arm.yaml", told;

@@ -276,7 +276,8 @@ RpcResponse DraftMethods::settle(const std::string& what) {
 RpcResponse DraftMethods::may_start() {
   see(disk_.read());
   if (!draft_.file().problem.empty()) return file_refusal("");
-  if (!draft_.file().exists) return RpcResponse::refused("file", disk_.path() + " is not there", disk_.path(), "write it");
+  if (!draft_.file().exists)
+    return RpcResponse::refused("file", disk_.path() + " is not there", disk_.path(), "write it");
   if (draft_.is_touched())
     return RpcResponse::refused("touched", "the draft is not written to " + disk_.path(), disk_.path(), "write it");
   return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The methods of the draft: `draft`, `edit`, `replace`, `remedies`, `differences`, `write`, `keep`. docs/formats/web.md.
+// The methods `draft`, `edit`, `replace`, `remedies`, `differences`, `write` and `keep`: docs/formats/web.md.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 #include "chimera/control/control_backend.h"
 #include "chimera/platform/clock.h"
 #include "chimera/web/analyses.h"
-#include "chimera/web/draft.h"
+#include "chimera/web/page_draft.h"
 #include "chimera/web/draft_file.h"
 
 namespace chimera::web {
@@ -70,7 +70,8 @@ class DraftMethods {
   void analyse();
   void take_analysis(const Analysis& asked, const control::RpcResponse& given);
   void answer_all(const control::RpcResponse& given);
-  void change_to(const std::string& text, const std::string& acts, std::uint64_t connection, const control::Reply& reply);
+  void change_to(const std::string& text, const std::string& acts, std::uint64_t connection,
+                 const control::Reply& reply);
   void take_change(std::uint64_t version, std::uint64_t library, const control::RpcResponse& given,
                    std::string_view edited, const control::Reply& reply);
   void differences(const Json& parameters, std::uint64_t connection, const control::Reply& reply);
@@ -81,7 +82,7 @@ class DraftMethods {
   Clock& clock_;
   DraftFile disk_;
   KeptDraft kept_;
-  Draft draft_;
+  PageDraft draft_;
   Analysis analysis_;  // the last one
   std::vector<Waiter> waiters_;
   std::optional<KeptText> on_disk_;  // in the state folder

@@ -16,8 +16,8 @@ using control::RpcResponse;
 
 RpcResponse StartedRun::start(const std::string& file) {
   if (process_.is_held())
-    return RpcResponse::refused("under-way", "what was started before, process " + std::to_string(pid_) + ", has not ended",
-                                "", "end it first");
+    return RpcResponse::refused("under-way", "process " + std::to_string(pid_) + ", started before, has not ended", "",
+                                "end it first");
   const auto refuse = [](const Error& error) {
     return RpcResponse::refused("other", std::string(error.where.view()) + ": " + error.message.c_str(), "");
   };
@@ -54,7 +54,8 @@ RpcResponse StartedRun::output() const {
 
 void StartedRun::serve(Nanoseconds now) {
   if (ProcessEnd end; process_.has_ended(end))
-    ended_ = end.by_signal ? "by " + std::string(signal_text(end.code).view()) : "with status " + std::to_string(end.code);
+    ended_ = end.by_signal ? "by " + std::string(signal_text(end.code).view())
+                           : "with status " + std::to_string(end.code);
   if (output_.fd < 0 || now - bounded_at_ < seconds(1)) return;
   bounded_at_ = now;
   const std::int64_t size = file_size(output_.fd);

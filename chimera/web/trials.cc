@@ -51,7 +51,7 @@ RpcResponse judge_words(const Json& parameters) {
   return {};
 }
 
-/// What a run opens that other programs and tasks may not open at the same time.
+/// Resources of the draft that several tasks may not open at once.
 Json devices_of(const Json& outline) {
   Json all = Json::array();
   for (const Json& task : outline["tasks"])

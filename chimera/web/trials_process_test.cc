@@ -50,7 +50,8 @@ struct TrialsTest : ::testing::Test {
   }
   RpcResponse call(MethodId method, const Json& parameters, std::uint64_t connection = 1) {
     RpcResponse answer;
-    const RpcResponse judged = control::check_parameters(control::methods()[static_cast<std::size_t>(method)], parameters);
+    const control::MethodRule& rule = control::methods()[static_cast<std::size_t>(method)];
+    const RpcResponse judged = control::check_parameters(rule, parameters);
     if (!judged.is_good()) return judged;
     trials->call(method, parameters, {control::Role::kConfigure, connection, 0},
                  [&](const RpcResponse& given) { answer = given; }, &*draft);
@@ -85,8 +86,10 @@ Json outline_of(const char* port) {
 
 TEST_F(TrialsTest, RunsACopyOfTheDraftBesideTheComponentsOfFile) {
   analyst.outline = outline_of("");
-  script("printf '%s\\n' \"$@\" >&2; cat \"$2\"; ls -d \"$(dirname \"$2\")/build/components\" >&2; echo table > $folder/csv\n");
-  const RpcResponse started = try_it({{"at", Json::array({"1 s: set kp 1", "-x"})}, {"expect", Json::array({"|u| <= 1"})}});
+  script("printf '%s\\n' \"$@\" >&2; cat \"$2\"; "
+         "ls -d \"$(dirname \"$2\")/build/components\" >&2; echo table > $folder/csv\n");
+  const Json acts = Json::array({"1 s: set kp 1", "-x"});
+  const RpcResponse started = try_it({{"at", acts}, {"expect", Json::array({"|u| <= 1"})}});
   ASSERT_TRUE(started.is_good()) << started.message;
   EXPECT_EQ(started.result->dump(), R"({"number":1})");
   const Json done = ended(1);
@@ -164,7 +167,8 @@ TEST_F(TrialsTest, RefusesTextsThatAreNoWordsOfACommand) {
   const Json many(std::vector<std::string>(33, "q"));
   for (const char* key : {"watch", "at", "expect"}) EXPECT_EQ(try_it({{key, many}}).detail("where"), key);
   EXPECT_EQ(try_it({{"watch", Json::array()}}).message, "'watch' must have 1 to 32 texts");
-  EXPECT_EQ(call(MethodId::kScope, {{"machine", "../arm"}, {"channels", Json::array({"q"})}}).detail("where"), "machine");
+  const Json elsewhere{{"machine", "../arm"}, {"channels", Json::array({"q"})}};
+  EXPECT_EQ(call(MethodId::kScope, elsewhere).detail("where"), "machine");
   EXPECT_EQ(try_it({{"duration", "--json"}}).detail("where"), "duration");
   EXPECT_EQ(call(MethodId::kResult, {{"number", 1}}).code, control::kUnknown);
   EXPECT_EQ(call(MethodId::kHalt, {{"number", 1}}).code, control::kUnknown);
@@ -233,7 +237,8 @@ TEST_F(TrialsTest, BoundsFilesAndLeavesNothingBehind) {
   analyst.outline = outline_of("");
   fs::create_directories(place + "/state/trials/999999999/1");  // of a process that was killed
   ASSERT_TRUE(try_it().is_good());
-  ASSERT_TRUE(await_that([&] { return fs::exists(trial_folder(1) + "/output") && fs::file_size(trial_folder(1) + "/output") > 0; }));
+  const std::string output = trial_folder(1) + "/output";
+  ASSERT_TRUE(await_that([&] { return fs::exists(output) && fs::file_size(output) > 0; }));
   EXPECT_EQ(fs::file_size(trial_folder(1) + "/csv"), Trials::kMostBytes);
   EXPECT_EQ(static_cast<unsigned>(fs::status(place + "/state/trials").permissions()), 0700u);
   EXPECT_FALSE(fs::exists(place + "/state/trials/999999999"));

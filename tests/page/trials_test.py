@@ -108,9 +108,9 @@ class Trials(unittest.TestCase):
 
     def test_a_refusal_of_the_run_is_the_answer(self):
         page = self.page(PLANT.read_text())
-        done = self.ended(page, self.begin(page, watch=["speed"], at=["1 s: on nobody"]))
+        done = self.ended(page, self.begin(page, watch=["speed"], at=["1 s: on robot"]))
         self.assertNotEqual(done["ended"], {"code": 0})
-        self.assertIn("nobody", json.dumps(done["output"]))
+        self.assertIn("robot", json.dumps(done["output"]))
         self.assertNotIn("/trials/", json.dumps(done))
         self.assertIsNone(done["csv"])
         page.call("replace", version=1, text=PLANT.read_text().replace("k: 2 N.s", "k: 2 m"))

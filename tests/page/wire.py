@@ -12,6 +12,7 @@ import struct
 import subprocess
 import tempfile
 import threading
+import time
 
 BUILD = pathlib.Path(os.environ["CHIMERA_BUILD"]).resolve()
 HANG = 60.0  # s, the only limit of these tests
@@ -175,7 +176,9 @@ class WebSocket:
         return self.finish()
 
     def call(self, method, **parameters):
-        answer = self.ask(method, **parameters)
+        """The result; asks again if it came too fast."""
+        while (answer := self.ask(method, **parameters)).get("error", {}).get("code") == -32003:
+            time.sleep(answer["error"]["data"]["retry_ms"] / 1000)
         assert "result" in answer, answer
         return answer["result"]
 

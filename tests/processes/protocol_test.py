@@ -118,7 +118,7 @@ GOOD = {"hello": {}, "status": {}, "describe": {"picture": True, "configuration"
         "plan": {"configuration": "all"},
         "subscribe": {"to": "values", "period_ms": 20, "variables": ["count"], "since": 0},
         "unsubscribe": {"subscription": 1}, "check": {"text": "subsystem: a", "file": "a.yaml"},
-        "schedule": {"text": "subsystem: a", "file": "a.yaml"}, "library": {},
+        "schedule": {"text": "subsystem: a", "file": "a.yaml"}, "library": {}, "text": {},
         "signal": {"signal": "on", "tasks": ["steady"]}, "ring": {"tasks": ["steady"]},
         "set": {"values": {"level": 2}}, "flag": {"up": False},
         "switch": {"configuration": "all", "wait_ms": 1000}, "cancel": {}, "drill": {"wait_ms": 100}, "save": {},
@@ -167,7 +167,8 @@ class Protocol(unittest.TestCase):
         self.assertEqual(self.client.faults, [])
 
     def read_all(self):
-        for method in ("hello", "status", "describe", "profile", "events", "library", "get", "save", "receipts"):
+        for method in ("hello", "status", "describe", "profile", "events", "library", "text", "get", "save",
+                       "receipts"):
             self.assertIsNotNone(self.client.exchange(method), method)
         self.assertIsNotNone(self.client.exchange("describe", picture=True, configuration="less"))
         for variable in ("count", "level", "x", "y_victim"):

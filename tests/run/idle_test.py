@@ -29,6 +29,7 @@ class Idle(unittest.TestCase):
             client = await_that(connected, "the socket")
             self.addCleanup(client.close)
             self.assertIn("t_counter", [c["name"] for c in client.call("library")["components"]])
+            self.assertIsNone(client.call("text")["text"])
             report = client.call("check", text="subsystem: x\ntasks: {a: {component: t_countr}}\n", file="x.yaml")
             self.assertEqual((report["legal"], report["faults"][0]["nearest"]), (False, "t_counter"))
             second = subprocess.run([str(CHIMERA), "idle"], env=environment, capture_output=True, text=True,

@@ -8,6 +8,8 @@
 
 #include "chimera/analysis/recorded_profile.h"
 #include "chimera/cli/files/testing/test_place.h"
+#include "chimera/description/edit/text_edit.h"
+#include "chimera/description/edit_json.h"
 #include "chimera/text/json.h"
 #include "chimera/text/time_text.h"
 
@@ -120,20 +122,20 @@ TEST(Schedule, AStandbyIsAnalysedInThePlaceOfItsPrimaryAndAHotOneBesideItToo) {
   EXPECT_EQ(loads("true"), "run: 0 0.2 1 0.3; run with b for a: 1 0.3; ");
 }
 
-/// CPU 0 as the analysis sees it after the change.
-Json changed(const std::string& rtpus, std::vector<Line> lines, const Json& remedy) {
-  std::string all = rtpus;
-  if (remedy.contains("executor")) all.replace(all.find("executive"), 9, "preemptive");
-  for (Line& line : lines) {
-    if (line.name != text_at(remedy, "task")) continue;
-    if (remedy.contains("rate_hz")) line.rate = remedy["rate_hz"].dump();
-    if (remedy.contains("criticality")) line.criticality = remedy["criticality"].as_string();
-    if (!remedy.contains("rtpu")) continue;
-    line.rtpu = remedy["rtpu"].is_null() ? "new" : remedy["rtpu"].as_string();
-    if (remedy["rtpu"].is_null()) all += ", new: {cpu: 7}";
-  }
-  const Json said = analysed(description(all, lines));
+/// CPU 0 as the analysis sees it after the acts of the remedy.
+Json changed(const std::string& text, const Json& remedy) {
+  const auto acts = edit_acts(remedy["acts"]);
+  const auto edited = edit_text(text, acts ? *acts : std::vector<EditAct>());
+  EXPECT_TRUE(acts && edited) << remedy;
+  const Json said = analysed(edited ? *edited : "");
   return said.contains("sets") ? said["sets"][0]["cpus"][0] : said;
+}
+
+/// The key that the remedy changes.
+std::string kind_of(const Json& remedy) {
+  for (const char* kind : {"executor", "rate_hz", "criticality"})
+    if (remedy.contains(kind)) return text_at(remedy, kind) == "low" ? "lower" : kind;
+  return remedy["rtpu"].is_null() ? "new rtpu" : "rtpu";
 }
 
 std::vector<Line> random_lines(std::mt19937& random) {
@@ -157,12 +159,13 @@ TEST(Schedule, ItsAdviceIsTrue) {
     const std::string policy = run % 4 == 0 ? "rm" : run % 4 == 1 ? "edf" : "muf";
     const std::string executor = run % 8 < 4 ? "preemptive" : "executive";
     const std::string rtpus = "a: {cpu: 0, policy: " + policy + ", executor: " + executor + "}, b: {cpu: 1}";
-    const Json said = analysed(description(rtpus, lines));
+    const std::string text = description(rtpus, lines);
+    const Json said = analysed(text);
     ASSERT_TRUE(said.contains("sets")) << said;
     for (const Json& remedy : said["sets"][0]["cpus"][0]["remedies"]) {
-      const Json cpu = changed(rtpus, lines, remedy);
-      const bool is_lower = text_at(remedy, "criticality") == "low";
-      ++tried[is_lower ? "lower" : (*remedy.items().begin()).first];
+      const Json cpu = changed(text, remedy);
+      const bool is_lower = kind_of(remedy) == "lower";
+      ++tried[kind_of(remedy)];
       ASSERT_TRUE(cpu.contains("fits")) << remedy << cpu;
       EXPECT_TRUE(is_lower || cpu["fits"].as_bool()) << remedy << description(rtpus, lines);
       for (const auto& task : cpu["tasks"])
@@ -193,7 +196,7 @@ TEST(Schedule, AMoreCriticalTaskIsNeverSaidToGiveWayToALessCriticalOne) {
                                    {"c", "r", "high", "83.33333333", 3000}, {"d", "r", "low", "66.66666667", 2000}};
   const Json said = analysed(description("r: {policy: muf, executor: preemptive}", lines));
   const Json remedies = said["sets"][0]["cpus"][0]["remedies"];
-  EXPECT_EQ(remedies[remedies.size() - 1], Json({{"task", "d"}, {"criticality", "high"}})) << remedies;
+  EXPECT_EQ(text_at(remedies[remedies.size() - 1], "label"), "task 'd' with criticality: high") << remedies;
 }
 
 // `b`, the most critical, lifts its rtpu above the other one: once it has moved, `a` would come second and miss.
@@ -202,7 +205,23 @@ TEST(Schedule, ATaskThatMovesTakesAlongTheBandOfItsRtpu) {
                                    {"c", "first", "low", "20", 4000}};
   const Json said = analysed(description("first: {policy: rm}, second: {policy: rm}", lines));
   const Json remedies = said["sets"][0]["cpus"][0]["remedies"];
-  EXPECT_EQ(remedies[remedies.size() - 1], Json({{"task", "a"}, {"rtpu", nullptr}})) << remedies;
+  EXPECT_EQ(text_at(remedies[remedies.size() - 1], "label"), "task 'a' on an rtpu of another CPU") << remedies;
+  EXPECT_EQ(remedies[remedies.size() - 1]["acts"].dump(Json::Style::kAsMade),
+            R"([{"act":"set","path":"rtpus/second_2","value":"{cpu: 1, policy: rm}"},)"
+            R"({"act":"set","path":"tasks/a/rtpu","value":"second_2"}])");
+}
+
+TEST(Schedule, ItsActsWriteOutTheRtpuThatATextWithoutRtpusHas) {
+  const std::string text =
+      "subsystem: s\ntasks:\n  a: {component: t_counter, rate: 100 Hz, budget: 2 ms}\n"
+      "  b: {component: t_counter, rate: 20 Hz, budget: 9 ms, alias: {count: b_count, dt: b_dt, now: b_now,\n"
+      "      deadline: b_deadline, cycles: b_cycles, dropped: b_dropped, illegal: b_illegal}}\n";
+  std::string kinds;
+  for (const Json& remedy : analysed(text)["sets"][0]["cpus"][0]["remedies"]) {
+    kinds += kind_of(remedy) + " ";
+    EXPECT_EQ(changed(text, remedy)["fits"], true) << remedy;
+  }
+  EXPECT_EQ(kinds, "executor rate_hz new rtpu ");
 }
 
 TEST(Schedule, JudgesEachRtpuAsTheDescriptionHasIt) {

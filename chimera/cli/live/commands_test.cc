@@ -88,6 +88,7 @@ TEST(Command, EveryMethodOfTheProtocolHasACommand) {
   std::set<std::string> asked = {"hello", "describe", "unsubscribe"};  // by several commands, beside their own
   asked.insert({"check", "schedule", "library"});                      // by editors: the command line has its own
   asked.insert({"plan", "cancel"});                                    // by `switch` with an option
+  asked.insert("text");                                                // by the page
   for (const control::MethodRule& method : control::methods())
     if (control::is_of_bench(method.id)) asked.insert(method.name);    // by the page, of chimera-web
   for (const RunningCommand& row : running_commands()) asked.insert(row.method);

@@ -28,11 +28,15 @@ struct QuestionsTest : ::testing::Test {
                                              [this](const std::string& text) { told_ += text + "\n"; });
   }
   void ask(const std::string& name, std::uint64_t connection, const std::string& text = kFakeText) {
+    ask(name, connection, {Question::Kind::kCheck, name, text});
+  }
+  void ask(const std::string& name, std::uint64_t connection, Question question) {
     questions_->ask(
-        {Question::Kind::kCheck, name, text}, connection,
-        [this, name](const RpcResponse& answer) {
+        std::move(question), connection,
+        [this, name](const RpcResponse& answer, std::string_view edited) {
           order_ += name + " ";
           answers_[name] = answer;
+          edited_[name] = edited;
         },
         now());
   }
@@ -47,6 +51,7 @@ struct QuestionsTest : ::testing::Test {
   FrozenBytes bundle_;
   std::unique_ptr<Questions> questions_;
   std::map<std::string, RpcResponse> answers_;
+  std::map<std::string, std::string> edited_;
   std::string order_, told_;
 };
 
@@ -58,6 +63,44 @@ TEST_F(QuestionsTest, AnswersWithTheReportAndEachConnectionInTurn) {
   EXPECT_EQ(Json::parse(*answers_["a3"].text)["legal"], true);
   EXPECT_EQ(Json::parse(*answers_["b1"].text)["legal"], false);
   EXPECT_EQ(told_, "");
+}
+
+TEST_F(QuestionsTest, AnswersEachKindWithItsVersion) {
+  const std::string acts = R"([{"act": "set", "path": "start", "value": "rest"}])";
+  ask("draft", 1, {Question::Kind::kDraft, "a.yaml", kFakeText, acts, UINT64_MAX});
+  ask("offers", 1, {Question::Kind::kOffers, "a.yaml", "subsystem: a\ntasks: {sensr: {}}\n", "", 2});
+  ask("differ", 1, {Question::Kind::kDifferences, "", "start: a", "start: b", 3});
+  ASSERT_TRUE(until(3));
+  const Json draft = Json::parse(*answers_["draft"].text);
+  EXPECT_EQ(draft["version"].as_uint64(), UINT64_MAX);
+  EXPECT_TRUE(edited_["draft"].ends_with("start: rest\n")) << edited_["draft"];
+  EXPECT_EQ(draft["text"], edited_["draft"]);
+  const Json offers = Json::parse(*answers_["offers"].text);
+  EXPECT_EQ(offers["version"], 2);
+  EXPECT_EQ(offers["offers"][0]["label"], "write 'sensor'");
+  EXPECT_EQ(*answers_["differ"].text, R"({"version":3,"paths":["start"]})");
+  EXPECT_EQ(edited_["offers"] + edited_["differ"], "");
+}
+
+TEST_F(QuestionsTest, PassesOnARefusalWithItsPlace) {
+  ask("bad", 1, {Question::Kind::kDraft, "a.yaml", kFakeText, R"([{"act": "remove", "path": "tasks/lwa"}])", 1});
+  ASSERT_TRUE(until(1));
+  EXPECT_EQ(answers_["bad"].code, control::kRefused);
+  EXPECT_EQ(answers_["bad"].detail("kind"), "edit");
+  EXPECT_EQ(answers_["bad"].detail("where"), "tasks/lwa");
+  EXPECT_EQ(answers_["bad"].message, "no task 'lwa'; did you mean 'law'?");
+  EXPECT_EQ(edited_["bad"], "");
+}
+
+TEST_F(QuestionsTest, SendsALargeDraftInPiecesAndItsTextAtOnce) {
+  const std::string text = kFakeText + std::string(100'000, '#');
+  ask("large", 1, {Question::Kind::kDraft, "a.yaml", text, "", 1});
+  ASSERT_TRUE(until(1));
+  EXPECT_EQ(edited_["large"], text);
+  ASSERT_NE(answers_["large"].pieces, nullptr);
+  std::string json;
+  while (answers_["large"].pieces->append_to(json)) {}
+  EXPECT_EQ(Json::parse(json)["text"], text);
 }
 
 TEST_F(QuestionsTest, RefusesTooManyAnalysesAtOnce) {

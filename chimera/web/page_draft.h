@@ -30,10 +30,10 @@ struct KeptText {
 
 /// The draft is own if a person made its text and FILE does not have that text. Only a draft that is not own follows
 /// FILE. Context: setup.
-class Draft {
+class PageDraft {
  public:
   /// Begins with the text of `file`, or goes on with the kept draft. The version is 1.
-  explicit Draft(FileNow file, std::optional<KeptText> kept = {});
+  explicit PageDraft(FileNow file, std::optional<KeptText> kept = {});
 
   const std::string& text() const noexcept { return text_; }
   std::uint64_t version() const noexcept { return version_; }
@@ -42,7 +42,7 @@ class Draft {
   bool is_touched() const noexcept { return text_ != file_.text; }
   /// Another program changed FILE after a person changed the draft: a person decides between the two.
   bool is_outside() const noexcept { return is_own_ && file_.problem.empty() && is_touched() && present() != base_; }
-  /// What must be in the state folder; none: FILE has the text.
+  /// The text for the state folder; none: FILE has the text.
   std::optional<KeptText> to_keep() const;
 
   /// FILE was read again. An empty or missing FILE, and one that cannot be read, changes no text of the draft.

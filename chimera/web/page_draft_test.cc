@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "chimera/web/draft.h"
+#include "chimera/web/page_draft.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@ FileNow there(const std::string& text) { return {true, text, ""}; }
 FileNow broken() { return {true, "", "cannot be read"}; }
 const FileNow kNone;
 
-TEST(Draft, BeginsAsFileAndFollowsItUntouched) {
-  Draft draft(there("a"));
+TEST(PageDraft, BeginsAsFileAndFollowsItUntouched) {
+  PageDraft draft(there("a"));
   EXPECT_EQ(draft.text(), "a");
   EXPECT_EQ(draft.version(), 1u);
   EXPECT_FALSE(draft.is_touched());
@@ -27,8 +27,8 @@ TEST(Draft, BeginsAsFileAndFollowsItUntouched) {
   EXPECT_EQ(draft.to_keep(), std::nullopt);
 }
 
-TEST(Draft, TouchedStaysWhenAnotherProgramChangesFile) {
-  Draft draft(there("a"));
+TEST(PageDraft, TouchedStaysWhenAnotherProgramChangesFile) {
+  PageDraft draft(there("a"));
   draft.change("mine");
   EXPECT_TRUE(draft.is_touched());
   EXPECT_FALSE(draft.is_outside());
@@ -44,8 +44,8 @@ TEST(Draft, TouchedStaysWhenAnotherProgramChangesFile) {
   EXPECT_EQ(draft.text(), "next") << "it is not own any more";
 }
 
-TEST(Draft, APersonSettlesAChangeFromOutside) {
-  Draft draft(there("a"));
+TEST(PageDraft, APersonSettlesAChangeFromOutside) {
+  PageDraft draft(there("a"));
   draft.change("mine");
   draft.see(there("theirs"));
   draft.keep_draft();
@@ -59,9 +59,9 @@ TEST(Draft, APersonSettlesAChangeFromOutside) {
   EXPECT_EQ(draft.version(), 3u);
 }
 
-TEST(Draft, KeepsItsTextWhenFileGoesOrCannotBeRead) {
+TEST(PageDraft, KeepsItsTextWhenFileGoesOrCannotBeRead) {
   for (const FileNow& gone : {kNone, broken(), there("")}) {
-    Draft draft(there("a"));
+    PageDraft draft(there("a"));
     draft.see(gone);
     EXPECT_EQ(draft.text(), "a");
     EXPECT_TRUE(draft.is_touched());
@@ -72,8 +72,8 @@ TEST(Draft, KeepsItsTextWhenFileGoesOrCannotBeRead) {
   }
 }
 
-TEST(Draft, WithoutFileItIsEmptyAndFollowsAFileThatComes) {
-  Draft draft(kNone);
+TEST(PageDraft, WithoutFileItIsEmptyAndFollowsAFileThatComes) {
+  PageDraft draft(kNone);
   EXPECT_FALSE(draft.is_touched());
   draft.change("mine");
   EXPECT_TRUE(draft.is_touched());
@@ -81,24 +81,24 @@ TEST(Draft, WithoutFileItIsEmptyAndFollowsAFileThatComes) {
   EXPECT_EQ(draft.to_keep(), (KeptText{"mine", std::nullopt}));
   draft.see(there("theirs"));
   EXPECT_TRUE(draft.is_outside());
-  Draft other(kNone);
+  PageDraft other(kNone);
   other.see(there("theirs"));
   EXPECT_EQ(other.text(), "theirs");
 }
 
-TEST(Draft, GoesOnWithAKeptTextAndNoticesAChangeInBetween) {
-  EXPECT_FALSE(Draft(there("a"), KeptText{"mine", "a"}).is_outside());
-  EXPECT_TRUE(Draft(there("theirs"), KeptText{"mine", "a"}).is_outside());
-  EXPECT_TRUE(Draft(kNone, KeptText{"mine", "a"}).is_outside());
-  EXPECT_FALSE(Draft(kNone, KeptText{"mine", std::nullopt}).is_outside());
-  EXPECT_FALSE(Draft(there("mine"), KeptText{"mine", "a"}).is_touched());
+TEST(PageDraft, GoesOnWithAKeptTextAndNoticesAChangeInBetween) {
+  EXPECT_FALSE(PageDraft(there("a"), KeptText{"mine", "a"}).is_outside());
+  EXPECT_TRUE(PageDraft(there("theirs"), KeptText{"mine", "a"}).is_outside());
+  EXPECT_TRUE(PageDraft(kNone, KeptText{"mine", "a"}).is_outside());
+  EXPECT_FALSE(PageDraft(kNone, KeptText{"mine", std::nullopt}).is_outside());
+  EXPECT_FALSE(PageDraft(there("mine"), KeptText{"mine", "a"}).is_touched());
 }
 
 /// The disk, another program, a person, and a process that may be killed at any time.
 struct Story {
   FileNow file = there("0");
   std::optional<KeptText> kept;
-  std::optional<Draft> draft{Draft(there("0"))};
+  std::optional<PageDraft> draft{PageDraft(there("0"))};
   std::string mine;                    // the last text of the person, until the person or another program replaces it
   std::set<std::string> shown = {"0", ""};  // texts of FILE that the draft had, or that the person decided about
   int number = 0;
@@ -139,11 +139,12 @@ struct Story {
     if (!draft->is_touched()) shown.insert(file.text);
   }
   bool has_mine() const {
-    return mine.empty() || draft->text() == mine || (file.is_read() && file.text == mine) || (kept && kept->text == mine);
+    return mine.empty() || draft->text() == mine || (file.is_read() && file.text == mine) ||
+           (kept && kept->text == mine);
   }
 };
 
-TEST(Draft, LosesNoTextOfAPersonAndOverwritesNoneUnseenInAnyOrderOfEvents) {
+TEST(PageDraft, LosesNoTextOfAPersonAndOverwritesNoneUnseenInAnyOrderOfEvents) {
   int n_outside = 0, n_written = 0;
   for (std::uint32_t seed = 0; seed < 5000; ++seed) {
     std::mt19937 random(seed);
