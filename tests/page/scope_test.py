@@ -51,8 +51,8 @@ class ScopeTest(PageTest):
         self.recordings(1)
         [result] = self.results()
         self.assertEqual(result["csv"].splitlines()[0], "t(s),torque(N.m),speed(m/s),lost")
-        self.assertEqual(self.page.script("return [...document.querySelectorAll('[data-channel]')].map(e => e.dataset.channel)"),
-                         ["torque", "speed"])
+        drawn = "return [...document.querySelectorAll('[data-channel]')].map(e => e.dataset.channel)"
+        self.assertEqual(self.page.script(drawn), ["torque", "speed"])
         self.page.await_one(self.page.button("Save plant.csv"))
         self.page.await_one(self.page.button("Save plant.svg"))
         self.assertEqual(unnamed(self.browser), [])

@@ -90,10 +90,10 @@ class Trials(unittest.TestCase):
     def test_a_try_is_the_run_of_the_saved_text_to_the_byte(self):
         page = self.page(PLANT.read_text())
         acts, watch = ["1 s: set bias 2 m/s", "1.5 s: switch rest"], ["speed", "torque", "smooth"]
-        first = self.ended(page, self.begin(page, duration="3 s", watch=watch, at=acts, expect=["max |speed| <= 5 m/s"]))
-        code, said, table = self.run_command(
-            "run", self.file, "--virtual", "--json", "--for", "3 s", "--every", "50 ms", "--watch", *watch, "--at", *acts,
-            "--expect", "max |speed| <= 5 m/s")
+        bound = "max |speed| <= 5 m/s"
+        first = self.ended(page, self.begin(page, duration="3 s", watch=watch, at=acts, expect=[bound]))
+        words = ("run", self.file, "--virtual", "--json", "--for", "3 s", "--every", "50 ms", "--watch", *watch)
+        code, said, table = self.run_command(*words, "--at", *acts, "--expect", bound)
         self.assertEqual(first["csv"], table)
         self.assertEqual((first["output"], first["ended"], first["why"]), (json.loads(said), {"code": code}, None))
         self.assertGreater(len(table.splitlines()), 55)
@@ -102,8 +102,7 @@ class Trials(unittest.TestCase):
         second = self.ended(page, self.begin(page, duration="3 s", watch=watch))  # not yet in the file
         self.assertEqual(self.file.read_text(), PLANT.read_text())
         page.call("write", version=page.call("draft")["version"])
-        self.assertEqual(second["csv"], self.run_command("run", self.file, "--virtual", "--json", "--for", "3 s", "--every",
-                                                         "50 ms", "--watch", *watch)[2])
+        self.assertEqual(second["csv"], self.run_command(*words)[2])
         self.assertNotEqual(first["csv"], second["csv"])
 
     def test_a_refusal_of_the_run_is_the_answer(self):
@@ -141,7 +140,8 @@ class Trials(unittest.TestCase):
         for _ in range(4):
             self.begin(page)
         with self.server.open() as other:
-            self.assertEqual(self.refused(other, "try", version=1, duration="2 s", watch=["n"])["data"]["kind"], "under-way")
+            error = self.refused(other, "try", version=1, duration="2 s", watch=["n"])
+            self.assertEqual(error["data"]["kind"], "under-way")
         before = [pid for pid in children(self.server.process.pid) if children(pid)]
         self.assertEqual(len(before), 4)
         page.__exit__()
@@ -167,15 +167,16 @@ class Trials(unittest.TestCase):
                 values.reverse()
             done = self.result(page, number)
             self.assertEqual(done["ended"], {"code": 0}, done)
-            _, _, table = self.run_command("scope", "torque", "speed", "bias", "--for", "200 ms", "--subsystem", "plant")
+            table = self.run_command("scope", "torque", "speed", "bias", "--for", "200 ms", "--subsystem", "plant")[2]
             self.assertEqual(done["csv"].splitlines()[0], table.splitlines()[0])
             times = [float(line.split(",")[0]) for line in done["csv"].splitlines()[1:]]
             self.assertLess(times[0], 0)
             self.assertEqual(len(times), done["output"]["rows"])
             self.assertIn("<svg", done["svg"])
-            number = page.call("scope", machine="plant", channels=["speed"], trigger="speed < 0 m/s", wait="50 ms")["number"]
+            never = {"machine": "plant", "channels": ["speed"], "trigger": "speed < 0 m/s"}
+            number = page.call("scope", **never, wait="50 ms")["number"]
             self.assertIn("no trigger", self.ended(page, number)["output"]["error"]["message"])
-            number = page.call("scope", machine="plant", channels=["speed"], trigger="speed < 0 m/s")["number"]
+            number = page.call("scope", **never)["number"]
             page.call("halt", number=number)
             self.assertEqual(self.ended(page, number)["why"], "halted")
 
@@ -185,9 +186,9 @@ class Trials(unittest.TestCase):
         page = self.page(PLANT.read_text())
         before = sorted(path for path in self.place.rglob("*") if "state" not in path.parts)
         stray = self.place / "stray"
-        words = ["--csv", f"--csv={stray}", f"--svg={stray}", f"--trace={stray}", "-x", "--", "../../etc/passwd", "/etc/passwd",
-                 "$(touch stray)", "`touch stray`", ";touch stray", "a\nb", "é\u202e", "@/etc/passwd", "%s%n", "q[99999999]",
-                 "a" * 400, "-", "NaN", "1e999 s", "-1 s"]
+        words = ["--csv", f"--csv={stray}", f"--svg={stray}", f"--trace={stray}", "-x", "--", "../../etc/passwd",
+                 "/etc/passwd", "$(touch stray)", "`touch stray`", ";touch stray", "a\nb", "é\u202e", "@/etc/passwd",
+                 "%s%n", "q[99999999]", "a" * 400, "-", "NaN", "1e999 s", "-1 s"]
         with Machine(self.place):
             for word in words:
                 for key in ("watch", "at", "expect"):

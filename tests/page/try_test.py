@@ -73,8 +73,8 @@ class TryTest(PageTest):
         [result] = self.answers()
         heading, *lines = result["csv"].splitlines()
         names = [name.split("(")[0] for name in heading.split(",")[1:]]
-        self.assertEqual(self.page.script("return [...document.querySelectorAll('[data-channel]')].map(e => e.dataset.channel)"
-                                          ".sort()"), sorted(names))
+        drawn = "return [...document.querySelectorAll('[data-channel]')].map(e => e.dataset.channel)"
+        self.assertEqual(sorted(self.page.script(drawn)), sorted(names))
         self.assertIn("speed", names)
         for number, name in enumerate(names):
             rows = [line.split(",") for line in lines]

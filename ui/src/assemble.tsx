@@ -99,7 +99,7 @@ export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
   const { draft: now, picture, outline } = state;
   const [canvas, fit] = useFit(picture);
   const hasPicture = picture !== null && picture.boxes.length > 0;
-  useEffect(() => { if (hasPicture) fit(); }, [hasPicture]);  // later acts leave the zoom as it is
+  useEffect(() => { if (hasPicture) fit(); }, [picture?.boxes.length]);  // other acts leave the zoom as it is
   useEffect(() => {
     const take = (event: KeyboardEvent) => takeKey(event, machine, fit, assembleKeys);
     window.addEventListener("keydown", take);

@@ -27,8 +27,9 @@ function Strip({ table, before, unit, top, x }:
           <line className="grid" x1={LEFT} x2={WIDTH - RIGHT} y1={y(value)} y2={y(value)} />
           <text x={LEFT - 4} y={y(value) + 4} textAnchor="end">{short(value)}</text>
         </g>))}
-      {gaps.map((gap) => <rect key={gap.to} className="lost-rows" x={x(gap.from)} y={top} height={STRIP} data-gap={gap.rows}
-                               width={Math.max(2, x(gap.to) - x(gap.from))} />)}
+      {gaps.map((gap) => (
+        <rect key={gap.to} className="lost-rows" x={x(gap.from)} y={top} height={STRIP} data-gap={gap.rows}
+              width={Math.max(2, x(gap.to) - x(gap.from))} />))}
       {old.map((channel) => (
         <path key={channel.name} className="curve pale" data-before={channel.name}
               d={curvePath(reduced(before!, channel), x, y, new Set())} />))}
@@ -49,7 +50,8 @@ export function Curves({ table, before, label }: { table: Table; before: Table |
   const units = unitsOf(table.channels);
   const span = to - from || 1, height = units.length * (STRIP + GAP) + 20;
   const x = (at: number) => LEFT + ((WIDTH - LEFT - RIGHT) * (at - from)) / span;
-  const move = (cursor: number, at: number) => choose([cursor === 0 ? at : cursors[0], cursor === 1 ? at : cursors[1]]);
+  const move = (cursor: number, at: number) =>
+    choose([cursor === 0 ? at : cursors[0], cursor === 1 ? at : cursors[1]]);
   const press = (event: { clientX: number; currentTarget: Element }) => {
     const box = event.currentTarget.getBoundingClientRect();
     const place = ((event.clientX - box.left) / box.width) * WIDTH;
@@ -57,7 +59,8 @@ export function Curves({ table, before, label }: { table: Table; before: Table |
     move(Math.abs(at - cursors[0]) <= Math.abs(at - cursors[1]) ? 0 : 1, at);
   };
   const pictures = useMemo(() => units.map((unit, i) => (
-    <Strip key={unit} table={table} before={before} unit={unit} top={8 + i * (STRIP + GAP)} x={x} />)), [table, before]);
+    <Strip key={unit} table={table} before={before} unit={unit} top={8 + i * (STRIP + GAP)} x={x} />)),
+    [table, before]);
   const rows = cursors.map((at) => rowAt(table, at));
   const gaps = gapsOf(table), lost = gaps.reduce((sum, gap) => sum + gap.rows, 0);
   return (

@@ -55,7 +55,7 @@ export function DraftCpus({ analysis, why }: { analysis: Analysis; why: string }
             </svg>
             <span className="figures-cpu">{cpu.utilisation.toFixed(2)} / {cpu.limit}</span>
             <span className="note">{cpu.note}</span>
-            {cpu.remedies.map((remedy) => (
+            {cpu.remedies.filter((remedy) => remedy.label).map((remedy) => (
               <Button key={remedy.label} label={remedy.label} forbidden={why}
                       press={() => void draft.press(remedy.acts)} />))}
           </div>);

@@ -61,7 +61,7 @@ export function Lamps({ state, machine, machineState, bench, why }: Props) {
   if (!now) return null;
   const sign = (lamp: string) => (lamp === "same" ? "=" : "≠");
   const words = `draft ${sign(file)} file${file === "same" ? "" : shortNames(state.fromFile)}` +
-    (machineLamp === "none" ? ", no machine runs it"
+    (machineLamp === "none" ? (isRunning ? "" : ", no machine runs it")
       : `, draft ${sign(machineLamp)} machine${machineLamp === "same" ? "" : shortNames(state.fromMachine)}`);
   return (
     <div className="lamps">

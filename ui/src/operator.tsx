@@ -91,12 +91,15 @@ function TuneButton({ machine, state, variables }: { machine: Machine; state: Ma
   const { outline } = useStore(draft.state);
   if (!outline || !runsFile(state, hello?.file ?? null)) return null;
   const put = async () => {
-    const present = new Map(variables.map(({ variable }) => [variable, machine.values.reading(variable)?.text ?? ""]));
-    for (const [name, text] of present) if (text === "") present.delete(name);
+    const present = new Map(variables.flatMap(({ variable }): [string, string][] => {
+      const text = machine.values.reading(variable)?.text;
+      return text === undefined ? [] : [[variable, text]];
+    }));
     const acts = tuneActs(outline, present);
     const refusal = await draft.edit(acts);
-    machine.say(refusal || (acts.length === 0 ? "The draft has these values already."
-      : `The draft has the present values of ${acts.map((act) => "path" in act ? act.path.slice(9) : "").join(", ")}.`));
+    const names = acts.map((act) => act.path.slice("operator/".length)).join(", ");
+    machine.say(refusal || (names === "" ? "The draft has these values already."
+      : `The draft has the present values of ${names}.`));
   };
   return <Button label="Put into the draft" title="the present values, as edits of FILE" press={() => void put()}
                  forbidden={whyNot(hello, door === "open")} />;

@@ -188,8 +188,8 @@ export interface Fault {
 }
 
 export interface OutlinePort {
-  port: string; declared: string; kind: Port["kind"]; type: string; unit: string; shape: string; solved: boolean; shared: boolean;
-  variable: string | null; parted: boolean; value: string | null; default: string | null; doc: string;
+  port: string; declared: string; kind: Port["kind"]; type: string; unit: string; shape: string; solved: boolean;
+  shared: boolean; variable: string | null; parted: boolean; value: string | null; default: string | null; doc: string;
 }
 
 export interface OutlineTask {

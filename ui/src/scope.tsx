@@ -95,10 +95,12 @@ export function ScopePanel({ state, chosen, why }: { state: MachineState; chosen
         <Words id="scope-trigger" label="Trigger" hint="error > 2 mrad" value={scope.trigger}
                change={(trigger) => scoped.set({ trigger })} />
         <Words id="scope-pre" label="Before it" hint="50 ms" value={scope.pre} change={(pre) => scoped.set({ pre })} />
-        <Words id="scope-for" label="Length" hint="1 s" value={scope.length} change={(length) => scoped.set({ length })} />
+        <Words id="scope-for" label="Length" hint="1 s" value={scope.length}
+               change={(length) => scoped.set({ length })} />
         <Words id="scope-wait" label="Wait" hint="60 s" value={scope.wait} change={(wait) => scoped.set({ wait })} />
         <label>Mode
-          <select id="scope-mode" value={mode} onChange={(event) => scoped.set({ mode: event.target.value as ScopeMode })}>
+          <select id="scope-mode" value={mode}
+                  onChange={(event) => scoped.set({ mode: event.target.value as ScopeMode })}>
             {MODES.map(([name, words]) => <option key={name} value={name}>{name}: {words}</option>)}</select></label>
         <button type="submit" aria-label="Record" title={why || undefined}
                 aria-disabled={why !== "" || scope.isOn || scope.channels.length === 0 || undefined}>Record</button>
@@ -107,7 +109,8 @@ export function ScopePanel({ state, chosen, why }: { state: MachineState; chosen
         {scope.isOn && <Button label="Stop recording" press={stop} />}
         {result?.csv && <SaveButton name={`${state.name}.csv`} type="text/csv" text={result.csv} />}
         {result?.svg && <SaveButton name={`${state.name}.svg`} type="image/svg+xml" text={result.svg} />}
-        <span role="status" aria-label="Recording" data-scope={scope.isOn ? "on" : "off"} data-recordings={scope.recordings}>
+        <span role="status" aria-label="Recording" data-scope={scope.isOn ? "on" : "off"}
+              data-recordings={scope.recordings}>
           {scope.isOn ? `recording for ${duration((scope.running?.ran_ms ?? 0) * 1e6)}` : ""}</span>
       </div>
       {scope.message !== "" && <p className="fault" role="alert" data-scope-message>{scope.message}</p>}

@@ -59,7 +59,7 @@ export class TapRecords {
         else if (kind === "preempt") mark(row.preempts, at);
         else if (kind === "miss") mark(row.misses, at);
         else if (kind === "run") {
-          const [begin, end] = [place(at), Math.max(place(at) + 1, place(at + b))], last = row.runs[row.runs.length - 1];
+          const begin = place(at), end = Math.max(begin + 1, place(at + b)), last = row.runs[row.runs.length - 1];
           if (last && begin <= last[1]) last[1] = Math.max(last[1], end);
           else row.runs.push([begin, end]);
         }
@@ -72,7 +72,8 @@ export class TapRecords {
     const found: Miss[] = [];
     for (const [rtpu, records] of this.all)
       records.forEach((record, i) => {
-        if (record.kind === "miss" && record.task !== null) found.push(this.missOf(rtpu, record.task, i, sharers(rtpu)));
+        if (record.kind === "miss" && record.task !== null)
+          found.push(this.missOf(rtpu, record.task, i, sharers(rtpu)));
       });
     return found.sort((x, y) => y.at - x.at).slice(0, MOST_MISSES);
   }

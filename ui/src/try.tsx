@@ -29,8 +29,8 @@ function Verdict({ answer }: { answer: RunAnswer }) {
         {receipts.map((one, i) => <li key={i}>{receiptText(one)}</li>)}
       </ul>
       {tasks.some((task) => task.missed > 0) &&
-        <Table label="Missed deadlines" heading={["task", "missed", "cycles"]} rows={tasks.filter((one) => one.missed > 0)
-          .map((one) => [one.task, one.missed, one.cycles])} />}
+        <Table label="Missed deadlines" heading={["task", "missed", "cycles"]}
+               rows={tasks.filter((one) => one.missed > 0).map((one) => [one.task, one.missed, one.cycles])} />}
     </div>
   );
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Present values of operator variables as edits of the draft. No function here knows the browser.
 import { quoted } from "./edits";
-import type { EditAct, Outline } from "./protocol";
+import type { Outline } from "./protocol";
+
+interface SetAct { act: "set"; path: string; value: string }
 
 /** "[100 90] N.m/rad" as a description writes it: "[100 N.m/rad, 90 N.m/rad]". */
 export function writtenValue(text: string): string {
@@ -12,8 +14,8 @@ export function writtenValue(text: string): string {
 }
 
 /** An act for each operator variable of the draft whose text is another one. */
-export function tuneActs(outline: Outline, present: Map<string, string>): EditAct[] {
-  return outline.variables.flatMap(({ variable, origin, value }): EditAct[] => {
+export function tuneActs(outline: Outline, present: Map<string, string>): SetAct[] {
+  return outline.variables.flatMap(({ variable, origin, value }): SetAct[] => {
     const text = origin === "operator" ? present.get(variable) : undefined;
     const written = text === undefined ? value : writtenValue(text);
     return written === value || written === null ? [] : [{ act: "set", path: `operator/${variable}`, value: written }];
