@@ -51,13 +51,22 @@ RpcResponse judge_words(const Json& parameters) {
   return {};
 }
 
+/// `written` without the quotes in which a description may write it.
+std::string unquoted(const std::string& written) {
+  const char mark = written.size() > 1 ? written[0] : '\0';
+  const bool is_quoted = (mark == '"' || mark == '\'') && written.back() == mark;
+  return is_quoted ? written.substr(1, written.size() - 2) : written;
+}
+
 /// Resources of the draft that several tasks may not open at once.
 Json devices_of(const Json& outline) {
   Json all = Json::array();
   for (const Json& task : outline["tasks"])
     for (const Json& port : task["ports"])
       if (port["kind"] == Json("resource") && port["shared"] != Json(true))
-        all.push_back({{"task", task["task"]}, {"port", port["port"]}, {"text", port["value"]}});
+        all.push_back({{"task", task["task"]},
+                       {"port", port["port"]},
+                       {"text", port["value"].is_string() ? unquoted(port["value"].as_string()) : ""}});
   return all;
 }
 
@@ -65,7 +74,7 @@ RpcResponse ask_about(const Json& devices) {
   std::string names;
   for (const Json& one : devices)
     names += (names.empty() ? "" : ", ") + one["task"].as_string() + "." + one["port"].as_string() + " " +
-             (one["text"].is_string() ? one["text"].as_string() : "");
+             one["text"].as_string();
   return RpcResponse::error(control::kRefused, "the try opens what the resources name: " + names,
                             {{"kind", "devices"}, {"where", "devices"}, {"resources", devices}});
 }

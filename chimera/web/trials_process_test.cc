@@ -121,7 +121,7 @@ TEST_F(TrialsTest, TakesAtMost2000SamplesUnlessTheyAreAskedFor) {
 
 TEST_F(TrialsTest, AsksBeforeItOpensWhatTasksMayNotShare) {
   script("echo ran\n");
-  analyst.outline = outline_of(R"({"port":"bus","kind":"resource","shared":false,"value":"/dev/ttyS0"},)"
+  analyst.outline = outline_of(R"({"port":"bus","kind":"resource","shared":false,"value":"'/dev/ttyS0'"},)"
                                R"({"port":"model","kind":"resource","shared":true,"value":"a.xml"})");
   const RpcResponse asked = try_it();
   EXPECT_EQ(asked.detail("kind"), "devices");

@@ -21,7 +21,7 @@ from wire import Server  # noqa: E402
 
 ENDLESS = """subsystem: endless
 tasks:
-  stuck: {component: t_ends, rate: 20 Hz, constants: {where: cycle, how: loop}, resources: {armed: "%s"}}
+  stuck: {component: t_crash, rate: 20 Hz, constants: {how: hang}, resources: {armed: "%s"}}
 """
 LOGGED = """subsystem: logged
 tasks:
@@ -85,6 +85,17 @@ class Trials(unittest.TestCase):
         self.assertIn("error", answer, parameters)
         return answer["error"]
 
+    def endless(self):
+        """A page whose draft has a cycle without end, and the file that is written when that begins."""
+        armed = self.place / "armed"
+        armed.touch()
+        return self.page(ENDLESS % armed), armed
+
+    def runs(self, number):
+        """The processes of that many runs: each has a child that runs the tasks."""
+        found = [pid for pid in children(self.server.process.pid) if children(pid)]
+        return found if len(found) == number else None
+
     # Tries
 
     def test_a_try_is_the_run_of_the_saved_text_to_the_byte(self):
@@ -127,8 +138,9 @@ class Trials(unittest.TestCase):
         self.assertTrue(log.exists())
 
     def test_a_try_that_never_ends_is_halted_and_names_the_task(self):
-        page = self.page(ENDLESS % self.file)
-        number = self.begin(page)
+        page, armed = self.endless()
+        number = self.begin(page, watch=["y"])
+        await_that(lambda: armed.read_text(), "the cycle that does not end")
         self.assertIsNone(self.result(page, number)["ended"])
         page.call("halt", number=number)
         done = self.ended(page, number)
@@ -136,19 +148,18 @@ class Trials(unittest.TestCase):
         self.assertIn("stuck.cycle did not return", json.dumps(done["output"]))
 
     def test_four_at_a_time_and_none_outlives_its_page_or_chimera_web(self):
-        page = self.page(ENDLESS % self.file)
+        page, _ = self.endless()
         for _ in range(4):
-            self.begin(page)
+            self.begin(page, watch=["y"])
         with self.server.open() as other:
-            error = self.refused(other, "try", version=1, duration="2 s", watch=["n"])
+            error = self.refused(other, "try", version=1, duration="2 s", watch=["y"])
             self.assertEqual(error["data"]["kind"], "under-way")
-        before = [pid for pid in children(self.server.process.pid) if children(pid)]
-        self.assertEqual(len(before), 4)
+        before = await_that(lambda: self.runs(4), "four runs")
         page.__exit__()
         await_that(lambda: not set(before) & set(children(self.server.process.pid)), "the end of the page's tries")
         with self.server.open() as other:
-            self.begin(other)
-            [last] = [pid for pid in children(self.server.process.pid) if children(pid)]
+            self.begin(other, watch=["y"])
+            [last] = await_that(lambda: self.runs(1), "one run")
             run = children(last)
             self.server.process.send_signal(signal.SIGKILL)
             self.server.process.wait()

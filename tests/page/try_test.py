@@ -10,6 +10,7 @@ from access import faint, unnamed  # noqa: E402
 from case import PageTest, main  # noqa: E402
 from machine import PLANT  # noqa: E402
 from page import Keys  # noqa: E402
+from system import await_that  # noqa: E402
 
 LOGGED = """subsystem: logged
 tasks:
@@ -18,7 +19,7 @@ tasks:
 """
 ENDLESS = """subsystem: endless
 tasks:
-  stuck: {component: t_ends, rate: 20 Hz, constants: {where: cycle, how: loop}, resources: {armed: "%s"}}
+  stuck: {component: t_crash, rate: 20 Hz, constants: {how: hang}, resources: {armed: "%s"}}
 """
 LATE = """subsystem: late
 tasks:
@@ -137,8 +138,11 @@ class TryTest(PageTest):
         self.assertTrue(log.exists())
 
     def test_a_try_that_never_ends_is_halted_by_a_button(self):
-        self.draft(ENDLESS % self.place)
+        armed = self.place / "armed"
+        armed.touch()
+        self.draft(ENDLESS % armed)
         self.page.press("t")
+        await_that(lambda: armed.read_text(), "the cycle that does not end")
         self.page.click(self.page.button("Halt"))
         self.page.await_text("[data-try-why]", "halted")
         self.page.await_text("[data-try-message]", "stuck.cycle did not return")
