@@ -20,6 +20,8 @@ import { TaskForm } from "./task_form";
 import { duration } from "./text";
 import { taskAt } from "./text_places";
 import { TextPanel, TextPlace } from "./text_panel";
+import { tried } from "./trial";
+import { TryPanel } from "./try";
 import { choose, showVariable, view } from "./view";
 
 export function markDraft(state: DraftState): void {
@@ -91,6 +93,7 @@ interface Props { machine: Machine | null; machineState: MachineState | null; be
 export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
   const state = useStore(draft.state);
   const { chosen, variable, zoom } = useStore(view);
+  const { isOpen: isTrying } = useStore(tried);
   const [place, setPlace] = useState<TextPlace | null>(null);
   const [line, setLine] = useState(0);
   const { draft: now, picture, outline } = state;
@@ -147,7 +150,8 @@ export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
             : <AssemblyForm outline={outline} text={text} why={still} file={now.file} />)}
         </aside>
       </main>
-      <section className="panels drawer" aria-label="Faults and text">
+      {isTrying && <TryPanel why={why} />}
+      <section className="panels drawer" aria-label="Faults and text" hidden={isTrying}>
         <FaultList analysis={analysis} offers={state.offers} why={why} go={go} />
         <TextPanel text={text} why={why} place={place} atLine={setLine} />
       </section>
