@@ -46,15 +46,14 @@ BACK = """
     look();"""
 
 EDIT = """
-    const [selector, words, verdict, done] = arguments, root = document.documentElement, version = root.dataset.draft;
-    const field = document.querySelector(selector);
+    const [words, isFaulty, done] = arguments, field = document.querySelector('input[data-link="t50 x"]');
     Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, 'value').set.call(field, words);
     field.dispatchEvent(new Event('input', {bubbles: true}));
     new MutationObserver((_, observer) => {
-      if (root.dataset.draft === version || root.dataset.verdict !== verdict) return;
+      if (document.querySelector('[data-port="t50 x"]').classList.contains('faulty') !== isFaulty) return;
       observer.disconnect();
       requestAnimationFrame(() => setTimeout(() => done(performance.now() - window.began)));  // behind the drawn frame
-    }).observe(root, {attributes: true});
+    }).observe(document, {attributes: true, childList: true, subtree: true});
     requestAnimationFrame(() => setTimeout(() => {
       window.began = performance.now();
       field.dispatchEvent(new KeyboardEvent('keydown', {key: 'Enter', bubbles: true}));
@@ -132,8 +131,7 @@ def edits(page, link, browser):
     page.one('input[data-link="t50 x"]')
     times = []
     for n in range(EDITS):
-        words, verdict = (("nowhere", "faulty"), ("x", "legal"))[n % 2]
-        times.append(browser.driver.execute_async_script(EDIT, 'input[data-link="t50 x"]', words, verdict))
+        times.append(browser.driver.execute_async_script(EDIT, ("nowhere", "x")[n % 2], n % 2 == 0))
         time.sleep(PAUSE)
     times.sort()
     p95 = times[round(0.95 * EDITS) - 1]

@@ -181,7 +181,32 @@ class Acts(AssembleTest):
         self.press("Remove mean in[1]")
         self.assertIn("in: [x]", self.text())
 
-    def test_every_act_of_the_finished_page_is_reached_by_name_and_seen(self):
+    def test_keys_alone_add_rename_undo_save_and_remove(self):
+        self.assemble(name="first.yaml")
+        with self.one_act():
+            self.page.press("n")
+            self.page.await_that("document.activeElement.id === 'add-task-component'", "the field of the component")
+            self.page.press("t_source", Keys.TAB, "source", Keys.ENTER)
+        self.page.await_one(f"{self.page.box('source')}.chosen")
+        with self.one_act():
+            self.page.press(Keys.F2)
+            self.page.press("wave", Keys.ENTER)
+        self.page.await_one(self.page.box("wave"))
+        self.page.press_with(Keys.CONTROL, "z")
+        self.page.await_one(self.page.box("source"))
+        self.page.press_with(Keys.CONTROL, "y")
+        self.page.await_one(self.page.box("wave"))
+        self.page.press_with(Keys.CONTROL, "s")
+        self.page.await_root("touched", "no")
+        self.assertIn("wave:", self.disk())
+        self.page.press_with(Keys.CONTROL, "k")
+        self.page.press("wave", Keys.ENTER)
+        self.page.tab_to("g.box")
+        with self.one_act():
+            self.page.press(Keys.DELETE)
+        self.page.await_none("g.box")
+
+    def test_each_control_has_a_name_and_each_text_contrast(self):
         self.assemble(PLANT.read_text())
         self.page.choose("trim")
         self.assertEqual(unnamed(self.browser), [])
