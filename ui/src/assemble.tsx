@@ -4,13 +4,14 @@ import { memo, useEffect, useMemo, useState } from "react";
 import { AddTask, AssemblyForm, VariableForm } from "./assembly_form";
 import { MessageBox } from "./banners";
 import { Canvas, useFit } from "./canvas";
+import { Button } from "./controls";
 import { draft, DraftState, lamps } from "./draft";
 import { DraftPicture } from "./draft_picture";
 import { pulledActs } from "./edits";
 import { focusField } from "./edit_field";
 import { DraftCpus, FaultList } from "./fault_list";
 import { boxOf } from "./faults";
-import { assembleKeys, takeKey } from "./keys";
+import { addTask, assembleKeys, takeKey } from "./keys";
 import { DraftBanners, runsFile, whyNot } from "./lamps";
 import { Machine, MachineState } from "./machine";
 import { mark } from "./marks";
@@ -144,6 +145,7 @@ export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
         </Canvas>
         <aside aria-label="Details">
           {still !== "" && <p className="hint">{still}</p>}
+          {outline && (of || task) && <Button label="Add a task" title="key n" press={addTask} />}
           {outline && (of ? <VariableForm key={variable} of={of} why={still} />
             : task ? <TaskForm key={task.task} outline={outline} task={task} text={text} why={still}
                                measured={measured} faults={analysis.report.faults} />

@@ -60,6 +60,7 @@ const KEYS: [string, string][] = [
   ["Escape", "choose nothing; close a question"],
   ...ACTS.map((act): [string, string] => [act.key, `${act.name} the chosen tasks: ${act.help}`]),
   ["F2", "Assemble: rename the chosen task or variable"], ["n", "Assemble: add a task"],
+  ["F8", "Assemble: to the next fault and its first remedy"],
   ["Delete", "Assemble: remove the chosen task"], ["Ctrl-Z, Ctrl-Y", "Assemble: undo an act, and do it again"],
   ["Ctrl-S", "Assemble: save the draft to FILE"], ["t", "Assemble: try the draft in virtual time"],
   ["s", "Look: the scope"], ["Enter, Escape in a field", "Assemble: carry the act out; restore"],

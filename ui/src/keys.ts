@@ -3,6 +3,7 @@
 import { ACTS } from "./acts";
 import { draft } from "./draft";
 import { removedTask } from "./edits";
+import { focusNextFault } from "./fault_list";
 import { raiseFlag } from "./header";
 import { begin } from "./inspector";
 import type { Machine } from "./machine";
@@ -48,6 +49,7 @@ export const assembleKeys: Keys = (event) => {
   const [task] = view.get().chosen;
   if (event.key === "F2") document.querySelector<HTMLInputElement>("aside input[data-rename]")?.select();
   else if (event.key === "n") addTask();
+  else if (event.key === "F8") focusNextFault();
   else if (event.key === "t") void tryDraft();
   else if (event.key === "Delete" && outline?.tasks.some((one) => one.task === task))
     void draft.press(removedTask(now?.analysis.text ?? "", outline, task!));
@@ -63,7 +65,7 @@ function save(): void {
   field?.focus();
 }
 
-function addTask(): void {
+export function addTask(): void {
   choose([]);
   window.setTimeout(() => document.getElementById("add-task-component")?.focus(), 0);  // when its form is there
 }

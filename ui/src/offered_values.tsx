@@ -2,8 +2,7 @@
 // Values for the field of a port, with where they come from: lessons first, then the test of the component.
 import { useEffect, useState } from "react";
 import { door } from "./bench";
-
-interface Offered { value: string; origin: string }
+import { Offered, originWords } from "./lesson_values";
 
 const known = new Map<string, Promise<Offered[]>>();
 
@@ -16,9 +15,6 @@ function offered(component: string, port: string): Promise<Offered[]> {
   }
   return known.get(name)!;
 }
-
-const originWords = (origin: string): string =>
-  origin.startsWith("examples/") ? `lesson ${origin.split("/")[1]}` : `test of ${origin.split(".")[0]}`;
 
 /** The list `id` of a field. */
 export function OfferedValues({ id, component, port }: { id: string; component: string; port: string }) {

@@ -36,6 +36,8 @@ export interface TryState {
   isOpen: boolean;
   duration: string;
   watch: string[];
+  /** A person chose `watch`; else each try chooses anew. */
+  isOwn: boolean;
   at: string[];
   expect: string[];
   /** The trial under way; null: none. */
@@ -52,13 +54,14 @@ export interface TryState {
 export const MOST_WATCHED = 32, FIRST_WATCHED = 6;
 
 export const tried = new Store<TryState>({
-  isOpen: false, duration: "2 s", watch: [], at: [], expect: [], running: null, isBusy: false, result: null, version: 0,
+  isOpen: false, duration: "2 s", watch: [], isOwn: false, at: [], expect: [], running: null, isBusy: false, result: null, version: 0,
   table: null, before: null, message: "",
 });
 
 /** Before a person chooses: what tasks produce, scalars first. */
 function firstWatched(): string[] {
-  const produced = (draft.state.get().outline?.variables ?? []).filter((one) => one.producers.length > 0);
+  const produced = (draft.state.get().outline?.variables ?? [])
+    .filter((one) => one.producers.length > 0 && !one.constant);  // a constant has no curve
   const rank = (shape: string) => (shape === "" ? 0 : 1);
   return produced.sort((a, b) => rank(a.shape) - rank(b.shape)).slice(0, FIRST_WATCHED).map((one) => one.variable);
 }
@@ -70,15 +73,21 @@ function take(result: TrialResult): void {
     message: latest || (result.ended as { code?: number } | null)?.code === 0 ? "" : refusalOf(result) });
 }
 
+/** The first name that a person adds takes the place of those that the page chose. */
+export function watchOnly(names: string[]): void {
+  const { watch, isOwn } = tried.get();
+  tried.set({ isOwn: true, watch: isOwn || names.length < watch.length ? names : names.slice(-1) });
+}
+
 /** Opens the panel and tries the draft. */
 export async function tryDraft(devices = false): Promise<void> {
   if (tried.get().isBusy) return;
   const version = draft.state.get().draft?.version;
   const known = new Set(draft.state.get().outline?.variables.map((one) => one.variable));
-  const wanted = tried.get().watch.filter((name) => known.has(name));
+  const wanted = tried.get().isOwn ? tried.get().watch.filter((name) => known.has(name)) : [];
   const watch = wanted.length > 0 ? wanted : firstWatched();
   const { duration, at, expect } = tried.get();
-  tried.set({ isOpen: true, watch, message: watch.length === 0 ? "no task of the draft produces a variable" : "" });
+  tried.set({ isOpen: true, watch, isOwn: wanted.length > 0, message: watch.length === 0 ? "no task of the draft produces a variable" : "" });
   if (watch.length === 0 || version === undefined) return;
   tried.set({ isBusy: true, version });
   try {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The panel "Try": the draft in virtual time, with its curves and its verdict.
-import { useState } from "react";
+import { useEffect, useRef, useState } from "react";
 import { Button, Table } from "./controls";
 import { Curves } from "./curves";
 import { draft } from "./draft";
@@ -9,7 +9,7 @@ import type { RunAnswer } from "./protocol";
 import { useStore } from "./store";
 import { receiptText } from "./switch_menu";
 import { duration } from "./text";
-import { halt, MOST_WATCHED, tried, tryDraft } from "./trial";
+import { halt, MOST_WATCHED, tried, tryDraft, watchOnly } from "./trial";
 
 /** Clean or not, and what was counted. */
 function Verdict({ answer }: { answer: RunAnswer }) {
@@ -42,22 +42,12 @@ export function TryPanel({ why }: { why: string }) {
   const [length, type] = useState(state.duration);
   const unitOf = (name: string) => outline?.variables.find((one) => one.variable === name)?.unit ?? "";
   const answer = (state.result?.output ?? {}) as RunAnswer;
+  const acts = useRef<HTMLDivElement>(null);
+  useEffect(() => acts.current?.querySelector("button")?.focus(), []);
   const isOld = state.result !== null && now !== null && state.version !== now.version;
   return (
     <section className="panels trial" aria-label="Try">
-      <form className="add" onSubmit={(event) => { event.preventDefault(); void tryDraft(); }}>
-        <label>Duration
-          <input id="try-duration" value={length} placeholder="2 s"
-                 onChange={(event) => { type(event.target.value); tried.set({ duration: event.target.value }); }} />
-        </label>
-        <NameList id="try-watch" label="Variables" list="known" names={state.watch} most={MOST_WATCHED} unitOf={unitOf}
-                  change={(watch) => tried.set({ watch })} />
-        <NameList id="try-at" label="Timed acts" hint="1 s: set kp 100 N.m/rad" names={state.at} most={MOST_WATCHED}
-                  change={(at) => tried.set({ at })} />
-        <NameList id="try-expect" label="Expectations" hint="max |u| <= 1 V" names={state.expect} most={MOST_WATCHED}
-                  change={(expect) => tried.set({ expect })} />
-      </form>
-      <div className="acts">
+      <div className="acts" ref={acts}>
         <Button label="Try the draft" title="in virtual time (key t)" press={() => void tryDraft()}
                 forbidden={why || (state.isBusy ? "a try is under way" : "")} />
         {state.isBusy && state.running && <Button label="Halt" press={() => void halt(state.running!.number)} />}
@@ -67,6 +57,18 @@ export function TryPanel({ why }: { why: string }) {
           {state.isBusy ? `under way for ${duration((state.running?.ran_ms ?? 0) * 1e6)}`
             : isOld ? "the draft has changed since" : ""}</span>
       </div>
+      <form className="add" onSubmit={(event) => { event.preventDefault(); void tryDraft(); }}>
+        <label>Duration
+          <input id="try-duration" value={length} placeholder="2 s"
+                 onChange={(event) => { type(event.target.value); tried.set({ duration: event.target.value }); }} />
+        </label>
+        <NameList id="try-watch" label="Variables" list="known" names={state.watch} most={MOST_WATCHED} unitOf={unitOf}
+                  change={watchOnly} />
+        <NameList id="try-at" label="Timed acts" hint="1 s: set kp 100 N.m/rad" names={state.at} most={MOST_WATCHED}
+                  change={(at) => tried.set({ at })} />
+        <NameList id="try-expect" label="Expectations" hint="max |u| <= 1 V" names={state.expect} most={MOST_WATCHED}
+                  change={(expect) => tried.set({ expect })} />
+      </form>
       {state.result?.why && <p className="fault" data-try-why>The try was ended: {state.result.why}.</p>}
       {state.message !== "" && <p className="fault" role="alert" data-try-message>{state.message}</p>}
       {!state.isBusy && <Verdict answer={answer} />}
