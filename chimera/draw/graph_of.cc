@@ -50,6 +50,10 @@ const Node* written_for(const Outline&, const OutlineTask&, const OutlinePort& p
   return port.own.is_none() ? nullptr : port.is_own_item ? &kList : &port.own;
 }
 
+/// True if the port has no value of its own to fall back on.
+bool needs_value(const ConfiguredPort&) { return false; }  // a configuration has all values
+bool needs_value(const OutlinePort& port) { return port.preset.empty(); }
+
 using Names = std::set<std::string, std::less<>>;
 
 template <class Whole, class Task>
@@ -64,7 +68,8 @@ Box box_of(const Whole& whole, const Task& task, const Names& read_constants) {
     const bool has_value = *kind == PortKind::kResource || *kind == PortKind::kInConst;
     const Node* written = has_value ? written_for(whole, task, port) : nullptr;
     const bool is_read = *kind != PortKind::kOutConst || read_constants.contains(port.variable);
-    const bool is_default = *kind == PortKind::kInConst && port.variable.empty() && written == nullptr;
+    const bool is_default = *kind == PortKind::kInConst && port.variable.empty() && written == nullptr &&
+                            !needs_value(port);
     box.ports.push_back({*kind, port.name, port.variable,
                          written != nullptr && written->is_scalar() ? cut(written->text) : "", is_read && !is_default});
   }

@@ -35,7 +35,7 @@ const Library& drawn_library() {
                            port("spare", CHIMERA_OUT_CONST), port("device", CHIMERA_RESOURCE)}),
        component("law", {port("q", CHIMERA_IN_VAR), port("tau", CHIMERA_OUT_VAR), port("gear", CHIMERA_IN_CONST, true),
                          port("limit", CHIMERA_IN_CONST, true), port("rest", CHIMERA_IN_CONST, true)}),
-       component("push", {port("tau", CHIMERA_OUT_VAR)})},
+       component("push", {port("tau", CHIMERA_OUT_VAR)}), component("need", {port("mass", CHIMERA_IN_CONST)})},
       our_units());
   return kLibrary;
 }
@@ -103,7 +103,7 @@ TEST(GraphOf, DrawsAnIllegalOutlineAsItsTextLinksIt) {
   const Outlined outlined = verify_with_outline(
       read_description("subsystem: demo\ntasks:\n  push: {alias: {tau: gear}}\n"
                        "  law: {rate: 50 Hz, constants: {limit: 2}}\n  robot: {alias: {tau: q}}\n"
-                       "  lost: {component: nothing}\n  other: {component: push, alias: {tau: gear}}\n",
+                       "  lost: {component: nothing}\n  other: {component: push, alias: {tau: gear}}\n  need:\n",
                        "demo.yaml"),
       drawn_library());
   ASSERT_FALSE(outlined.verdict.configuration);
@@ -113,7 +113,8 @@ TEST(GraphOf, DrawsAnIllegalOutlineAsItsTextLinksIt) {
             "law law 50 Hz: in q=q out tau=tau in-const limit=2\n"
             "robot robot 1 kHz: in tau=q out q=q resource device=\n"
             "lost nothing :\n"
-            "other push 1 kHz: out tau=gear\n");
+            "other push 1 kHz: out tau=gear\n"
+            "need need 1 kHz: in-const mass=\n");
   EXPECT_NE(svg(graph).find("</svg>"), std::string::npos);
 }
 

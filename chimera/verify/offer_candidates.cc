@@ -165,18 +165,14 @@ class Candidates {
     const bool is_constant = port.kind == CHIMERA_IN_CONST;
     std::vector<Offer> offers = additions(), links;
     add_links(links, task, port);
-    const auto give = [&](const std::string& variable) {
-      const std::string value = value_of(task, port);
-      if (value.empty()) return;
-      if (is_constant)
-        offers.push_back({"constants: {" + variable + ": " + value + "}, to be changed",
-                          {SetValue{{"constants", variable}, value}}});
-      else
-        offers.push_back({"give '" + variable + "' under operator", {SetValue{{"operator", variable}, value}}});
+    const auto give = [&](const std::string& section, const std::string& variable) {
+      if (const std::string value = value_of(task, port); !value.empty())
+        offers.push_back({section + ": {" + variable + ": " + value + "}, to be changed",
+                          {SetValue{{section, variable}, value}}});
     };
-    if (is_constant) give(fault_.found);
+    if (is_constant) give("constants", fault_.found);
     append(offers, links);
-    if (!is_constant) give(port.variable);
+    if (!is_constant) give("operator", port.variable);
     return offers;
   }
 

@@ -70,12 +70,12 @@ constexpr const char* kArmAlone = "subsystem: a\ntasks:\n  arm:\n";
 
 TEST(Offers, LinkAnInputToVariablesOfItsUnitOrGiveItAValue) {
   const std::string text = std::string(kArmAlone) + "  gauge:\n";
-  EXPECT_EQ(offered(text, "input-unmet"), "link to 'q' | give 'q_ref' under operator");
+  EXPECT_EQ(offered(text, "input-unmet"), "link to 'q' | operator: {q_ref: 0 rad}, to be changed");
 }
 
 TEST(Offers, DoNotLinkAGainToAVelocityOfANearName) {
   const std::string text = std::string(kArmAlone) + "  law:\n";
-  EXPECT_EQ(offered(text, "input-unmet"), "give 'kd' under operator");
+  EXPECT_EQ(offered(text, "input-unmet"), "operator: {kd: 0 V.s/rad}, to be changed");
 }
 
 TEST(Offers, JoinTwoProducersInThreeWays) {
