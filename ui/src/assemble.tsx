@@ -65,7 +65,9 @@ function Empty({ state, why }: { state: DraftState; why: string }) {
   return (
     <div className="hint empty">
       <h1>{exists ? `${file} has no task` : `Nothing runs ${file}, and it does not exist yet`}</h1>
-      <p>Type the name of a component, press Enter, and link its ports at the right; Save writes the file.</p>
+      <p>Type the name of a component, press Enter, and add the next; Library finds names by word, port, unit or paper.
+        Ports of one name are linked. Buttons at the faults below fill in the rest. Try runs the draft without a file,
+        Save writes it.</p>
       <AddTask outline={state.outline} file={file} why={why} />
     </div>
   );

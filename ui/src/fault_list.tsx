@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The faults of the draft, each with the edits that were tried; the load of each CPU, judged without a run.
-import { useEffect, useRef } from "react";
+// The faults of the draft, each with edits that remedy it; the load of each CPU, judged without a run.
+import { useLayoutEffect, useRef } from "react";
 import { Button } from "./controls";
 import { draft } from "./draft";
 import { cpuVerdicts } from "./faults";
@@ -26,7 +26,7 @@ export function FaultList({ analysis, offers, why, go }:
   { analysis: Analysis; offers: Offer[]; why: string; go: (fault: Fault) => void }) {
   const { faults, errors, warnings } = analysis.report;
   const pressed = useRef<number | null>(null);
-  useEffect(() => {  // the pressed button is gone: the next fault gets the focus, once it has its buttons
+  useLayoutEffect(() => {  // the pressed button is gone: the next fault gets the focus, once it has its buttons
     if (pressed.current === null || offers.length === 0) return;
     if (document.activeElement === document.body) focusFault(pressed.current);
     pressed.current = null;

@@ -5,7 +5,7 @@ import fs from "node:fs";
 import test from "node:test";
 import { Around, markdown } from "./document";
 import { formula, textOf } from "./math";
-import { withLessons } from "./lesson_values";
+import { againstRefusal, withLessons } from "./lesson_values";
 import { addedTask, portFor } from "./library_acts";
 import { anchorOf, hashWith, placeOf, targetOf } from "./place";
 import type { Fault, Offer, Outline } from "./protocol";
@@ -178,6 +178,20 @@ test("values of lessons stand before the offer that makes one up, if they have i
   assert.deepEqual(offers.map((one) => one.label), ["link", "gain of lesson 02_b: [1 V, 2 V]",
     "gain of test of pid_joint: 3 V", "made up", "made up", "made up"]);
   assert.deepEqual(offers[1]!.acts, [{ act: "set", path: "operator/gain", value: "[1 V, 2 V]" }]);
+});
+
+test("a refusal that names constants of its task offers their values where they stand", async () => {
+  const port = (name: string, variable: string | null, kind = "in-const") =>
+    ({ port: name, declared: name, kind, shape: "", variable, value: null });
+  const outline = { tasks: [{ task: "path", component: "line", ports: [port("duration", null), port("goal", "end"),
+    port("q", "q", "in-var"), port("pace", null)] }], variables: [{ variable: "end", constant: true,
+    origin: "constants" }] } as unknown as Outline;
+  const offers = await againstRefusal(outline, "path", "duration is too short for goal from q",
+    ({ port }) => Promise.resolve([{ value: `1 ${port}`, origin: "examples/01_a/a.yaml" }]));
+  assert.deepEqual(offers.map((one) => one.acts), [
+    [{ act: "set", path: "tasks/path/constants/duration", value: "1 duration" }],
+    [{ act: "set", path: "constants/end", value: "1 goal" }]]);
+  assert.deepEqual(await againstRefusal(outline, "gone", "duration", () => Promise.resolve([])), []);
 });
 
 test("the search finds names, ports, units, papers, words and documents, the best first", () => {

@@ -3,7 +3,9 @@
 import { door } from "./bench";
 import { Refusal } from "./door";
 import { draft, sentenceOf } from "./draft";
-import type { RunAnswer, TrialResult } from "./protocol";
+import { againstRefusal } from "./lesson_values";
+import { offered } from "./offered_values";
+import type { Offer, RunAnswer, TrialResult } from "./protocol";
 import { Store } from "./store";
 import { readTable, Table } from "./table";
 import { ask } from "./view";
@@ -35,9 +37,8 @@ export const halt = (number: number): Promise<unknown> => door.call("halt", { nu
 export interface TryState {
   isOpen: boolean;
   duration: string;
+  /** Chosen by a person; none: the page chooses. */
   watch: string[];
-  /** A person chose `watch`; else each try chooses anew. */
-  isOwn: boolean;
   at: string[];
   expect: string[];
   /** The trial under way; null: none. */
@@ -49,17 +50,19 @@ export interface TryState {
   table: Table | null;
   before: Table | null;
   message: string;
+  /** Values for what `message` names. */
+  offers: Offer[];
 }
 
 export const MOST_WATCHED = 32, FIRST_WATCHED = 6;
 
 export const tried = new Store<TryState>({
-  isOpen: false, duration: "2 s", watch: [], isOwn: false, at: [], expect: [], running: null, isBusy: false, result: null, version: 0,
-  table: null, before: null, message: "",
+  isOpen: false, duration: "2 s", watch: [], at: [], expect: [], running: null, isBusy: false, result: null, version: 0,
+  table: null, before: null, message: "", offers: [],
 });
 
-/** Before a person chooses: what tasks produce, scalars first. */
-function firstWatched(): string[] {
+/** While a person chooses none: what tasks produce, scalars first. */
+export function firstWatched(): string[] {
   const produced = (draft.state.get().outline?.variables ?? [])
     .filter((one) => one.producers.length > 0 && !one.constant);  // a constant has no curve
   const rank = (shape: string) => (shape === "" ? 0 : 1);
@@ -67,16 +70,16 @@ function firstWatched(): string[] {
 }
 
 function take(result: TrialResult): void {
-  const { table, result: last } = tried.get();
+  const { table, result: last } = tried.get(), { outline } = draft.state.get();
   const latest = result.csv === null ? null : readTable(result.csv);
+  const words = latest || (result.ended as { code?: number } | null)?.code === 0 ? "" : refusalOf(result);
+  const where = (result.output as RunAnswer | null)?.error?.where ?? "";
+  const isTask = words !== "" && (outline?.tasks ?? []).some((one) => one.task === where);
   tried.set({ running: null, isBusy: false, result, table: latest, before: last ? table : null,
-    message: latest || (result.ended as { code?: number } | null)?.code === 0 ? "" : refusalOf(result) });
-}
-
-/** The first name that a person adds takes the place of those that the page chose. */
-export function watchOnly(names: string[]): void {
-  const { watch, isOwn } = tried.get();
-  tried.set({ isOwn: true, watch: isOwn || names.length < watch.length ? names : names.slice(-1) });
+    message: isTask ? `${where}: ${words}` : words, offers: [] });
+  if (isTask)
+    void againstRefusal(outline, where, words, (port) => offered(port).catch(() => []))
+      .then((offers) => { if (tried.get().result === result) tried.set({ offers }); });
 }
 
 /** Opens the panel and tries the draft. */
@@ -84,10 +87,11 @@ export async function tryDraft(devices = false): Promise<void> {
   if (tried.get().isBusy) return;
   const version = draft.state.get().draft?.version;
   const known = new Set(draft.state.get().outline?.variables.map((one) => one.variable));
-  const wanted = tried.get().isOwn ? tried.get().watch.filter((name) => known.has(name)) : [];
+  const wanted = tried.get().watch.filter((name) => known.has(name));
   const watch = wanted.length > 0 ? wanted : firstWatched();
   const { duration, at, expect } = tried.get();
-  tried.set({ isOpen: true, watch, isOwn: wanted.length > 0, message: watch.length === 0 ? "no task of the draft produces a variable" : "" });
+  tried.set({ isOpen: true, watch: wanted, offers: [],
+    message: watch.length === 0 ? "no task of the draft produces a variable" : "" });
   if (watch.length === 0 || version === undefined) return;
   tried.set({ isBusy: true, version });
   try {

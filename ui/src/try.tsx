@@ -9,7 +9,7 @@ import type { RunAnswer } from "./protocol";
 import { useStore } from "./store";
 import { receiptText } from "./switch_menu";
 import { duration } from "./text";
-import { halt, MOST_WATCHED, tried, tryDraft, watchOnly } from "./trial";
+import { firstWatched, halt, MOST_WATCHED, tried, tryDraft } from "./trial";
 
 /** Clean or not, and what was counted. */
 function Verdict({ answer }: { answer: RunAnswer }) {
@@ -43,7 +43,8 @@ export function TryPanel({ why }: { why: string }) {
   const unitOf = (name: string) => outline?.variables.find((one) => one.variable === name)?.unit ?? "";
   const answer = (state.result?.output ?? {}) as RunAnswer;
   const acts = useRef<HTMLDivElement>(null);
-  useEffect(() => acts.current?.querySelector("button")?.focus(), []);
+  const focus = () => acts.current?.querySelector("button")?.focus();
+  useEffect(focus, []);
   const isOld = state.result !== null && now !== null && state.version !== now.version;
   return (
     <section className="panels trial" aria-label="Try">
@@ -57,20 +58,24 @@ export function TryPanel({ why }: { why: string }) {
           {state.isBusy ? `under way for ${duration((state.running?.ran_ms ?? 0) * 1e6)}`
             : isOld ? "the draft has changed since" : ""}</span>
       </div>
+      {state.result?.why && <p className="fault" data-try-why>The try was ended: {state.result.why}.</p>}
+      {state.message !== "" && <p className="fault" role="alert" data-try-message>{state.message}</p>}
+      {state.offers.length > 0 && <p className="acts">{state.offers.map((offer) => (
+        <Button key={offer.label} label={offer.label} title="sets it and tries again" forbidden={why}
+                press={() => { focus(); void draft.press(offer.acts).then(() => tryDraft()); }} />))}</p>}
       <form className="add" onSubmit={(event) => { event.preventDefault(); void tryDraft(); }}>
         <label>Duration
           <input id="try-duration" value={length} placeholder="2 s"
                  onChange={(event) => { type(event.target.value); tried.set({ duration: event.target.value }); }} />
         </label>
         <NameList id="try-watch" label="Variables" list="known" names={state.watch} most={MOST_WATCHED} unitOf={unitOf}
-                  change={watchOnly} />
+                  hint={firstWatched().join(", ")} change={(watch) => tried.set({ watch })} />
         <NameList id="try-at" label="Timed acts" hint="1 s: set kp 100 N.m/rad" names={state.at} most={MOST_WATCHED}
                   change={(at) => tried.set({ at })} />
         <NameList id="try-expect" label="Expectations" hint="max |u| <= 1 V" names={state.expect} most={MOST_WATCHED}
                   change={(expect) => tried.set({ expect })} />
+        <button type="submit" hidden />
       </form>
-      {state.result?.why && <p className="fault" data-try-why>The try was ended: {state.result.why}.</p>}
-      {state.message !== "" && <p className="fault" role="alert" data-try-message>{state.message}</p>}
       {!state.isBusy && <Verdict answer={answer} />}
       {state.table && <Curves table={state.table} before={state.before} label="Curves of the try" />}
     </section>
