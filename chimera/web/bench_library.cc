@@ -15,11 +15,9 @@ namespace fs = std::filesystem;
 Json list_of(const Library& library) {
   Json components = Json::array(), faults = Json::array();
   for (const LibraryEntry& entry : library.entries())
-    components.push_back(
-        {{"name", entry.descriptor.name}, {"doc", entry.descriptor.doc}, {"file", entry.object_file}});
+    components.push_back({{"name", entry.descriptor.name}, {"doc", entry.descriptor.doc}, {"file", entry.object_file}});
   for (const Error& fault : library.faults())
-    faults.push_back(
-        {{"file", std::string(fault.where.view())}, {"message", std::string(fault.message.view())}});
+    faults.push_back({{"file", std::string(fault.where.view())}, {"message", std::string(fault.message.view())}});
   Json list = Json::object();
   list["components"] = std::move(components);
   list["faults"] = std::move(faults);

@@ -154,8 +154,8 @@ Json DraftMethods::note() {
 }
 
 RpcResponse DraftMethods::stale() const {
-  return RpcResponse::error(control::kRefused, "the draft has changed: its version is " +
-                                                   std::to_string(draft_.version()),
+  return RpcResponse::error(control::kRefused,
+                            "the draft has changed: its version is " + std::to_string(draft_.version()),
                             {{"kind", "stale"}, {"where", "version"}, {"version", draft_.version()}});
 }
 
@@ -206,11 +206,13 @@ void DraftMethods::take_analysis(const Analysis& asked, const RpcResponse& given
 /// `given`: the refusal of the analysis; good: it is there.
 void DraftMethods::answer_all(const RpcResponse& given) {
   const bool is_refused = given.code == control::kRefused;
-  const auto failed = std::make_shared<const std::string>(
-      is_refused ? no_analysis(draft_.version(), disk_.path(), draft_.text()) : "");
+  const auto failed =
+      std::make_shared<const std::string>(is_refused ? no_analysis(draft_.version(), disk_.path(), draft_.text()) : "");
   for (const Waiter& one : std::exchange(waiters_, {})) {
-    if (given.is_good()) one.reply(answer(analysis_.text, problem()));
-    else one.reply(is_refused ? answer(failed, given.message) : given);
+    if (given.is_good())
+      one.reply(answer(analysis_.text, problem()));
+    else
+      one.reply(is_refused ? answer(failed, given.message) : given);
   }
 }
 

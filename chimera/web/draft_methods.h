@@ -12,8 +12,8 @@
 #include "chimera/control/control_backend.h"
 #include "chimera/platform/clock.h"
 #include "chimera/web/analyses.h"
-#include "chimera/web/page_draft.h"
 #include "chimera/web/draft_file.h"
+#include "chimera/web/page_draft.h"
 
 namespace chimera::web {
 

@@ -54,8 +54,8 @@ RpcResponse StartedRun::output() const {
 
 void StartedRun::serve(Nanoseconds now) {
   if (ProcessEnd end; process_.has_ended(end))
-    ended_ = end.by_signal ? "by " + std::string(signal_text(end.code).view())
-                           : "with status " + std::to_string(end.code);
+    ended_ =
+        end.by_signal ? "by " + std::string(signal_text(end.code).view()) : "with status " + std::to_string(end.code);
   if (output_.fd < 0 || now - bounded_at_ < seconds(1)) return;
   bounded_at_ = now;
   const std::int64_t size = file_size(output_.fd);

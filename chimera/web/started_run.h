@@ -14,7 +14,7 @@ namespace chimera::web {
 /// Context: setup; may block on the disk.
 class StartedRun {
  public:
-  static constexpr std::size_t kShown = std::size_t{16} << 10;  ///< bytes of an answer of `output`
+  static constexpr std::size_t kShown = std::size_t{16} << 10;    ///< bytes of an answer of `output`
   static constexpr std::size_t kMaxBytes = std::size_t{4} << 20;  ///< of the file, while chimera-web runs
 
   /// `program`: of chimera. `folder`: of the file with the output, or "".

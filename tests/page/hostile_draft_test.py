@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import sys
@@ -154,7 +155,15 @@ class Drafts(unittest.TestCase):
             folder.mkdir(parents=True)
             (folder / "cut.component.json").write_text("{")
             part = json.loads((BUILD / "components" / "t_counter.component.json").read_text())
-            (folder / "of_my_own.component.json").write_text(json.dumps({**part, "name": "of_my_own"}))
+            own = folder / "of_my_own.component.json"
+            own.write_text(json.dumps({**part, "name": "of_my_own"}))
+
+            def fingerprint():  # the fault of the changed descriptor has the right one
+                said = " ".join(fault["message"] for fault in page.call("library")["faults"])
+                return re.search(r"its content gives (\w+)", said)
+
+            await_that(fingerprint, "a fault")
+            own.write_text(json.dumps({**part, "name": "of_my_own", "fingerprint": fingerprint()[1]}))
             await_that(lambda: task()["known"], "the component")
             library = page.call("library")
             JUDGES["bench_library"].validate(library)
