@@ -60,9 +60,10 @@ export function Lamps({ state, machine, machineState, bench, why }: Props) {
   const { file, machine: machineLamp } = lamps(state);
   if (!now) return null;
   const sign = (lamp: string) => (lamp === "same" ? "=" : "≠");
-  const words = `draft ${sign(file)} file${file === "same" ? "" : shortNames(state.fromFile)}` +
-    (machineLamp === "none" ? (isRunning ? "" : ", no machine runs it")
-      : `, draft ${sign(machineLamp)} machine${machineLamp === "same" ? "" : shortNames(state.fromMachine)}`);
+  const ofFile = `draft ${sign(file)} file${file === "same" ? "" : shortNames(state.fromFile)}`;
+  const ofMachine = machineLamp === "none" ? (isRunning ? "" : ", no machine runs it")
+    : `, draft ${sign(machineLamp)} machine${machineLamp === "same" ? "" : shortNames(state.fromMachine)}`;
+  const words = file === "same" && machineLamp === "same" ? "draft = file = machine" : ofFile + ofMachine;
   return (
     <div className="lamps">
       <span role="status" aria-label="Draft, file and machine" data-lamps title={now.file}>{words}</span>
