@@ -56,11 +56,12 @@ export const tried = new Store<TryState>({
   table: null, before: null, message: "",
 });
 
-/** Before a person chooses: what tasks produce, scalars first. */
+/** Before a person chooses: what tasks produce, numbers first. */
 function firstWatched(): string[] {
-  const produced = (draft.state.get().outline?.variables ?? []).filter((one) => one.producers.length > 0);
-  const rank = (shape: string) => (shape === "" ? 0 : 1);
-  return produced.sort((a, b) => rank(a.shape) - rank(b.shape)).slice(0, FIRST_WATCHED).map((one) => one.variable);
+  const produced = (draft.state.get().outline?.variables ?? [])
+    .filter((one) => !one.constant && one.producers.length > 0);
+  const rank = ({ type, shape }: { type: string; shape: string }) => (type === "bool" ? 2 : shape === "" ? 0 : 1);
+  return produced.sort((a, b) => rank(a) - rank(b)).slice(0, FIRST_WATCHED).map((one) => one.variable);
 }
 
 function take(result: TrialResult): void {
