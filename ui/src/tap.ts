@@ -97,9 +97,9 @@ export class TapRecords {
     const had = new Map<string, number>();
     for (const other of new Set([rtpu, ...sharers]))
       for (const one of this.all.get(other) ?? []) {
-        const ns = one.kind === "run" && one.task !== null ? Math.min(until, one.at + one.b) - Math.max(from, one.at) : 0;
-        if (ns <= 0) continue;
-        const name = other === rtpu ? one.task! : `${one.task} of ${other}`;
+        const ns = Math.min(until, one.at + one.b) - Math.max(from, one.at);
+        if (one.kind !== "run" || one.task === null || ns <= 0) continue;
+        const name = other === rtpu ? one.task : `${one.task} of ${other}`;
         had.set(name, (had.get(name) ?? 0) + ns);
       }
     return { at, rtpu, task, late, dropped: isDrop ? a : 0,
