@@ -167,8 +167,8 @@ class Candidates {
     add_links(links, task, port);
     const auto give = [&](const std::string& section, const std::string& variable) {
       if (const std::string value = value_of(task, port); !value.empty())
-        offers.push_back({section + ": {" + variable + ": " + value + "}, to be changed",
-                          {SetValue{{section, variable}, value}}});
+        offers.push_back(
+            {section + ": {" + variable + ": " + value + "}, to be changed", {SetValue{{section, variable}, value}}});
     };
     if (is_constant) give("constants", fault_.found);
     append(offers, links);

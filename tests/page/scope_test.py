@@ -16,8 +16,9 @@ MS = 1_000_000
 
 
 class ScopeTest(PageTest):
-    def record(self, *channels, **fields):
+    def record(self, *channels, mode="single", **fields):
         self.page.press("s")
+        self.page.click(f"#scope-mode option[value={mode}]")
         for name in channels:
             self.page.one("#scope-channels").send_keys(name, Keys.ENTER)
             self.page.await_one(self.page.button(f"Take {name} away"))
@@ -26,10 +27,6 @@ class ScopeTest(PageTest):
             field.send_keys(Keys.CONTROL + "a")
             field.send_keys(words)
         self.page.click(self.page.button("Record"))
-
-    def mode(self, name):
-        self.page.press("s")
-        self.page.click(f"#scope-mode option[value={name}]")
 
     def results(self):
         self.read_logs()
@@ -66,8 +63,7 @@ class ScopeTest(PageTest):
 
     def test_auto_records_without_a_trigger_until_it_is_stopped(self):
         self.look_at(Machine(self.runtime))
-        self.mode("auto")
-        self.record("speed", trigger="speed < 0 m/s", wait="100 ms", **{"for": "100 ms"})
+        self.record("speed", mode="auto", trigger="speed < 0 m/s", wait="100 ms", **{"for": "100 ms"})
         self.recordings(2)
         self.page.click(self.page.button("Stop recording"))
         self.page.await_one("[data-scope=off]")

@@ -79,7 +79,7 @@ class TryTest(PageTest):
         self.assertIn("speed", names)
         for number, name in enumerate(names):
             rows = [line.split(",") for line in lines]
-            rows = [(float(row[0]), float(row[number + 1])) for row in rows if row[number + 1]]
+            rows = [(float(row[0]), float(row[number + 1])) for row in rows if row[number + 1] not in ("", "nan")]
             drawn = list(vertices(self.page.attribute(f"path[data-channel='{name}']", "d")))
             self.assertEqual(len(drawn), len(rows), name)
             (t0, v0), (t1, v1), (x0, y0), (x1, y1) = min(rows), max(rows), drawn[0], drawn[-1]

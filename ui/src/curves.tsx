@@ -16,6 +16,7 @@ function Strip({ table, before, unit, top, x }:
   const old = (before?.channels ?? []).filter((channel) => own.some((one) => one.channel.name === channel.name));
   const [low, high] = useMemo(() => rangeOf([...own.map((one) => one.channel), ...old]), [table, before, unit]);
   const y = (value: number) => top + (STRIP * (high - value)) / (high - low);
+  const end = table.time[table.time.length - 1] ?? 0;
   const gaps = useMemo(() => gapsOf(table), [table]);
   const breaks = useMemo(() => new Set(gaps.map((gap) => gap.to)), [gaps]);
   return (
@@ -32,7 +33,7 @@ function Strip({ table, before, unit, top, x }:
               width={Math.max(2, x(gap.to) - x(gap.from))} />))}
       {old.map((channel) => (
         <path key={channel.name} className="curve pale" data-before={channel.name}
-              d={curvePath(reduced(before!, channel), x, y, new Set())} />))}
+              d={curvePath(reduced(before!, channel).filter((one) => one.at <= end), x, y, new Set())} />))}
       {own.map(({ channel, number }) => (
         <path key={channel.name} className={look(number)} data-channel={channel.name}
               d={curvePath(reduced(table, channel), x, y, breaks)} />))}

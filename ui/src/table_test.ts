@@ -77,6 +77,11 @@ test("a miss names the tasks that had the processor from the release on", () => 
   assert.equal(blame(miss!, words), "busy 4ms, pid itself 2ms, log of beside 1ms");
   assert.equal(blame(tap.misses(() => [])[0]!, words), "busy 4ms, pid itself 2ms");
   assert.equal(tap.lost, 3);
+  tap.add({ rtpu: "servo", lost: 0, records: [[11 * MS, "drop", "pid", 2, 0], [10 * MS, "run", "busy", 2, 3 * MS],
+    [16 * MS, "release", "pid", 9, 5 * MS]] });
+  const [drop] = tap.misses(() => []);
+  assert.deepEqual([drop?.at, drop?.dropped], [11 * MS, 2]);
+  assert.equal(blame(drop!, words), "busy 7ms, pid itself 2ms");
 });
 
 test("a timeline has its marks at their places, and keeps 10 s, or one second of very many records", () => {

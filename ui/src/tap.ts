@@ -8,8 +8,11 @@ export interface TimelineRow {
   /** Spans of pixels in which the task ran, and pixels of marks. */
   runs: [number, number][]; releases: number[]; preempts: number[]; misses: number[];
 }
-/** Shares of the processor from the release of the job to its end, the greatest first. */
-export interface Miss { at: number; rtpu: string; task: string; late: number; had: { task: string; ns: number }[] }
+/** A job that ended late, or releases that never ran (`dropped`). `had`: shares of the processor, the greatest first:
+ *  from the release of the job to its end, or from the release before the dropped ones to the next one. */
+export interface Miss {
+  at: number; rtpu: string; task: string; late: number; dropped: number; had: { task: string; ns: number }[];
+}
 
 const SECOND = 1e9, SECONDS = 10;
 export const MOST_PER_SECOND = 20_000, MOST_MISSES = 20;
@@ -57,7 +60,7 @@ export class TapRecords {
         rows.set(key, row);
         if (kind === "release") mark(row.releases, at);
         else if (kind === "preempt") mark(row.preempts, at);
-        else if (kind === "miss") mark(row.misses, at);
+        else if (kind === "miss" || kind === "drop") mark(row.misses, at);
         else if (kind === "run") {
           const begin = place(at), end = Math.max(begin + 1, place(at + b)), last = row.runs[row.runs.length - 1];
           if (last && begin <= last[1]) last[1] = Math.max(last[1], end);
@@ -69,33 +72,37 @@ export class TapRecords {
 
   /** The last misses, newest first. `sharers`: the rtpus on the CPU of an rtpu, which have its processor too. */
   misses(sharers: (rtpu: string) => string[]): Miss[] {
-    const found: Miss[] = [];
+    const found: { at: number; rtpu: string; index: number }[] = [];
     for (const [rtpu, records] of this.all)
-      records.forEach((record, i) => {
-        if (record.kind === "miss" && record.task !== null)
-          found.push(this.missOf(rtpu, record.task, i, sharers(rtpu)));
+      records.forEach(({ at, kind, task }, index) => {
+        if ((kind === "miss" || kind === "drop") && task !== null) found.push({ at, rtpu, index });
       });
-    return found.sort((x, y) => y.at - x.at).slice(0, MOST_MISSES);
+    return found.sort((x, y) => y.at - x.at).slice(0, MOST_MISSES)
+      .map(({ rtpu, index }) => this.missOf(rtpu, index, sharers(rtpu)));
   }
 
-  private missOf(rtpu: string, task: string, index: number, sharers: string[]): Miss {
-    const records = this.all.get(rtpu)!, { at, a: cycle, b: late } = records[index]!;
+  private missOf(rtpu: string, index: number, sharers: string[]): Miss {
+    const records = this.all.get(rtpu)!, { at, a, b: late, kind } = records[index]!;
+    const task = records[index]!.task!, isDrop = kind === "drop";
+    const isRelease = (one: TapRecord) => one.kind === "release" && one.task === task;
     let from = at - late;
     for (let i = index; i >= 0; --i) {
       const one = records[i]!;
-      if (one.kind !== "release" || one.task !== task || one.a !== cycle) continue;
+      if (!isRelease(one) || (isDrop ? one.at >= at : one.a !== a)) continue;
       from = one.at;
       break;
     }
+    const next = isDrop ? records.find((one, i) => i > index && isRelease(one) && one.at > at) : undefined;
+    const until = isDrop ? next?.at ?? this.latest : at;
     const had = new Map<string, number>();
     for (const other of new Set([rtpu, ...sharers]))
       for (const one of this.all.get(other) ?? []) {
-        const ns = one.kind === "run" && one.task !== null ? Math.min(at, one.at + one.b) - Math.max(from, one.at) : 0;
-        if (ns <= 0) continue;
-        const name = other === rtpu ? one.task! : `${one.task} of ${other}`;
+        const ns = Math.min(until, one.at + one.b) - Math.max(from, one.at);
+        if (one.kind !== "run" || one.task === null || ns <= 0) continue;
+        const name = other === rtpu ? one.task : `${one.task} of ${other}`;
         had.set(name, (had.get(name) ?? 0) + ns);
       }
-    return { at, rtpu, task, late,
+    return { at, rtpu, task, late, dropped: isDrop ? a : 0,
       had: [...had].map(([name, ns]) => ({ task: name, ns })).sort((x, y) => y.ns - x.ns) };
   }
 }

@@ -85,15 +85,15 @@ export function Timeline({ name, state }: { name: string; state: MachineState })
         <span className="hint">{isShort
           ? `more than ${count(MOST_PER_SECOND)} records a second: the last second only` : "the last 10 s"}
           {shown && shown.lost > 0 && `; ${count(shown.lost)} records are lost`}; bars are runs, ticks below releases,
-          ticks above preemptions, crosses missed deadlines</span>
+          ticks above preemptions, crosses missed deadlines and dropped releases</span>
       </div>
       <canvas ref={canvas} role="img" onClick={() => pause(!isPaused)}
               aria-label={`Timeline of ${shown?.tasks ?? 0} tasks; the misses stand in the table below`} />
       {shown && shown.misses.length > 0
         ? <Table label="Missed deadlines, newest first"
                  heading={["before the end", "task", "late", "who had the processor"]}
-                 rows={shown.misses.map((miss) => [duration(shown.latest - miss.at), miss.task, duration(miss.late),
-                   blame(miss, duration)])} />
+                 rows={shown.misses.map((miss) => [duration(shown.latest - miss.at), miss.task,
+                   miss.dropped > 0 ? `${miss.dropped} dropped` : duration(miss.late), blame(miss, duration)])} />
         : <p className="hint">No deadline was missed.</p>}
     </div>
   );

@@ -61,12 +61,12 @@ export const tried = new Store<TryState>({
   table: null, before: null, message: "", offers: [],
 });
 
-/** While a person chooses none: what tasks produce, scalars first. */
+/** While a person chooses none: what tasks produce, numbers first. */
 export function firstWatched(): string[] {
   const produced = (draft.state.get().outline?.variables ?? [])
-    .filter((one) => one.producers.length > 0 && !one.constant);  // a constant has no curve
-  const rank = (shape: string) => (shape === "" ? 0 : 1);
-  return produced.sort((a, b) => rank(a.shape) - rank(b.shape)).slice(0, FIRST_WATCHED).map((one) => one.variable);
+    .filter((one) => !one.constant && one.producers.length > 0);
+  const rank = ({ type, shape }: { type: string; shape: string }) => (type === "bool" ? 2 : shape === "" ? 0 : 1);
+  return produced.sort((a, b) => rank(a) - rank(b)).slice(0, FIRST_WATCHED).map((one) => one.variable);
 }
 
 function take(result: TrialResult): void {
