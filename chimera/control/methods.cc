@@ -25,6 +25,7 @@ constexpr MethodRule question(MethodId id, const char* name) { return {id, name,
 constexpr Parameter kTasks = {"tasks", Kind::kTexts, true};
 constexpr Parameter kText = {"text", Kind::kText, true}, kFile = {"file", Kind::kText, false};
 constexpr Parameter kComponent = {"component", Kind::kText, true};
+constexpr Parameter kNumber = count("number", 1, INT64_MAX, true);
 constexpr Parameter kVersion = count("version", 1, INT64_MAX, true);
 
 /// The signals that a client may name, a blank between each two: all before `wakeup`, which is `ring`.
@@ -86,6 +87,14 @@ constexpr MethodRule kMethods[] = {
     {MethodId::kSheet, "sheet", Role::kObserve, false, true, {kComponent}},
     {MethodId::kDocument, "document", Role::kObserve, false, false, {{"name", Kind::kText, true}}},
     {MethodId::kValues, "values", Role::kObserve, false, false, {kComponent, {"port", Kind::kText, true}}},
+    {MethodId::kTry, "try", Role::kConfigure, true, false,
+     {kVersion, {"duration", Kind::kText, true}, {"watch", Kind::kTexts, true}, {"every", Kind::kText, false},
+      {"at", Kind::kTexts, false}, {"expect", Kind::kTexts, false}, {"devices", Kind::kBool, false}}},
+    {MethodId::kScope, "scope", Role::kConfigure, true, false,
+     {{"machine", Kind::kText, true}, {"channels", Kind::kTexts, true}, {"trigger", Kind::kText, false},
+      {"pre", Kind::kText, false}, {"for", Kind::kText, false}, {"wait", Kind::kText, false}}},
+    {MethodId::kResult, "result", Role::kObserve, false, false, {kNumber}},
+    {MethodId::kHalt, "halt", Role::kConfigure, true, false, {kNumber}},
 };
 // clang-format on
 

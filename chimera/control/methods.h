@@ -28,7 +28,7 @@ enum class MethodId : unsigned char {
   kHello, kStatus, kDescribe, kGet, kProfile, kEvents, kReceipts, kWhy, kPlan, kSubscribe, kUnsubscribe, kCheck,
   kSchedule, kLibrary, kText, kSignal, kRing, kSet, kFlag, kSwitch, kCancel, kDrill, kSave, kEnd,
   kMachines, kDraft, kEdit, kReplace, kRemedies, kDifferences, kWrite, kKeep, kStart, kOutput, kSheet,
-  kDocument, kValues
+  kDocument, kValues, kTry, kScope, kResult, kHalt
 };
 
 struct MethodRule {
@@ -37,7 +37,7 @@ struct MethodRule {
   Role role = Role::kObserve;
   bool is_act = false;     ///< an act of the document: goes before questions, and a client never sends it twice
   bool is_costly = false;  ///< a question that takes long: counts as an act in the rate of its connection
-  Parameter parameters[5];
+  Parameter parameters[7];
 };
 
 /// Every method once, in the order of MethodId.

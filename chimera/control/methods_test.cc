@@ -75,7 +75,7 @@ TEST(Methods, ActsNeedTheRoleOperateOrMore) {
     acts += rule.is_act ? std::string(" ") + rule.name : "";
     EXPECT_EQ(static_cast<std::ptrdiff_t>(rule.id), &rule - methods().data()) << rule.name << ": keys of a table";
   }
-  EXPECT_EQ(acts, " signal ring set flag switch cancel drill save end edit replace write keep start");
+  EXPECT_EQ(acts, " signal ring set flag switch cancel drill save end edit replace write keep start try scope halt");
   EXPECT_EQ(find_method("nothing"), nullptr);
 }
 

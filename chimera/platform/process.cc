@@ -42,15 +42,29 @@ constexpr timespec kRespite{0, 10'000'000};
 
 alignas(64) std::byte holder_stack[16 * 1024];
 
-/// In the child: a session of its own, and its standard streams.
-bool stand_apart(int output) noexcept {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kIsSanitized = true;  // needs more memory than any limit of this project
+#else
+constexpr bool kIsSanitized = false;
+#endif
+
+bool limit_to(__rlimit_resource what, std::uint64_t most) noexcept {
+  const rlimit bound{most, most};
+  return ::setrlimit(what, &bound) == 0;
+}
+
+/// In the child: a session of its own, its standard streams and its limits.
+bool stand_apart(const ChildPlace& place, pid_t parent) noexcept {
   const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-  return ::setsid() >= 0 && nothing >= 0 && ::dup2(nothing, 0) >= 0 && ::dup2(output, 1) >= 0 && ::dup2(output, 2) >= 0;
+  return ::setsid() >= 0 && nothing >= 0 && ::dup2(nothing, 0) >= 0 && ::dup2(place.output, 1) >= 0 &&
+         ::dup2(place.error, 2) >= 0 && (!place.is_bound || follow_parent(parent, SIGKILL)) &&
+         (place.memory == 0 || kIsSanitized || limit_to(RLIMIT_AS, place.memory)) &&
+         (place.file == 0 || limit_to(RLIMIT_FSIZE, place.file));
 }
 
 // In the child, between fork and exec: nothing here may allocate, lock or return.
 [[noreturn]] void become(const char* program, char* const* words, std::span<const int> passed, int failed, int blocked,
-                         int output) noexcept {
+                         const ChildPlace& place, pid_t parent) noexcept {
   const int above = kFirst + static_cast<int>(passed.size());
   // Copy to higher numbers first: a descriptor to pass may itself be 3 or 4 here. exec closes the copies.
   int copies[kMaxPassed] = {};
@@ -63,10 +77,12 @@ bool stand_apart(int output) noexcept {
   for (std::size_t i = 0; good && i < passed.size(); ++i) good = ::dup2(copies[i], kFirst + static_cast<int>(i)) >= 0;
   // Descriptors that the parent left open without close-on-exec end at exec too.
   good = good && ::close_range(static_cast<unsigned>(above), UINT_MAX, CLOSE_RANGE_CLOEXEC) == 0;
-  good = good && (output < 0 || stand_apart(output));
+  good = good && (place.output < 0 || stand_apart(place, parent));
   const int passing_error = good ? 0 : errno;
   for (int number = 1; number < NSIG; ++number) ::signal(number, SIG_DFL);
-  for (const int number : {SIGINT, SIGHUP, SIGPIPE, SIGXFSZ}) ::signal(number, SIG_IGN);
+  for (const int number : {SIGPIPE, SIGXFSZ}) ::signal(number, SIG_IGN);
+  if (place.output < 0)  // else no terminal sends these
+    for (const int number : {SIGINT, SIGHUP}) ::signal(number, SIG_IGN);
   sigset_t mask;
   ::sigemptyset(&mask);
   if (blocked != 0) ::sigaddset(&mask, blocked);
@@ -102,15 +118,16 @@ Message signal_text(int number) noexcept {
 
 Result<Process> Process::start(const char* program, std::span<const char* const> arguments,
                                std::span<const int> descriptors, int blocked) noexcept {
-  return start(program, arguments, descriptors, blocked, -1);
+  return start(program, arguments, descriptors, blocked, {});
 }
 
-Result<Process> Process::start_apart(const char* program, std::span<const char* const> arguments, int output) noexcept {
-  return start(program, arguments, {}, 0, output);
+Result<Process> Process::start_apart(const char* program, std::span<const char* const> arguments,
+                                     const ChildPlace& place) noexcept {
+  return start(program, arguments, {}, 0, place);
 }
 
 Result<Process> Process::start(const char* program, std::span<const char* const> arguments,
-                               std::span<const int> descriptors, int blocked, int output) noexcept {
+                               std::span<const int> descriptors, int blocked, const ChildPlace& place) noexcept {
   const Message what = Message() << "program " << program;
   if (arguments.size() > kMaxArguments || descriptors.size() > kMaxPassed)
     return (Message() << what.view() << ": more than " << kMaxArguments << " arguments or " << kMaxPassed
@@ -126,8 +143,8 @@ Result<Process> Process::start(const char* program, std::span<const char* const>
   sigset_t all, before;
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
-  const pid_t pid = ::fork();
-  if (pid == 0) become(program, words, descriptors, failed.fd, blocked, output);
+  const pid_t self = ::getpid(), pid = ::fork();
+  if (pid == 0) become(program, words, descriptors, failed.fd, blocked, place, self);
   const int fork_error = errno;
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   errno = fork_error;
@@ -222,14 +239,8 @@ void close_at_exec(int descriptor) noexcept { ::fcntl(descriptor, F_SETFD, FD_CL
 
 void run_in_background(std::uint64_t memory) noexcept {
   (void)::setpriority(PRIO_PROCESS, 0, kBackgroundNice);
-  const rlimit no_core{0, 0};
-  (void)::setrlimit(RLIMIT_CORE, &no_core);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  const rlimit bound{memory, memory};
-  (void)::setrlimit(RLIMIT_AS, &bound);
-#else
-  (void)memory;
-#endif
+  (void)limit_to(RLIMIT_CORE, 0);
+  if (!kIsSanitized) (void)limit_to(RLIMIT_AS, memory);
   const OwnedDescriptor score(::open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC));
   if (score.fd >= 0) (void)!::write(score.fd, kFirstToEnd, sizeof kFirstToEnd - 1);
 }

@@ -28,6 +28,14 @@ struct ProcessEnd {
 /// "signal 9 (SIGKILL)". Context: any; wait-free.
 Message signal_text(int number) noexcept;
 
+/// Place and limits of a child in a session of its own. Plain value.
+struct ChildPlace {
+  int output = -1, error = -1;  ///< its standard output and standard error
+  bool is_bound = false;        ///< the kernel kills the child when this process dies
+  std::uint64_t memory = 0;     ///< addresses of each of its processes, in bytes; 0: no limit. No sanitizer has one.
+  std::uint64_t file = 0;       ///< bytes of a file that it writes; a write beyond fails; 0: no limit
+};
+
 /// A child. Move-only; closing the handle leaves the child alone. Context: setup.
 class Process {
  public:
@@ -41,8 +49,9 @@ class Process {
                                std::span<const int> descriptors, int blocked = 0) noexcept;
 
   /// Starts `program` as start() does, in a session of its own, without descriptors of this process: standard input is
-  /// /dev/null, standard output and standard error are `output`. No signal of a terminal reaches the child.
-  static Result<Process> start_apart(const char* program, std::span<const char* const> arguments, int output) noexcept;
+  /// /dev/null. No signal of a terminal reaches the child, which ignores neither SIGINT nor SIGHUP.
+  static Result<Process> start_apart(const char* program, std::span<const char* const> arguments,
+                                     const ChildPlace& place) noexcept;
 
   Process() noexcept = default;
   Process(Process&& other) noexcept : pidfd_(std::exchange(other.pidfd_, -1)), pid_(std::exchange(other.pid_, -1)) {}
@@ -61,7 +70,7 @@ class Process {
 
  private:
   static Result<Process> start(const char* program, std::span<const char* const> arguments,
-                               std::span<const int> descriptors, int blocked, int output) noexcept;
+                               std::span<const int> descriptors, int blocked, const ChildPlace& place) noexcept;
 
   int pidfd_ = -1;
   pid_t pid_ = -1;

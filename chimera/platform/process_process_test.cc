@@ -55,7 +55,7 @@ TEST(Process, StartsApartWithoutStreamsAndDescriptorsOfItsParent) {
   ASSERT_EQ(::pipe(ends), 0);  // no close-on-exec: the child must not get them all the same
   const std::array<const char*, 3> words = {
       "sh", "-c", "ps -o sid= -p $$ | tr -d ' '; echo $$; cat; ls /proc/$$/fd | tr '\\n' ' '; echo error >&2"};
-  auto child = Process::start_apart("/bin/sh", words, ends[1]);
+  auto child = Process::start_apart("/bin/sh", words, {.output = ends[1], .error = ends[1]});
   ASSERT_TRUE(child) << child.error().message.c_str();
   const std::string own = std::to_string(child->pid());
   ::close(ends[1]);
@@ -66,6 +66,39 @@ TEST(Process, StartsApartWithoutStreamsAndDescriptorsOfItsParent) {
   ProcessEnd end;
   EXPECT_TRUE(child->wait(end, kLimit));
   EXPECT_EQ(text, own + "\n" + own + "\n0 1 2 error\n");
+}
+
+TEST(Process, BoundsTheFilesOfAChildInItsPlace) {
+  int ends[2];
+  ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+  const std::array<const char*, 3> words = {"sh", "-c", "ulimit -f"};  // in 512 bytes
+  auto child = Process::start_apart("/bin/sh", words, {.output = ends[1], .error = ends[1], .file = 1 << 20});
+  ASSERT_TRUE(child) << child.error().message.c_str();
+  ::close(ends[1]);
+  char bytes[64] = {};
+  EXPECT_GT(::read(ends[0], bytes, sizeof bytes - 1), 0);
+  ::close(ends[0]);
+  EXPECT_STREQ(bytes, "2048\n");
+  ProcessEnd end;
+  EXPECT_TRUE(child->wait(end, kLimit));
+}
+
+TEST(Process, EndsABoundChildWithItsParent) {
+  int ends[2];
+  ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+  const pid_t parent = ::fork();
+  if (parent == 0) {
+    const std::array<const char*, 3> words = {"sh", "-c", "exec sleep 600"};
+    const auto child = Process::start_apart("/bin/sh", words, {.output = ends[1], .error = ends[1], .is_bound = true});
+    ::_exit(child ? 0 : 1);
+  }
+  ::close(ends[1]);
+  int status = 0;
+  EXPECT_EQ(::waitpid(parent, &status, 0), parent);
+  EXPECT_EQ(status, 0);
+  pollfd closed{ends[0], POLLIN, 0};  // the last writer is the child
+  EXPECT_EQ(::poll(&closed, 1, kLimitMs), 1);
+  ::close(ends[0]);
 }
 
 TEST(Process, ReportsTheEndOfItsChild) {

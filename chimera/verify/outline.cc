@@ -28,6 +28,7 @@ OutlinePort port_of(const LinkedPort& port) {
   out.declared = declared.name;
   out.kind = declared.kind;
   out.doc = declared.doc;
+  out.is_shared = declared.shared;
   out.is_parted = !port.parted_from.empty();
   out.variable = out.is_parted ? port.parted_from : port.variable;
   if (port.own != nullptr) out.own = *port.own;
@@ -140,6 +141,7 @@ Json port_json(const OutlinePort& port) {
           {"shape", port.shape},
           {"solved", port.is_solved},
           {"variable", text_or_null(port.variable)},
+          {"shared", port.is_shared},
           {"parted", port.is_parted},
           {"value", text_or_null(port.own)},
           {"default", text_or_null(port.preset)},

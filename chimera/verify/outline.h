@@ -21,6 +21,7 @@ struct OutlinePort {
   std::string type, unit, shape;  ///< solved; without a solution as declared: "T", "U/s", "[n]"
   bool is_solved = false;
   std::string variable;     ///< that the text links; empty: none
+  bool is_shared = false;   ///< a resource that several tasks may open at once
   bool is_parted = false;   ///< a fault keeps the port apart from `variable`
   Node own;                 ///< written under `constants`, `initial` or `resources`; kNone: nothing
   bool is_own_item = false;  ///< `own` is an item of a written list

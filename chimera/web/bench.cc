@@ -27,6 +27,10 @@ RpcResponse no_draft() {
   return RpcResponse::refused("draft", "this page has no draft: no FILE was named", "", "type `chimera web FILE`");
 }
 
+std::string beside(const std::string& folder, const char* name) {
+  return folder.empty() ? "" : (std::filesystem::path(folder).parent_path() / name).string();
+}
+
 }  // namespace
 
 Bench::Bench(BenchFacts facts, Clock& clock, std::function<void(const std::string&)> tell)
@@ -34,7 +38,8 @@ Bench::Bench(BenchFacts facts, Clock& clock, std::function<void(const std::strin
       clock_(clock),
       library_(facts_.workplace, facts_.file, facts_.program, clock),
       analyses_(facts_.programs + "/chimera-manager", library_, clock, tell),
-      run_(facts_.programs + "/chimera", facts_.drafts) {
+      run_(facts_.programs + "/chimera", facts_.drafts),
+      trials_(facts_.programs + "/chimera", beside(facts_.drafts, "trials"), facts_.file, clock) {
   if (!facts_.file.empty()) draft_.emplace(facts_.file, facts_.drafts, analyses_, clock, std::move(tell));
 }
 
@@ -51,6 +56,8 @@ void Bench::call(const control::MethodRule& method, const Json& parameters, cons
     case MethodId::kStart: return reply(start());
     default: break;
   }
+  if (Trials::carries_out(method.id))
+    return trials_.call(method.id, parameters, caller, reply, draft_ ? &*draft_ : nullptr);
   if (control::is_of_bench(method.id)) return call_draft(method.id, parameters, caller, reply);
   reply(RpcResponse::error(control::kNoMethod,
                            "'" + std::string(method.name) + "' is a method of a subsystem: connect to /machine/NAME",
@@ -73,6 +80,7 @@ RpcResponse Bench::start() {
 void Bench::forget(std::uint64_t connection) {
   analyses_.forget(connection);
   if (draft_) draft_->forget(connection);
+  trials_.forget(connection);
 }
 
 RpcResponse Bench::open(std::uint64_t subscription, const Json& parameters) {
@@ -95,21 +103,24 @@ std::shared_ptr<const Json> Bench::pull(std::uint64_t subscription) {
 std::vector<int> Bench::descriptors() const {
   std::vector<int> all = analyses_.descriptors();
   all.push_back(run_.descriptor());
+  trials_.append_descriptors(all);
   return all;
 }
 
 Nanoseconds Bench::next_due() const noexcept {
-  return std::min(analyses_.next_due(), draft_ ? draft_->next_due() : kNever);
+  return std::min({analyses_.next_due(), draft_ ? draft_->next_due() : kNever, trials_.next_due()});
 }
 
 void Bench::serve() {
   analyses_.serve();
   if (draft_) draft_->serve();
   run_.serve(clock_.now());
+  trials_.serve();
 }
 
 void Bench::finish() {
   if (draft_) draft_->keep();
+  trials_.finish();
 }
 
 OwnedDescriptor Bench::connect(const std::string& machine) {

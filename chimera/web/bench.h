@@ -18,6 +18,7 @@
 #include "chimera/web/bench_library.h"
 #include "chimera/web/draft_methods.h"
 #include "chimera/web/started_run.h"
+#include "chimera/web/trials.h"
 
 namespace chimera::web {
 
@@ -81,6 +82,7 @@ class Bench final : public control::ControlBackend {
   Analyses analyses_;
   std::optional<DraftMethods> draft_;  // none without FILE
   StartedRun run_;
+  Trials trials_;
   Nanoseconds listed_at_{INT64_MIN / 2}, changed_at_{INT64_MIN / 2}, asked_at_{INT64_MIN / 2};
 };
 

@@ -36,15 +36,6 @@ class WithMember final : public control::Pieces {
   control::TextPieces member_;
 };
 
-/// The whole text of an answer of the analyst.
-std::shared_ptr<const std::string> text_of(const RpcResponse& answer) {
-  if (answer.text != nullptr) return answer.text;
-  std::string text;
-  while (answer.pieces->append_to(text)) {
-  }
-  return std::make_shared<const std::string>(std::move(text));
-}
-
 /// In the place of an analysis that failed: the text is there all the same.
 std::string no_analysis(std::uint64_t version, const std::string& file, const std::string& text) {
   Json report = Json::parse(Report(file).json());
@@ -58,6 +49,14 @@ std::string no_analysis(std::uint64_t version, const std::string& file, const st
 }
 
 }  // namespace
+
+std::shared_ptr<const std::string> text_of(const RpcResponse& answer) {
+  if (answer.text != nullptr) return answer.text;
+  std::string text;
+  while (answer.pieces->append_to(text)) {
+  }
+  return std::make_shared<const std::string>(std::move(text));
+}
 
 DraftMethods::DraftMethods(const std::string& file, const std::string& folder, Analyst& analyst, Clock& clock,
                            Tell tell)

@@ -17,6 +17,9 @@
 
 namespace chimera::web {
 
+/// The whole text of an answer that is JSON already. Context: setup.
+std::shared_ptr<const std::string> text_of(const control::RpcResponse& answer);
+
 /// An edit changes the draft only after the analyst has read the new text, and only if the version is still the same.
 /// Context: setup; may block on the disk.
 class DraftMethods {

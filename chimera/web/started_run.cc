@@ -29,7 +29,7 @@ RpcResponse StartedRun::start(const std::string& file) {
   if (!opened) return refuse(opened.error());
   std::filesystem::permissions(path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write, error);
   const std::array<const char*, 3> words = {program_.c_str(), "run", file.c_str()};
-  auto started = Process::start_apart(program_.c_str(), words, opened->fd);
+  auto started = Process::start_apart(program_.c_str(), words, {.output = opened->fd, .error = opened->fd});
   if (!started) return refuse(started.error());
   process_ = *std::move(started);
   output_ = *std::move(opened);

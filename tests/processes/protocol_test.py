@@ -126,7 +126,9 @@ GOOD = {"hello": {}, "status": {}, "describe": {"picture": True, "configuration"
         "replace": {"version": 1, "text": "a"}, "remedies": {"version": 1}, "differences": {"text": "a"},
         "write": {"version": 1}, "keep": {"what": "file"}, "start": {}, "output": {},
         "sheet": {"component": "counter"}, "document": {"name": "README.md"},
-        "values": {"component": "counter", "port": "count"}}
+        "values": {"component": "counter", "port": "count"},
+        "try": {"version": 1, "duration": "1 s", "watch": ["q"]}, "scope": {"machine": "arm", "channels": ["q"]},
+        "result": {"number": 1}, "halt": {"number": 1}}
 VALUES = [None, True, "", "nothing", [], ["count", 1], {}, -1, 0, 1, 1.5, 19, 20, 255, 256, 1000, 1001, 60000, 60001,
           2 ** 63 - 1]
 

@@ -4,13 +4,14 @@ import { memo, useEffect, useMemo, useState } from "react";
 import { AddTask, AssemblyForm, VariableForm } from "./assembly_form";
 import { MessageBox } from "./banners";
 import { Canvas, useFit } from "./canvas";
+import { Button } from "./controls";
 import { draft, DraftState, lamps } from "./draft";
 import { DraftPicture } from "./draft_picture";
 import { pulledActs } from "./edits";
 import { focusField } from "./edit_field";
 import { DraftCpus, FaultList } from "./fault_list";
 import { boxOf } from "./faults";
-import { assembleKeys, takeKey } from "./keys";
+import { addTask, assembleKeys, takeKey } from "./keys";
 import { DraftBanners, runsFile, whyNot } from "./lamps";
 import { Machine, MachineState } from "./machine";
 import { mark } from "./marks";
@@ -20,6 +21,8 @@ import { TaskForm } from "./task_form";
 import { duration } from "./text";
 import { taskAt } from "./text_places";
 import { TextPanel, TextPlace } from "./text_panel";
+import { tried } from "./trial";
+import { TryPanel } from "./try";
 import { choose, showVariable, view } from "./view";
 
 export function markDraft(state: DraftState): void {
@@ -62,7 +65,9 @@ function Empty({ state, why }: { state: DraftState; why: string }) {
   return (
     <div className="hint empty">
       <h1>{exists ? `${file} has no task` : `Nothing runs ${file}, and it does not exist yet`}</h1>
-      <p>Type the name of a component, press Enter, and link its ports at the right; Save writes the file.</p>
+      <p>Type the name of a component, press Enter, and add the next; Library finds names by word, port, unit or paper.
+        Ports of one name are linked. Buttons at the faults below fill in the rest. Try runs the draft without a file,
+        Save writes it.</p>
       <AddTask outline={state.outline} file={file} why={why} />
     </div>
   );
@@ -91,6 +96,7 @@ interface Props { machine: Machine | null; machineState: MachineState | null; be
 export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
   const state = useStore(draft.state);
   const { chosen, variable, zoom } = useStore(view);
+  const { isOpen: isTrying } = useStore(tried);
   const [place, setPlace] = useState<TextPlace | null>(null);
   const [line, setLine] = useState(0);
   const { draft: now, picture, outline } = state;
@@ -141,13 +147,15 @@ export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
         </Canvas>
         <aside aria-label="Details">
           {still !== "" && <p className="hint">{still}</p>}
+          {outline && (of || task) && <Button label="Add a task" title="key n" press={addTask} />}
           {outline && (of ? <VariableForm key={variable} of={of} why={still} />
             : task ? <TaskForm key={task.task} outline={outline} task={task} text={text} why={still}
                                measured={measured} faults={analysis.report.faults} />
             : <AssemblyForm outline={outline} text={text} why={still} file={now.file} />)}
         </aside>
       </main>
-      <section className="panels drawer" aria-label="Faults and text">
+      {isTrying && <TryPanel why={why} />}
+      <section className="panels drawer" aria-label="Faults and text" hidden={isTrying}>
         <FaultList analysis={analysis} offers={state.offers} why={why} go={go} />
         <TextPanel text={text} why={why} place={place} atLine={setLine} />
       </section>

@@ -3,6 +3,7 @@
 // Acts go one after the other, each on the version that the page shows.
 import { Door, Refusal } from "./door";
 import { History, Step, stepped } from "./history";
+import { withLessons } from "./lesson_values";
 import type { DraftAnswer, DraftNews, EditAct, LibraryComponent, Offer, Outline, Picture } from "./protocol";
 import { Store } from "./store";
 
@@ -215,7 +216,11 @@ export class Draft {
 
   private async offer(version: number): Promise<void> {
     const answer = await this.door?.call("remedies", { version }).catch(() => null);  // stale: the next version asks
-    if (answer && this.state.get().draft?.version === version) this.state.set({ offers: answer.offers });
+    const { draft, outline } = this.state.get();
+    if (!answer || !draft || draft.version !== version) return;
+    const offers = await withLessons(answer.offers, draft.analysis.report.faults, outline, (port) =>
+      this.call("values", port).then(({ values }) => values, () => []));
+    if (this.state.get().draft?.version === version) this.state.set({ offers });
   }
 
   /** Asks where the draft differs from FILE and from what runs. */

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The faults of the draft, each with the edits that were tried; the load of each CPU, judged without a run.
+// The faults of the draft, each with edits that remedy it; the load of each CPU, judged without a run.
+import { useLayoutEffect, useRef } from "react";
 import { Button } from "./controls";
 import { draft } from "./draft";
 import { cpuVerdicts } from "./faults";
@@ -7,9 +8,29 @@ import type { Analysis, Fault, Offer } from "./protocol";
 
 const MOST_SHOWN = 200;
 
+/** Gives the focus to the first button of a fault, or to the fault. `number`: at least that of the fault. */
+function focusFault(number: number): void {
+  const all = [...document.querySelectorAll<HTMLElement>("li[data-fault]")];
+  const next = all.find((one) => Number(one.dataset.fault) >= number) ?? all[0];
+  (next?.querySelector<HTMLElement>(".acts button") ?? next?.querySelector<HTMLElement>(".link"))?.focus();
+}
+
+/** From a fault to its first button, from there to the next fault. */
+export function focusNextFault(): void {
+  const focused = document.activeElement, present = focused?.closest<HTMLElement>("li[data-fault]");
+  const isBefore = focused?.matches(".link") && present?.querySelector(".acts button");
+  focusFault(present ? Number(present.dataset.fault) + (isBefore ? 0 : 1) : 0);
+}
+
 export function FaultList({ analysis, offers, why, go }:
   { analysis: Analysis; offers: Offer[]; why: string; go: (fault: Fault) => void }) {
   const { faults, errors, warnings } = analysis.report;
+  const pressed = useRef<number | null>(null);
+  useLayoutEffect(() => {  // the pressed button is gone: the next fault gets the focus, once it has its buttons
+    if (pressed.current === null || offers.length === 0) return;
+    if (document.activeElement === document.body) focusFault(pressed.current);
+    pressed.current = null;
+  }, [offers]);
   return (
     <section className="faults" aria-label="Faults">
       <h2>Faults {errors}{warnings > 0 && `, warnings ${warnings}`}</h2>
@@ -27,7 +48,7 @@ export function FaultList({ analysis, offers, why, go }:
             <span className="soft"> {fault.line > 0 && `line ${fault.line}`} {fault.remedy}</span>
             <span className="acts">{offers.filter((offer) => offer.fault === number).map((offer) => (
               <Button key={offer.label} label={offer.label} forbidden={why}
-                      press={() => void draft.press(offer.acts)} />))}</span>
+                      press={() => { pressed.current = number; void draft.press(offer.acts); }} />))}</span>
           </li>))}
       </ol>
       {faults.length > MOST_SHOWN && <p className="hint">{faults.length - MOST_SHOWN} more are not shown.</p>}

@@ -3,11 +3,13 @@
 import { ACTS } from "./acts";
 import { draft } from "./draft";
 import { removedTask } from "./edits";
+import { focusNextFault } from "./fault_list";
 import { raiseFlag } from "./header";
 import { begin } from "./inspector";
 import type { Machine } from "./machine";
 import { go } from "./place";
 import { undoKey } from "./text_panel";
+import { tryDraft } from "./trial";
 import { choose, view, zoomBy } from "./view";
 
 function isTypedInto(target: EventTarget | null): boolean {
@@ -28,6 +30,7 @@ export const lookKeys: Keys = (event, machine) => {
   const act = ACTS.find((one) => one.key === event.key);
   if (act && machine && chosen.length > 0) begin(machine, act, chosen);
   else if (event.key === "w") view.set({ panel: "why", variable: "" });
+  else if (event.key === "s") view.set({ panel: "scope" });
   else return false;
   return true;
 };
@@ -46,6 +49,8 @@ export const assembleKeys: Keys = (event) => {
   const [task] = view.get().chosen;
   if (event.key === "F2") document.querySelector<HTMLInputElement>("aside input[data-rename]")?.select();
   else if (event.key === "n") addTask();
+  else if (event.key === "F8") focusNextFault();
+  else if (event.key === "t") void tryDraft();
   else if (event.key === "Delete" && outline?.tasks.some((one) => one.task === task))
     void draft.press(removedTask(now?.analysis.text ?? "", outline, task!));
   else return false;
@@ -60,7 +65,7 @@ function save(): void {
   field?.focus();
 }
 
-function addTask(): void {
+export function addTask(): void {
   choose([]);
   window.setTimeout(() => document.getElementById("add-task-component")?.focus(), 0);  // when its form is there
 }

@@ -6,6 +6,7 @@ import { draft, DraftState, lamps, namesOf } from "./draft";
 import { forbidden, Machine, MachineState } from "./machine";
 import type { BenchHello } from "./protocol";
 import { joinPath } from "./text";
+import { tryDraft } from "./trial";
 import { ask } from "./view";
 
 /** Why the draft cannot be changed; "": it can. */
@@ -73,6 +74,7 @@ export function Lamps({ state, machine, machineState, bench, why }: Props) {
       <Button label="Save FILE" title={`write ${now.file} (Ctrl-S)`} press={() => draft.write()}
               forbidden={why || (now.outside ? "first take FILE or keep the draft" : "")}>
         Save</Button>
+      <Button label="Try" title="run the draft in virtual time (key t)" press={() => void tryDraft()} forbidden={why} />
       {!isRunning && <Button label="Start" title={`chimera run ${now.file}`} press={() => void draft.start()}
                              forbidden={why || (now.exists && !now.touched ? "" : "save FILE first")} />}
       {isRunning && machineLamp === "differs" && !now.touched &&

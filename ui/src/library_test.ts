@@ -5,9 +5,10 @@ import fs from "node:fs";
 import test from "node:test";
 import { Around, markdown } from "./document";
 import { formula, textOf } from "./math";
+import { againstRefusal, withLessons } from "./lesson_values";
 import { addedTask, portFor } from "./library_acts";
 import { anchorOf, hashWith, placeOf, targetOf } from "./place";
-import type { Outline } from "./protocol";
+import type { Fault, Offer, Outline } from "./protocol";
 import { Library, LibraryComponent, search } from "./search";
 
 /** Names of all files below a folder of the checkout. */
@@ -144,7 +145,7 @@ const library: Library = {
 test("a component is added under a free name, and linked where a port fits", () => {
   const [loop, arm] = library.components as [LibraryComponent, LibraryComponent, LibraryComponent];
   const input = { port: "q", declared: "q", kind: "in-var" as const, type: "float64", unit: "rad", shape: "",
-    solved: true, variable: "angle", parted: false, value: null, default: null, doc: "" };
+    solved: true, shared: false, variable: "angle", parted: false, value: null, default: null, doc: "" };
   const sensor = component("sensor", { ports: [{ ...port("speed", "rad/s"), kind: "out-var" },
     { ...port("any", "U"), kind: "out-var" }, { ...port("at", "rad"), kind: "out-var", repeated: true }] });
   assert.equal(portFor(input, sensor.ports)?.port, "at");
@@ -158,6 +159,39 @@ test("a component is added under a free name, and linked where a port fits", () 
     { act: "add_task", name: "sensor_2", component: "sensor", subsystem: "s" },
     { act: "link", task: "sensor_2", port: "at", variable: "angle", instance: 0 }]]);
   assert.deepEqual(addedTask(null, "s", loop)[1].length, 1);
+});
+
+test("values of lessons stand before the offer that makes one up, if they have its number of elements", async () => {
+  const tasks = [{ task: "loop", component: "pid_joint", ports: [{ port: "kp", declared: "kp", shape: "[2]" }] }];
+  const fault = (rule: string, port: string) => ({ rule, task: "loop", port }) as Fault;
+  const faults = [fault("input-unmet", "kp"), fault("type-clash", "kp"), fault("input-unmet", "gone")];
+  const made = (number: number): Offer =>
+    ({ fault: number, label: "made up", acts: [{ act: "set", path: "operator/gain", value: "0 V" }] });
+  const linked: Offer = { fault: 0, label: "link", acts: [{ act: "link", task: "loop", port: "kp", variable: "x",
+    instance: null }] };
+  const asked: unknown[] = [];
+  const values = ["[1 V]", "[1 V, 2 V]", "3 V", "4 V"].map((value, i) =>
+    ({ value, origin: i < 2 ? "examples/02_b/b.yaml" : "pid_joint.test.yaml" }));
+  const offers = await withLessons([linked, made(0), made(1), made(2)], faults, { tasks } as unknown as Outline,
+    (port) => { asked.push(port); return Promise.resolve(values); });
+  assert.deepEqual(asked, [{ component: "pid_joint", port: "kp" }]);
+  assert.deepEqual(offers.map((one) => one.label), ["link", "gain of lesson 02_b: [1 V, 2 V]",
+    "gain of test of pid_joint: 3 V", "made up", "made up", "made up"]);
+  assert.deepEqual(offers[1]!.acts, [{ act: "set", path: "operator/gain", value: "[1 V, 2 V]" }]);
+});
+
+test("a refusal that names constants of its task offers their values where they stand", async () => {
+  const port = (name: string, variable: string | null, kind = "in-const") =>
+    ({ port: name, declared: name, kind, shape: "", variable, value: null });
+  const outline = { tasks: [{ task: "path", component: "line", ports: [port("duration", null), port("goal", "end"),
+    port("q", "q", "in-var"), port("pace", null)] }], variables: [{ variable: "end", constant: true,
+    origin: "constants" }] } as unknown as Outline;
+  const offers = await againstRefusal(outline, "path", "duration is too short for goal from q",
+    ({ port }) => Promise.resolve([{ value: `1 ${port}`, origin: "examples/01_a/a.yaml" }]));
+  assert.deepEqual(offers.map((one) => one.acts), [
+    [{ act: "set", path: "tasks/path/constants/duration", value: "1 duration" }],
+    [{ act: "set", path: "constants/end", value: "1 goal" }]]);
+  assert.deepEqual(await againstRefusal(outline, "gone", "duration", () => Promise.resolve([])), []);
 });
 
 test("the search finds names, ports, units, papers, words and documents, the best first", () => {

@@ -2,12 +2,11 @@
 // Values for the field of a port, with where they come from: lessons first, then the test of the component.
 import { useEffect, useState } from "react";
 import { door } from "./bench";
-
-interface Offered { value: string; origin: string }
+import { Offered, originWords, PortOfComponent } from "./lesson_values";
 
 const known = new Map<string, Promise<Offered[]>>();
 
-function offered(component: string, port: string): Promise<Offered[]> {
+export function offered({ component, port }: PortOfComponent): Promise<Offered[]> {
   const name = `${component} ${port}`;
   if (!known.has(name)) {
     const asked: Promise<Offered[]> = door.call("values", { component, port }).then((answer) => answer.values);
@@ -17,15 +16,12 @@ function offered(component: string, port: string): Promise<Offered[]> {
   return known.get(name)!;
 }
 
-const originWords = (origin: string): string =>
-  origin.startsWith("examples/") ? `lesson ${origin.split("/")[1]}` : `test of ${origin.split(".")[0]}`;
-
 /** The list `id` of a field. */
 export function OfferedValues({ id, component, port }: { id: string; component: string; port: string }) {
   const [values, set] = useState<Offered[]>([]);
   useEffect(() => {
     let isNeeded = true;
-    offered(component, port).then((found) => { if (isNeeded) set(found); }, () => undefined);
+    offered({ component, port }).then((found) => { if (isNeeded) set(found); }, () => undefined);
     return () => { isNeeded = false; };
   }, [component, port]);
   return (

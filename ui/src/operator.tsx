@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The operator variables: a field each, with its unit; a slider for a number, a check box for true and false.
 import { memo, useEffect, useRef, useState } from "react";
+import { bench } from "./bench";
+import { Button } from "./controls";
+import { draft } from "./draft";
+import { runsFile, whyNot } from "./lamps";
 import { forbidden, Machine, MachineState } from "./machine";
 import type { Reading, Variable } from "./protocol";
+import { useStore } from "./store";
 import { scalar, sliderRange, withUnit } from "./text";
+import { tuneActs } from "./tune";
 
 /** A slider asks at most this often, in milliseconds; a connection may act 100 times a second. */
 const SLIDER_MS = 120;
@@ -79,6 +85,26 @@ const Field = memo(function Field({ machine, variable, why }: FieldProps) {
   );
 });
 
+/** Puts the present values into the draft of the FILE that runs. */
+function TuneButton({ machine, state, variables }: { machine: Machine; state: MachineState; variables: Variable[] }) {
+  const { hello, door } = useStore(bench);
+  const { outline } = useStore(draft.state);
+  if (!outline || !runsFile(state, hello?.file ?? null)) return null;
+  const put = async () => {
+    const present = new Map(variables.flatMap(({ variable }): [string, string][] => {
+      const text = machine.values.reading(variable)?.text;
+      return text === undefined ? [] : [[variable, text]];
+    }));
+    const acts = tuneActs(outline, present);
+    const refusal = await draft.edit(acts);
+    const names = acts.map((act) => act.path.slice("operator/".length)).join(", ");
+    machine.say(refusal || (names === "" ? "The draft has these values already."
+      : `The draft has the present values of ${names}.`));
+  };
+  return <Button label="Put into the draft" title="the present values, as edits of FILE" press={() => void put()}
+                 forbidden={whyNot(hello, door === "open")} />;
+}
+
 export function Operator({ machine, state }: { machine: Machine; state: MachineState }) {
   const variables = (state.description?.variables ?? []).filter(
     (v) => !v.constant && (v.operator ?? (v.given && v.producers.length === 0)));
@@ -88,6 +114,7 @@ export function Operator({ machine, state }: { machine: Machine; state: MachineS
     <section className="panel" aria-label="Operator variables">
       <h2>Operator</h2>
       {why !== "" && <p className="hint">{why}</p>}
+      <TuneButton machine={machine} state={state} variables={variables} />
       {variables.map((v) => <Field key={`${state.version} ${v.variable}`} machine={machine} variable={v} why={why} />)}
     </section>
   );

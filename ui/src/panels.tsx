@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The panels below the picture: events, receipts, profile, why.
 import { memo, useEffect, useMemo, useState } from "react";
+import { bench } from "./bench";
 import { Button, Table } from "./controls";
+import { whyNot } from "./lamps";
 import type { Machine, MachineState } from "./machine";
 import type { Event, Receipt, TaskProfile, WhyLink } from "./protocol";
+import { ScopePanel } from "./scope";
+import { useStore } from "./store";
 import { receiptText } from "./switch_menu";
 import { clock, count, duration, short } from "./text";
+import { Timeline } from "./timeline";
 import { choose, Panel, showVariable, view } from "./view";
 
 /** Events drawn at once; the filter looks at all that are kept. */
@@ -167,10 +172,12 @@ function Why({ machine, state, chosen, variable }:
 }
 
 const NAMES: [Panel, string][] = [
-  ["events", "Events"], ["receipts", "Receipts"], ["profile", "Profile"], ["why", "Why"]];
+  ["events", "Events"], ["receipts", "Receipts"], ["profile", "Profile"], ["why", "Why"],
+  ["scope", "Scope"], ["timeline", "Timeline"]];
 
 export function Panels({ machine, state, panel, chosen, variable }:
   { machine: Machine; state: MachineState; panel: Panel; chosen: string[]; variable: string }) {
+  const { hello, door } = useStore(bench);
   const turn = (event: { key: string }) => {
     const sign = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
     if (sign === 0) return;
@@ -180,7 +187,7 @@ export function Panels({ machine, state, panel, chosen, variable }:
     document.getElementById(`tab-${next}`)?.focus();
   };
   return (
-    <section className="panels" aria-label="Panels">
+    <section className={panel === "scope" || panel === "timeline" ? "panels tall" : "panels"} aria-label="Panels">
       <div role="tablist" aria-label="Panels" onKeyDown={turn}>
         {NAMES.map(([name, words]) => (
           <button key={name} id={`tab-${name}`} type="button" role="tab" aria-selected={panel === name}
@@ -192,6 +199,8 @@ export function Panels({ machine, state, panel, chosen, variable }:
         {panel === "receipts" && <Receipts machine={machine} state={state} />}
         {panel === "profile" && <Profile machine={machine} />}
         {panel === "why" && <Why machine={machine} state={state} chosen={chosen} variable={variable} />}
+        {panel === "scope" && <ScopePanel state={state} chosen={chosen} why={whyNot(hello, door === "open")} />}
+        {panel === "timeline" && <Timeline key={state.name} name={state.name} state={state} />}
       </div>
     </section>
   );

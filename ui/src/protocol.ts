@@ -167,7 +167,7 @@ export interface RpcError {
   code: number;
   message: string;
   data?: { kind?: string; where?: string; remedy?: string; nearest?: string; needs?: string; has?: string;
-    tasks?: string[] };
+    tasks?: string[]; resources?: { task: string; port: string; text: string }[] };
 }
 
 // ---- The draft: docs/formats/web.md, "The draft" and "The outline"; docs/formats/edit.md.
@@ -189,7 +189,7 @@ export interface Fault {
 
 export interface OutlinePort {
   port: string; declared: string; kind: Port["kind"]; type: string; unit: string; shape: string; solved: boolean;
-  variable: string | null; parted: boolean; value: string | null; default: string | null; doc: string;
+  shared: boolean; variable: string | null; parted: boolean; value: string | null; default: string | null; doc: string;
 }
 
 export interface OutlineTask {
@@ -231,7 +231,28 @@ export interface DraftNews {
 
 export interface DraftAnswer extends DraftNews { analysis: Analysis }
 
-/** An edit that was tried: after it the fault is gone. */
+/** An edit that was tried: after it the fault is gone. The page adds edits with values of lessons. */
 export interface Offer { fault: number; label: string; acts: EditAct[] }
 
 export interface LibraryComponent { name: string; doc: string; file: string }
+
+// ---- Trials: docs/formats/web.md, "Trials"; docs/formats/run.md.
+
+/** What `chimera run --json` prints, or the report of what it refused. */
+export interface RunAnswer {
+  ran_ns?: number;
+  tasks?: TaskProfile[];
+  expectations?: { text: string; holds: boolean; said: string }[];
+  receipts?: Receipt[];
+  verdict?: { clean: boolean; missed: number; dropped: number; faults: number; remarks: string[]; failures: string[] };
+  error?: { where: string; message: string };
+  faults?: Fault[];
+}
+
+export interface TrialResult {
+  number: number; ended: null | { code: number } | { signal: string }; why: string | null; ran_ms: number;
+  output: unknown; error: string | null; csv: string | null; svg: string | null;
+}
+
+/** Scheduling records of one rtpu: docs/formats/control.md, "Notifications". */
+export interface TapNote { rtpu: string; lost: number; records?: [number, string, string | null, number, number][] }

@@ -203,7 +203,7 @@ test("the cursor stays at its words when another act changes the text", () => {
 
 const outlinePort = (port: string, kind: OutlinePort["kind"], variable: string | null): OutlinePort => ({
   port, declared: port.replace(/\[.*/, ""), kind, type: "float64", unit: "1", shape: "", solved: true, variable,
-  parted: false, value: null, default: null, doc: "" });
+  shared: false, parted: false, value: null, default: null, doc: "" });
 const outlineTask = (task: string, line: number, ports: OutlinePort[], standby_for: string | null): OutlineTask => ({
   task, line, component: task, known: true, doc: "", rtpu: "main", rate_hz: null, own_rate: false, budget_ns: null,
   criticality: "low", standby_for, ports, repeated: [] });

@@ -140,6 +140,15 @@ class Door:
             yield self.subject
             self.publish()
 
+    def tap(self, *records, rtpu="servo", lost=0):
+        """Sends scheduling records to each subscription to the tap."""
+        with self.lock:
+            for connection in self.connections:
+                for number, topic in connection.topics.items():
+                    if topic["to"] == "tap":
+                        connection.send(method="tap", params={"subscription": number, "rtpu": rtpu, "first": 0,
+                                                              "lost": lost, "records": list(records)})
+
     def asked(self, method):
         """Parameters of the requests of that method so far."""
         with self.lock:
