@@ -42,8 +42,8 @@ RpcResponse judge_words(const Json& parameters) {
                                                               : std::vector<std::string>();
     const bool is_needed = key == "watch" || key == "channels";
     if (words.size() > kMostWords || (words.empty() && is_needed))
-      return bad(key, "must have " + std::string(is_needed ? "1 to " : "at most ") + std::to_string(kMostWords) +
-                          " texts");
+      return bad(key,
+                 "must have " + std::string(is_needed ? "1 to " : "at most ") + std::to_string(kMostWords) + " texts");
     for (const std::string& word : words)
       if (word.empty() || word.size() > kMostWordBytes || word.find('\0') != std::string::npos)
         return bad(key, "must have 1 to " + std::to_string(kMostWordBytes) + " bytes, none of them 0");
@@ -116,15 +116,15 @@ void Trials::call(MethodId method, const Json& parameters, const control::Caller
   if (const RpcResponse judged = judge_words(parameters); !judged.is_good()) return reply(judged);
   if (method == MethodId::kTry && draft != nullptr) return try_draft(parameters, caller.connection, reply, *draft);
   if (method == MethodId::kTry)
-    return reply(RpcResponse::refused("draft", "this page has no draft: no FILE was named", "",
-                                      "type `chimera web FILE`"));
+    return reply(
+        RpcResponse::refused("draft", "this page has no draft: no FILE was named", "", "type `chimera web FILE`"));
   if (method == MethodId::kScope) return reply(scope(parameters, caller.connection));
   const std::uint64_t number = parameters.at("number").as_uint64();
   const auto found = std::ranges::find(all_, number, &Trial::number);
   if (found == all_.end())
-    return reply(RpcResponse::unknown("there is no trial " + std::to_string(number) + ": the last " +
-                                          std::to_string(kMostKept) + " are kept",
-                                      "number", ""));
+    return reply(RpcResponse::unknown(
+        "there is no trial " + std::to_string(number) + ": the last " + std::to_string(kMostKept) + " are kept",
+        "number", ""));
   if (method == MethodId::kResult) return reply(result(*found));
   stop(*found, "halted");
   reply(RpcResponse::good(Json::object()));
@@ -166,8 +166,7 @@ RpcResponse Trials::scope(const Json& parameters, std::uint64_t connection) {
   const std::string& machine = parameters.at("machine").as_string();
   if (machine.find('/') != std::string::npos) return bad("machine", "must be the name of a subsystem");
   std::vector<std::string> words = {"--json", "--subsystem=" + machine};
-  for (const char* key : {"trigger", "pre", "for", "wait"})
-    add_words(words, parameters, key, "--" + std::string(key));
+  for (const char* key : {"trigger", "pre", "for", "wait"}) add_words(words, parameters, key, "--" + std::string(key));
   words.emplace_back("--");  // a channel is never an option
   for (const std::string& channel : control::texts(parameters, "channels")) words.push_back(channel);
   return start(std::move(words), "", kNever, connection);
@@ -183,16 +182,18 @@ RpcResponse Trials::start(std::vector<std::string> words, const std::string& tex
   Trial trial{.number = last_ + 1, .connection = connection, .folder = place_ + "/" + std::to_string(last_ + 1)};
   if (const auto prepared = prepare(trial, text); !prepared) return refusal_of(prepared.error());
   words.insert(words.begin(), "--csv=" + trial.folder + "/csv");
-  if (text.empty()) words.insert(words.begin(), {program_, "scope", "--svg=" + trial.folder + "/svg"});
-  else words.insert(words.begin(), {program_, "run", trial.folder + "/text/" + fs::path(file_).filename().string()});
+  if (text.empty())
+    words.insert(words.begin(), {program_, "scope", "--svg=" + trial.folder + "/svg"});
+  else
+    words.insert(words.begin(), {program_, "run", trial.folder + "/text/" + fs::path(file_).filename().string()});
   std::vector<const char*> arguments;
   for (const std::string& word : words) arguments.push_back(word.c_str());
   const auto output = open_to_append(trial.folder + "/output"), error = open_to_append(trial.folder + "/error");
   if (!output) return refusal_of(output.error());
   if (!error) return refusal_of(error.error());
-  auto started = Process::start_apart(program_.c_str(), arguments,
-                                      {.output = output->fd, .error = error->fd, .is_bound = true,
-                                       .memory = kMemory, .file = kMostBytes});
+  auto started = Process::start_apart(
+      program_.c_str(), arguments,
+      {.output = output->fd, .error = error->fd, .is_bound = true, .memory = kMemory, .file = kMostBytes});
   if (!started) return refusal_of(started.error());
   trial.process = *std::move(started);
   trial.began = clock_.now();
@@ -244,7 +245,7 @@ std::string Trials::plain(const Trial& trial, std::string text) const {
 RpcResponse Trials::result(const Trial& trial) const {
   Json answer = Json::object();
   answer["number"] = trial.number;
-  answer["ended"] = !trial.end           ? Json()
+  answer["ended"] = !trial.end             ? Json()
                     : trial.end->by_signal ? Json{{"signal", std::string(signal_text(trial.end->code).view())}}
                                            : Json{{"code", trial.end->code}};
   answer["why"] = trial.why.empty() ? Json() : Json(trial.why);

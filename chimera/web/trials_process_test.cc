@@ -53,8 +53,9 @@ struct TrialsTest : ::testing::Test {
     const control::MethodRule& rule = control::methods()[static_cast<std::size_t>(method)];
     const RpcResponse judged = control::check_parameters(rule, parameters);
     if (!judged.is_good()) return judged;
-    trials->call(method, parameters, {control::Role::kConfigure, connection, 0},
-                 [&](const RpcResponse& given) { answer = given; }, &*draft);
+    trials->call(
+        method, parameters, {control::Role::kConfigure, connection, 0},
+        [&](const RpcResponse& given) { answer = given; }, &*draft);
     return answer;
   }
   RpcResponse try_it(const Json& more = Json::object(), std::uint64_t connection = 1) {
@@ -86,8 +87,9 @@ Json outline_of(const char* port) {
 
 TEST_F(TrialsTest, RunsACopyOfTheDraftBesideTheComponentsOfFile) {
   analyst.outline = outline_of("");
-  script("printf '%s\\n' \"$@\" >&2; cat \"$2\"; "
-         "ls -d \"$(dirname \"$2\")/build/components\" >&2; echo table > $folder/csv\n");
+  script(
+      "printf '%s\\n' \"$@\" >&2; cat \"$2\"; "
+      "ls -d \"$(dirname \"$2\")/build/components\" >&2; echo table > $folder/csv\n");
   const Json acts = Json::array({"1 s: set kp 1", "-x"});
   const RpcResponse started = try_it({{"at", acts}, {"expect", Json::array({"|u| <= 1"})}});
   ASSERT_TRUE(started.is_good()) << started.message;
@@ -142,8 +144,12 @@ TEST_F(TrialsTest, RefusesADraftThatIsNoDescriptionAndAnOldVersion) {
 
 TEST_F(TrialsTest, RecordsWithTheWordsOfScopeAndNoChannelIsAnOption) {
   script("shift; shift; for w in \"$@\"; do case \"$w\" in --csv=*) ;; *) echo \"$w\";; esac; done\n");
-  ASSERT_TRUE(call(MethodId::kScope, {{"machine", "arm"}, {"channels", Json::array({"--csv", "q[2]"})},
-                                      {"trigger", "-q > 1"}, {"pre", "5 ms"}, {"for", "1 s"}, {"wait", "2 s"}})
+  ASSERT_TRUE(call(MethodId::kScope, {{"machine", "arm"},
+                                      {"channels", Json::array({"--csv", "q[2]"})},
+                                      {"trigger", "-q > 1"},
+                                      {"pre", "5 ms"},
+                                      {"for", "1 s"},
+                                      {"wait", "2 s"}})
                   .is_good());
   EXPECT_EQ(ended(1)["output"],
             Json("--json\n--subsystem=arm\n--trigger=-q > 1\n--pre=5 ms\n--for=1 s\n--wait=2 s\n--\n--csv\nq[2]\n"));
@@ -154,8 +160,7 @@ TEST_F(TrialsTest, RefusesTextsThatAreNoWordsOfACommand) {
   const std::string zero("a\0b", 3), large(1 << 20, 'x');
   const Json scope{{"machine", "arm"}, {"channels", Json::array({"q"})}};
   for (const std::string& word : {std::string(), zero, large}) {
-    for (const char* key : {"duration", "every"})
-      EXPECT_EQ(try_it({{key, word}}).code, control::kBadParameters) << key;
+    for (const char* key : {"duration", "every"}) EXPECT_EQ(try_it({{key, word}}).code, control::kBadParameters) << key;
     for (const char* key : {"watch", "at", "expect"})
       EXPECT_EQ(try_it({{key, Json::array({word})}}).code, control::kBadParameters) << key;
     for (const char* key : {"machine", "trigger", "pre", "for", "wait"}) {
@@ -176,8 +181,9 @@ TEST_F(TrialsTest, RefusesTextsThatAreNoWordsOfACommand) {
 }
 
 TEST_F(TrialsTest, HaltsWithAnInterruptAndKillsWhatGoesOn) {
-  script("trap 'echo asked; test $1 = scope && exit 3' INT\necho began; touch $folder/began\n"
-         "while true; do sleep 0.01; done\n");
+  script(
+      "trap 'echo asked; test $1 = scope && exit 3' INT\necho began; touch $folder/began\n"
+      "while true; do sleep 0.01; done\n");
   ASSERT_TRUE(call(MethodId::kScope, {{"machine", "arm"}, {"channels", Json::array({"q"})}}).is_good());
   ASSERT_TRUE(try_it({{"devices", true}}).is_good());
   for (const std::uint64_t number : {1u, 2u})

@@ -177,7 +177,7 @@ class AccessTest(PageTest):
     def test_tabs_are_chosen_by_arrows(self):
         self.look()
         self.page.focus("#tab-events")
-        for name in ("receipts", "profile", "why", "events"):
+        for name in ("receipts", "profile", "why", "scope", "timeline", "events"):
             self.page.press(Keys.ARROW_RIGHT)
             self.page.await_one(f"#tab-{name}[aria-selected=true]")
         self.assertEqual(self.page.script("return document.activeElement.id"), "tab-events")
