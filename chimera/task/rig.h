@@ -141,8 +141,11 @@ class Rig : public RigPorts, public RigSafeFrames {
   static chimera_text text_of(const std::string& text) {
     return {text.data(), static_cast<std::uint32_t>(text.size())};
   }
-  static constexpr chimera_host kHost{&host_expired, &host_signal, &host_spend,   &host_note,      &host_variable,
-                                      &host_unit,    &host_request, &host_safe_frame<Rig>, &host_safe_bytes<Rig>};
+  static constexpr chimera_host kHost{&host_expired, &host_signal,  &host_spend,           &host_note,
+                                      &host_variable, &host_unit,    &host_request,         &host_safe_frame<Rig>,
+                                      &host_safe_bytes<Rig>, [](void* rig) {
+                                        return text_of(static_cast<Rig*>(rig)->configuration_);
+                                      }};
 
   chimera_call call_{};
   std::vector<std::string> signals_;

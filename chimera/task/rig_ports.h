@@ -71,6 +71,9 @@ class RigPorts {
     cell_of(port, instance).joined = {variable, unit};
   }
 
+  /// Sets the answer of Cycle::configuration().
+  void configuration(const std::string& name) { configuration_ = name; }
+
   /// Publishes a value to an in-var, or sets a constant: element `i` of instance `instance`.
   template <class T>
   void set(const char* port, const T& value, std::size_t i = 0, std::size_t instance = 0) {
@@ -109,6 +112,8 @@ class RigPorts {
   RigPorts(const RigPorts&) = delete;
   RigPorts& operator=(const RigPorts&) = delete;
   ~RigPorts() = default;
+
+  std::string configuration_;  // the answer of Cycle::configuration()
 
   const chimera_component& component() const { return component_; }
   std::byte* state() const { return state_.get(); }
