@@ -113,8 +113,12 @@ class RigPorts {
   RigPorts& operator=(const RigPorts&) = delete;
   ~RigPorts() = default;
 
-  std::string configuration_;  // the answer of Cycle::configuration()
-
+  /// For chimera_host, whose context is the whole rig.
+  template <class Whole>
+  static chimera_text host_configuration(void* rig) {
+    const std::string& name = static_cast<Whole*>(rig)->configuration_;
+    return {name.data(), static_cast<std::uint32_t>(name.size())};
+  }
   const chimera_component& component() const { return component_; }
   std::byte* state() const { return state_.get(); }
   struct Joined {
@@ -139,6 +143,7 @@ class RigPorts {
   }
 
  private:
+  std::string configuration_;  // the answer of Cycle::configuration()
   struct Cell {
     const chimera_port_decl* decl;
     chimera_port* live;

@@ -45,19 +45,17 @@ struct Sequence {
   Out<std::int32_t> sequence_state{"sequence_state", "1", initial = 7,
                                    doc = "0 paused, 1 switches, 2 runs, 3 waits for Go, 4 interrupted, 5 failed, "
                                          "6 done, 7 begins."};
+  Out<Text<72>[]> sequence_steps{"sequence_steps", "1", "[steps<=16]", doc = "Names of the steps."};
   Many<InConst<double>> level{"level*", "U", initial = 0.0, doc = "Value that each condition compares with."};
   Many<InConst<Text<72>>> configuration{"configuration*", "1", component_api::names::configuration,
                                         doc = "Configuration of each step."};
   InConst<Step[]> step{"step", "1", "[steps<=16]", doc = "The steps."};
-  OutConst<Text<72>[]> sequence_steps{"sequence_steps", "1", "[steps<=16]", doc = "Names of the steps."};
   InConst<bool> repeat{"repeat", "1", initial = false, doc = "Begins again after the last step."};
 
   Outcome init() {
     if (step.size() != configuration.size()) return fault("`step` and `configuration` differ in length");
-    for (std::size_t i = 0; i < step.size(); ++i) {
+    for (std::size_t i = 0; i < step.size(); ++i)
       if (const char* why = take(step[i], i)) return fault(why);
-      sequence_steps[i] = step[i].name;
-    }
     machine_.prepare({steps_.data(), step.size()}, *repeat);
     is_after_death_ = is_after_death();
     seen_go_ = kNever;
@@ -71,6 +69,7 @@ struct Sequence {
     if (seen_go_ == kNever && machine_.state() != SequenceState::kBegins && sequence_go.valid())
       seen_go_ = *sequence_go == 0 ? kNever : published(sequence_go, c);
     is_after_death_ = false;
+    for (std::size_t i = 0; i < step.size(); ++i) sequence_steps[i] = step[i].name;
     show(c);
   }
   void cycle(Cycle c) {

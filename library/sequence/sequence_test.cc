@@ -77,7 +77,10 @@ TEST(SequenceSteps, RequestsEachSecondUntilTheTimeIsOver) {
     requests += s.machine.request() == 1 ? 1 : 0;
   }
   EXPECT_EQ(requests, 2);
-  EXPECT_EQ(s.cycle("near"), State::kRuns) << "its else is in force";
+  EXPECT_EQ(s.cycle("near"), State::kSwitches);
+  EXPECT_EQ(s.machine.step(), 1);
+  EXPECT_EQ(s.machine.request(), -1) << "its else is in force already";
+  EXPECT_EQ(s.cycle("near"), State::kRuns);
   EXPECT_EQ(s.note, "step 2 'grip' failed: its configuration does not come into force; goes to step 1 'near'");
 }
 
