@@ -276,11 +276,11 @@ TEST_F(ShellTest, AScriptStopsAtTheFirstRefusalAndNamesItsLine) {
 
 TEST_F(ShellTest, ASequenceGoesToAStepByItsName) {
   serve();
-  EXPECT_EQ(run({"sequence"}), "0|  1 near\n> 2 grip  runs for 1.5 s\n  3 home\n|[puma_pid]\n");
-  EXPECT_EQ(run({"sequence", "go", "home"}), "0|goes to step 3\n|[puma_pid]\n");
-  EXPECT_EQ(run({"sequence", "go"}), "0|goes to step 2\n|[puma_pid]\n");
-  EXPECT_EQ(run({"sequence", "pause"}), "0|paused\n|[puma_pid]\n");
-  EXPECT_EQ(run({"sequence", "go", "hmoe"}), "2||[puma_pid]\nsequence: no step 'hmoe'; did you mean 'home'?\n");
+  EXPECT_EQ(run({"sequence"}),
+            "0|[puma_pid]   1 near\n[puma_pid] > 2 grip  runs for 1.5 s\n[puma_pid]   3 home\n|");
+  EXPECT_EQ(run({"sequence", "go", "home"}), "0|[puma_pid] goes to step 3\n|");
+  EXPECT_EQ(run({"sequence", "pause"}), "0|[puma_pid] paused\n|");
+  EXPECT_EQ(run({"sequence", "go", "hmoe"}), "2||[puma_pid] sequence: no step 'hmoe'; did you mean 'home'?\n");
 }
 
 TEST_F(ShellTest, AScopeRecordsRoundItsTriggerAndCountsItsGaps) {
