@@ -15,6 +15,7 @@
 
 #include "chimera/base/testing/tree_path.h"
 #include "chimera/task/rig.h"
+#include "library/sequence/step.h"
 #include "library/testing/sound_inputs.h"
 
 namespace chimera::bad_samples_test {
@@ -44,6 +45,10 @@ class Sample {
     if (std::string_view(component.name) == "lookup_table") rig_.set("at", 1.5, 1);
     if (std::string_view(component.name) == "comparator") rig_.set("hysteresis", 0.1), rig_.set("hysteresis", 0.1, 1);
     if (std::string_view(component.name) == "encoder") rig_.instances("in", 1);
+    for (std::size_t i = 0; i < 16 && std::string_view(component.name) == "sequence"; ++i) {
+      rig_.set("step", library::Step{"step", 1, 0, 0, 0, 0, -1, false, false}, i);
+      rig_.set("configuration", Text<72>("all"), 0, i);
+    }
   }
   /// "" if init succeeds.
   std::string begin() { return is_fault(rig_.init()) ? said_ : ""; }

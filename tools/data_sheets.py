@@ -40,6 +40,8 @@ def marks(port):
         yield "safe state"
     if port.get("shared"):
         yield "shared"
+    if port.get("intermittent"):
+        yield "intermittent"
     if "max_instances" in port:
         yield f"up to {port['max_instances']}"
 

@@ -102,7 +102,7 @@ PortDescriptor read_port_frame(const JsonCursor& at) {
   at.expect_keys(
       {"name", "kind", "type", "element_size", "unit", "shape"},
       {"doc", "type_name", "frame", "safety", "max_instances", "range", "at_least", "one_of", "configuration",
-       "safe_state", "shared", "fields", "initial"});
+       "safe_state", "shared", "intermittent", "fields", "initial"});
   PortDescriptor port;
   port.name = at.at("name").text();
   port.kind = word_at(at.at("kind"), "kind", words(CHIMERA_OUT_STREAM + 1, name_of_kind));
@@ -121,6 +121,7 @@ PortDescriptor read_port_frame(const JsonCursor& at) {
   port.names_configuration = at.has("configuration") && at.at("configuration").truth();
   port.safe_state = at.has("safe_state") && at.at("safe_state").truth();
   port.shared = at.has("shared") && at.at("shared").truth();
+  port.intermittent = at.has("intermittent") && at.at("intermittent").truth();
   port.safety = at.has("safety") && at.at("safety").truth();
   port.repeated = at.has("max_instances");
   if (port.repeated) port.max_instances = at.at("max_instances").whole();
@@ -232,6 +233,7 @@ Json port_json(const PortDescriptor& port) {
   if (port.names_configuration) json["configuration"] = true;
   if (port.safe_state) json["safe_state"] = true;
   if (port.shared) json["shared"] = true;
+  if (port.intermittent) json["intermittent"] = true;
   for (const FieldDescriptor& field : port.fields) {
     json["fields"].push_back(Json{{"name", field.name},
                                   {"unit", field.unit},

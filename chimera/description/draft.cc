@@ -403,6 +403,8 @@ Draft read_root(const Node& root, std::string_view file, Report& report) {
   if (const Node* node = root.find("start")) draft.start = read_name(*node, "'start'", report);
   draft.is_partial = report.errors() != before;
   if (const Node* node = root.find("tasks")) read_tasks(*node, draft, report);
+  for (std::size_t i = 0; i < root.keys.size(); ++i)
+    if (root.keys[i].text == "sequence") read_sequence(root.keys[i], root.items[i], draft, report);
   return draft;
 }
 

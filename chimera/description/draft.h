@@ -15,6 +15,7 @@
 #include "chimera/description/condition_text.h"
 #include "chimera/description/node.h"
 #include "chimera/description/report.h"
+#include "chimera/description/sequence.h"
 #include "chimera/schedule/policy.h"
 #include "chimera/task/server_spec.h"
 #include "chimera/task/task_spec.h"
@@ -128,6 +129,7 @@ struct Draft {
   std::vector<NamedNode> operators;
   std::vector<DraftSet> configurations;  ///< empty: none declared
   std::optional<Word> start;
+  std::optional<DraftSequence> sequence;  ///< its task is the last one, if it has no fault
   std::shared_ptr<const KeyPaths> keys;  ///< of the text
   bool is_partial = false;  ///< some part outside the tasks could not be read
 };

@@ -8,8 +8,8 @@
 
 namespace chimera {
 
-inline constexpr std::array<std::string_view, 8> kFileKeys = {"version", "subsystem", "constants",      "rtpus",
-                                                              "tasks",   "operator",  "configurations", "start"};
+inline constexpr std::array<std::string_view, 9> kFileKeys = {
+    "version", "subsystem", "constants", "rtpus", "tasks", "operator", "configurations", "start", "sequence"};
 
 inline constexpr std::array<std::string_view, 3> kRtpuKeys = {"cpu", "policy", "executor"};
 
@@ -28,5 +28,12 @@ inline constexpr std::array<std::string_view, 3> kStandbyKeys = {"task", "stale_
 
 /// Keys of a configuration with a map.
 inline constexpr std::array<std::string_view, 2> kSetKeys = {"tasks", "safe_when"};
+
+/// Keys of a `sequence` with a map.
+inline constexpr std::array<std::string_view, 5> kSequenceKeys = {"rate", "rtpu", "budget", "repeat", "steps"};
+
+/// Keys of a step of a sequence.
+inline constexpr std::array<std::string_view, 8> kStepKeys = {"name", "switch", "until",   "for",
+                                                              "within", "else",  "confirm", "reentry"};
 
 }  // namespace chimera

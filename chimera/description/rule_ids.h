@@ -8,7 +8,7 @@
 
 namespace chimera {
 
-inline constexpr std::array<std::string_view, 82> kRules = {
+inline constexpr std::array<std::string_view, 85> kRules = {
     // the text
     "file-unreadable",
     "text-size",
@@ -96,6 +96,10 @@ inline constexpr std::array<std::string_view, 82> kRules = {
     "configuration-task-twice",
     "condition-bad",
     "condition-variable",
+    // sequences
+    "sequence-step",
+    "sequence-wait",
+    "sequence-condition",
     // warnings
     "unused",
     "standby-same-rtpu",

@@ -151,6 +151,12 @@ Verdict shared_rule(const PortDescriptor& port) {
   return {};
 }
 
+Verdict intermittent_rule(const PortDescriptor& port) {
+  if (port.intermittent && (port.kind != CHIMERA_IN_VAR || !port.initial.empty()))
+    return "intermittent is for in-vars without a default";
+  return {};
+}
+
 Verdict safety_rule(const PortDescriptor& port) {
   if (!port.safety) return {};
   if (port.kind != CHIMERA_OUT_VAR) return "safety is for out-vars, this is an " + std::string(kind_name(port.kind));
@@ -247,7 +253,7 @@ Verdict port_rules(const PortDescriptor& port) {
   if (port.unit.empty()) return "the unit is empty; write \"1\" for none";
   for (const auto rule :
        {text_rule, kind_rule, type_name_rule, fields_rule, instances_rule, range_rule, words_rule,
-        configuration_rule, safe_state_rule, shared_rule, safety_rule}) {
+        configuration_rule, safe_state_rule, shared_rule, intermittent_rule, safety_rule}) {
     if (Verdict v = rule(port); !v.empty()) return v;
   }
   return {};

@@ -174,8 +174,17 @@ TEST(DeclarationRules, SharedIsAResource) {
   Sample sample;
   sample.ports[1].flags = CHIMERA_PORT_SHARED;
   EXPECT_EQ(sample.refusal(), "component tderiv: port dx: shared is for resources, this is an out-var");
-  sample.ports[1].flags = CHIMERA_PORT_SHARED << 1;
-  EXPECT_EQ(sample.refusal(), "component tderiv: port dx: unknown flags");
+}
+
+TEST(DeclarationRules, IntermittentIsAnInVarWithoutADefault) {
+  Sample sample;
+  sample.ports[0].flags = CHIMERA_PORT_INTERMITTENT;
+  EXPECT_EQ(sample.refusal(), "accepted");
+  sample.ports[0].flags = CHIMERA_PORT_INTERMITTENT << 1;
+  EXPECT_EQ(sample.refusal(), "component tderiv: port x: unknown flags");
+  sample.ports[0].flags = 0;
+  sample.ports[1].flags = CHIMERA_PORT_INTERMITTENT;
+  EXPECT_EQ(sample.refusal(), "component tderiv: port dx: intermittent is for in-vars without a default");
 }
 
 TEST(DeclarationRules, TheSafeStateIsOneBoolOrAResource) {

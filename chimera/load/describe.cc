@@ -61,7 +61,7 @@ Result<void> check_pointers(const std::string& place, const chimera_port_decl& p
   if (repeated && (std::uint64_t{port.instances_offset} + 4 > component.state_size || port.instances_offset % 4 != 0)) {
     return refused(place, "its number of instances does not lie in the state");
   }
-  if (port.flags >= CHIMERA_PORT_SHARED << 1) return refused(place, "unknown flags");
+  if (port.flags >= CHIMERA_PORT_INTERMITTENT << 1) return refused(place, "unknown flags");
   if ((port.flags & CHIMERA_PORT_HAS_INITIAL) == 0) return {};
   if (port.initial == nullptr || port.initial_count == 0) {
     return refused(place, "says it has an initial value but gives none");
@@ -93,6 +93,7 @@ PortDescriptor copy_port(const chimera_port_decl& port) {
                       .names_configuration = (port.flags & CHIMERA_PORT_CONFIGURATION) != 0,
                       .safe_state = (port.flags & CHIMERA_PORT_SAFE_STATE) != 0,
                       .shared = (port.flags & CHIMERA_PORT_SHARED) != 0,
+                      .intermittent = (port.flags & CHIMERA_PORT_INTERMITTENT) != 0,
                       .extents = {},
                       .fields = {},
                       .initial = {}};

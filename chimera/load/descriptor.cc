@@ -36,6 +36,7 @@ std::string range_text(const PortDescriptor& port) {
   if (port.names_configuration) range += ", a configuration";
   if (port.safe_state) range += ", the safe state";
   if (port.shared) range += ", shared";
+  if (port.intermittent) range += ", intermittent";
   return range;
 }
 

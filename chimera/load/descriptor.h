@@ -50,6 +50,7 @@ struct PortDescriptor {
   bool names_configuration = false;   ///< in-const of text: a configuration of the description, or empty
   bool safe_state = false;            ///< out-var of bool: the device obeys the flag; resource: it never moves
   bool shared = false;                ///< resource: several tasks may open it together
+  bool intermittent = false;          ///< in-var: a configuration may lack a producer
   std::vector<Extent> extents{};      ///< the parsed `shape`
   std::vector<FieldDescriptor> fields{};
   std::vector<std::byte> initial{};    ///< whole elements, padding zero: none, 1 (for all) or max_count()

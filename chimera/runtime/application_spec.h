@@ -18,6 +18,7 @@ namespace chimera {
 struct PortOf {
   TaskId task;
   std::uint32_t index = 0;
+  bool intermittent = false;  ///< PortSpec::intermittent
   constexpr bool operator==(const PortOf&) const noexcept = default;
 };
 

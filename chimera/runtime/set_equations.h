@@ -13,26 +13,26 @@ namespace chimera {
 enum class SetFault : std::uint8_t {
   kNone,
   kTwoProducers,  ///< equation 1: two tasks of the set produce it, or one does beside the operator
-  kNoProducer     ///< equation 2: a task of the set reads it and no task produces it
+  kNoProducer     ///< equation 2: a task of the set needs it and no task produces it
 };
 
 /// Judges a Variable, or a VariableModel of verification. `produces(task)` says whether the task is in the set, and
-/// `reads(task)` whether its inputs count. Context: any; O(ports).
-template <class Variable, class Produces, class Reads>
-SetFault set_fault(const Variable& variable, Produces produces, Reads reads) {
+/// `needs(port)` whether an input in it must have a producer. Context: any; O(ports).
+template <class Variable, class Produces, class Needs>
+SetFault set_fault(const Variable& variable, Produces produces, Needs needs) {
   std::size_t n = variable.is_given() ? 1 : 0;
   for (const auto& port : variable.producers)
     if (produces(port.task) && ++n > 1) return SetFault::kTwoProducers;
   if (n == 1) return SetFault::kNone;
   for (const auto& port : variable.consumers)
-    if (reads(port.task)) return SetFault::kNoProducer;
+    if (needs(port)) return SetFault::kNoProducer;
   return SetFault::kNone;
 }
 
 /// Judges one variable where `is_on(task)` says whether the task is in the set. Context: any; O(ports).
 template <class Variable, class IsOn>
 SetFault set_fault(const Variable& variable, IsOn is_on) {
-  return set_fault(variable, is_on, is_on);
+  return set_fault(variable, is_on, [&](const auto& port) { return !port.intermittent && is_on(port.task); });
 }
 
 /// True if the set obeys both equations for each of the `variables` (runtime/application_spec.h). `on[t]`: task t is

@@ -79,8 +79,8 @@ bool Goals::wait_for(TaskId task, TaskId rival) {
 bool Goals::has_constants(TaskId task) const noexcept {
   for (const PortSpec& port : state_.spec.tasks[task.index].ports) {
     if (port.kind != CHIMERA_IN_CONST || !port.constant.is_valid()) continue;
-    for (const auto& [producer, index] : state_.spec.constants[port.constant.index].producers)
-      if (producer != task && !state_.observed.is_created(producer) && has(producer, kGoalSpawn)) return false;
+    for (const PortOf& made : state_.spec.constants[port.constant.index].producers)
+      if (made.task != task && !state_.observed.is_created(made.task) && has(made.task, kGoalSpawn)) return false;
   }
   return true;
 }

@@ -90,6 +90,7 @@ enum {
   CHIMERA_PORT_SAFE_STATE = 1u << 5, /* out-var of bool: true while the device is in the state that the
                                         illegal-configuration flag requests; resource: no part of it ever moves */
   CHIMERA_PORT_SHARED = 1u << 6, /* resource: several tasks may open it together */
+  CHIMERA_PORT_INTERMITTENT = 1u << 7, /* in-var: a configuration may lack a producer; the last value stands */
   CHIMERA_PORT_HAS_INITIAL = 1u << 3  /* out-var: value at spawn; in-const, in-var: default */
 };
 
@@ -201,6 +202,9 @@ typedef struct chimera_host {
    * successful `off` or `kill` also removes it. From on onwards, in any method. CHIMERA_FAULT: the index does not
    * exist, or too many bytes. */
   int32_t (*safe_bytes)(void* context, uint32_t index, const void* bytes, uint32_t size);
+  /* The name of the configuration in force; "" if none is. A slow switch changes it at its end. Valid as long as the
+   * task. */
+  chimera_text (*configuration)(void* context);
 } chimera_host;
 
 /* The argument of every method. */

@@ -67,6 +67,9 @@ class Cycle {
   bool safe_bytes(std::uint32_t index, const void* bytes, std::size_t size) const noexcept {
     return call_->host->safe_bytes(call_->context, index, bytes, static_cast<std::uint32_t>(size)) == CHIMERA_OK;
   }
+  /// The name of the configuration in force; empty if none is: a task is OFF or in ERROR, or stands in for no other.
+  /// A slow switch changes it at its end. Valid as long as the task. Context: cycle; wait-free.
+  std::string_view configuration() const noexcept { return view(call_->host->configuration(call_->context)); }
   /// The variable or constant that `port` is linked to; empty: none. Valid as long as the task. Context: any;
   /// wait-free.
   template <class Port>

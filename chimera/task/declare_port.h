@@ -141,6 +141,8 @@ constexpr bool check_option() {
                 "safe_state goes with an out-var of bool, or with a resource that never moves");
   static_assert(!std::is_same_v<Option, SharedIs> || Kind == CHIMERA_RESOURCE,
                 "shared goes with a resource that several tasks may have open at one time");
+  static_assert(!std::is_same_v<Option, IntermittentIs> || Kind == CHIMERA_IN_VAR,
+                "intermittent goes with an in-var that some configurations do not produce");
   static_assert(!std::is_same_v<Option, RangeIs> || Kind != CHIMERA_RESOURCE, "a resource has no range");
   return true;
 }
@@ -210,6 +212,10 @@ void apply_option(chimera_port_decl& port, Collector& to, const SafeStateIs&) {
 template <class E>
 void apply_option(chimera_port_decl& port, Collector&, const SharedIs&) {
   port.flags |= CHIMERA_PORT_SHARED;
+}
+template <class E>
+void apply_option(chimera_port_decl& port, Collector&, const IntermittentIs&) {
+  port.flags |= CHIMERA_PORT_INTERMITTENT;
 }
 template <class E>
 void apply_option(chimera_port_decl& port, Collector&, const SafetyIs&) {

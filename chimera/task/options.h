@@ -75,6 +75,7 @@ struct SafetyIs : OptionBase {};
 struct ConfigurationIs : OptionBase {};
 struct SafeStateIs : OptionBase {};
 struct SharedIs : OptionBase {};
+struct IntermittentIs : OptionBase {};
 struct FrameIs : OptionBase {
   explicit constexpr FrameIs(const char* t) : text(t) {}
   const char* text;
@@ -142,6 +143,7 @@ inline constexpr OneOfName one_of{};      ///< in-const of text: the legal words
 inline constexpr ConfigurationIs configuration{};  ///< in-const of text: names a configuration, or is empty
 inline constexpr SafeStateIs safe_state{};  ///< bool out-var: the device obeys the flag; resource: it never moves
 inline constexpr SharedIs shared{};  ///< resource: several tasks may open it together
+inline constexpr IntermittentIs intermittent{};  ///< in-var: a configuration may lack a producer
 inline constexpr RateName rate{};         ///< CHIMERA_COMPONENT: default rate in Hz
 inline constexpr SourceName source{};     ///< CHIMERA_COMPONENT: the paper or book behind it
 

@@ -77,6 +77,7 @@ typedef struct pboPort_t {
   int configuration;
   int safe_state;
   int shared;
+  int intermittent;
 } pboPort_t;
 
 /* Options of a port. */
@@ -89,6 +90,7 @@ typedef struct pboPort_t {
 #define PBO_CONFIGURATION .configuration = 1 /* in_const of text: a configuration, tasks (--on a --off b), or empty */
 #define PBO_SAFE_STATE .safe_state = 1 /* out_var of bool: the device obeys the flag; resource: it never moves */
 #define PBO_SHARED .shared = 1 /* resource: several tasks may open it together */
+#define PBO_INTERMITTENT .intermittent = 1 /* in_var: a configuration may lack a producer */
 #define PBO_INITIAL(type, ...) \
   .initial = (const PBO_TYPE_##type[]){__VA_ARGS__}, .initial_bytes = sizeof((const PBO_TYPE_##type[]){__VA_ARGS__})
 
@@ -172,6 +174,7 @@ typedef struct pboPort_t {
 #define PBO_RING(task) PBO_SIGNAL(CHIMERA_SIGNAL_WAKEUP, task) /* one event for a task behind a server */
 #define PBO_SAFE_FRAME(index, descriptor, pause_ns) /* written if this process dies; CHIMERA_OK or not */             \
   (PBO_CALL->host->safe_frame(PBO_CALL->context, index, descriptor, pause_ns))
+#define PBO_CONFIGURATION_IN_FORCE (PBO_CALL->host->configuration(PBO_CALL->context)) /* a chimera_text */
 #define PBO_SAFE_BYTES(index, bytes, size) (PBO_CALL->host->safe_bytes(PBO_CALL->context, index, bytes, size))
 #define PBO_REQUEST(name) (PBO_CALL->host->request(PBO_CALL->context, name)) /* a configuration; CHIMERA_OK or not */
 #define PBO_SPEND(ns) (PBO_CALL->host->spend(PBO_CALL->context, ns))
@@ -230,6 +233,7 @@ static inline void pboDeclarePort(chimera_port_decl* to, const pboPort_t* from) 
               (from->configuration ? (uint32_t)CHIMERA_PORT_CONFIGURATION : 0u) |
               (from->safe_state ? (uint32_t)CHIMERA_PORT_SAFE_STATE : 0u) |
               (from->shared ? (uint32_t)CHIMERA_PORT_SHARED : 0u) |
+              (from->intermittent ? (uint32_t)CHIMERA_PORT_INTERMITTENT : 0u) |
               (from->has_range ? (uint32_t)CHIMERA_PORT_HAS_RANGE : 0u) |
               (from->initial != NULL ? (uint32_t)CHIMERA_PORT_HAS_INITIAL : 0u);
 }

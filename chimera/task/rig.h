@@ -141,8 +141,9 @@ class Rig : public RigPorts, public RigSafeFrames {
   static chimera_text text_of(const std::string& text) {
     return {text.data(), static_cast<std::uint32_t>(text.size())};
   }
-  static constexpr chimera_host kHost{&host_expired, &host_signal, &host_spend,   &host_note,      &host_variable,
-                                      &host_unit,    &host_request, &host_safe_frame<Rig>, &host_safe_bytes<Rig>};
+  static constexpr chimera_host kHost{&host_expired, &host_signal,  &host_spend,           &host_note,
+                                      &host_variable, &host_unit,    &host_request,         &host_safe_frame<Rig>,
+                                      &host_safe_bytes<Rig>, &host_configuration<Rig>};
 
   chimera_call call_{};
   std::vector<std::string> signals_;

@@ -71,6 +71,9 @@ class RigPorts {
     cell_of(port, instance).joined = {variable, unit};
   }
 
+  /// Sets the answer of Cycle::configuration().
+  void configuration(const std::string& name) { configuration_ = name; }
+
   /// Publishes a value to an in-var, or sets a constant: element `i` of instance `instance`.
   template <class T>
   void set(const char* port, const T& value, std::size_t i = 0, std::size_t instance = 0) {
@@ -110,6 +113,12 @@ class RigPorts {
   RigPorts& operator=(const RigPorts&) = delete;
   ~RigPorts() = default;
 
+  /// For chimera_host, whose context is the whole rig.
+  template <class Whole>
+  static chimera_text host_configuration(void* rig) {
+    const std::string& name = static_cast<Whole*>(rig)->configuration_;
+    return {name.data(), static_cast<std::uint32_t>(name.size())};
+  }
   const chimera_component& component() const { return component_; }
   std::byte* state() const { return state_.get(); }
   struct Joined {
@@ -134,6 +143,7 @@ class RigPorts {
   }
 
  private:
+  std::string configuration_;  // the answer of Cycle::configuration()
   struct Cell {
     const chimera_port_decl* decl;
     chimera_port* live;

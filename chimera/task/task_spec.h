@@ -44,7 +44,8 @@ struct PortSpec {
   std::uint32_t listed[CHIMERA_MAX_EXTENTS] = {};
   /// out-var: the largest step at a switch of configurations, for each of the max elements, above 0; empty: no limit.
   std::span<const std::byte> max_step;
-  bool shared = false;  ///< resource: several tasks may open it together
+  bool shared = false;        ///< resource: several tasks may open it together
+  bool intermittent = false;  ///< in-var: a set of tasks may lack a producer
 
   std::uint32_t max_count() const noexcept { return extent[0].max * extent[1].max; }
   std::uint32_t max_bytes() const noexcept { return max_count() * element_bytes; }

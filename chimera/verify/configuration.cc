@@ -274,6 +274,7 @@ class SpecMaker {
     }
     spec.safety = port.declared->safety;
     spec.shared = port.declared->shared;
+    spec.intermittent = port.declared->intermittent;
     spec.has_range = port.declared->has_range;
     spec.min = port.declared->min;
     spec.max = port.declared->max;

@@ -75,6 +75,8 @@ void Model::warn(std::string_view rule, const Spot& spot, std::string message, s
 }
 
 std::string Model::say(const LinkedPort& port) const {
+  if (const DraftSequence* sequence = sequence_of(port.task); sequence != nullptr && port.declared->intermittent)
+    return "variable '" + port.variable + "' of 'until' of " + sequence->say(sequence->step_of_input(port.instance));
   constexpr const char* kWords[] = {"input",    "output",       "in-const",     "out-const",
                                     "resource", "input stream", "output stream"};
   std::string out = std::string(kWords[port.declared->kind]) + " '" + port.name + "'";

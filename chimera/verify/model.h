@@ -179,6 +179,11 @@ struct Model {
   std::optional<std::size_t> task_named(std::string_view name) const;
   /// The primary of `standby`; nothing if it has none or names an unknown task.
   std::optional<std::size_t> primary_of(std::size_t standby) const;
+  /// The key `sequence` that made the task; nullptr: the text has the task itself.
+  const DraftSequence* sequence_of(std::size_t task) const noexcept {
+    const bool is_its = draft.sequence && draft.tasks[task].name.at == draft.sequence->at;
+    return is_its ? &*draft.sequence : nullptr;
+  }
   VariableModel* variable(std::string_view name);
   /// The variable of the port; nullptr: not linked.
   VariableModel* variable(const LinkedPort& p) { return p.is_linked() ? variable(p.variable) : nullptr; }

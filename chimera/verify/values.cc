@@ -55,6 +55,7 @@ class ValueWriter {
   void refuse(std::string_view rule, Place at, const std::string& message, std::string found, std::string expected,
               std::string near = {}, std::string remedy = {}) {
     fine_ = false;
+    if (target_.is_quiet) return;
     const Spot spot = target_.set != nullptr ? Spot(at).in(*target_.set) : Spot(at, port_);
     model_.error(rule, spot, target_.what + ": " + message, std::move(found), std::move(expected), std::move(near),
                  std::move(remedy));

@@ -19,6 +19,7 @@ struct ValueTarget {
   std::string what;      ///< for messages: "constant 'scale' of task 'left'"
   bool is_step = false;  ///< the largest step of a value: above 0; the declared range does not count
   const SetModel* set = nullptr;  ///< the configuration whose condition has the value; nullptr: the port has it
+  bool is_quiet = false;  ///< another rule reports the faults
 };
 
 /// The bytes of `node` for the target: elements at their maxima, zero beyond the written ones. A value that is not a

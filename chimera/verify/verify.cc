@@ -38,6 +38,7 @@ void judge_values(Model& model) {
   limit_table(model);
   check_values(model);
   check_conditions(model);
+  check_sequence(model);
   check_order_of_constants(model);
 }
 

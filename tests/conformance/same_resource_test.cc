@@ -22,6 +22,7 @@ struct Device {
   int not_ready = 0;      // number of times that `on` of the drill answers not yet
   int hand_not_ready = 0, arm_not_ready = 0;  // of the hand and of the arm
   std::uint64_t hand_fails_at = 0;  // cycle of the hand that is a fault; 0: none
+  std::vector<std::string> configurations;  // that the arm saw in force, without repetitions
 };
 Device device;
 
@@ -74,7 +75,11 @@ struct Arm {
   In<double> force{"force", "N"};
   Out<double> u{"u", "N", initial = 0.0};
   Outcome on(Cycle) { return device.arm_not_ready-- > 0 ? not_yet() : ok(); }
-  void cycle(Cycle) { *u = *force; }
+  void cycle(Cycle c) {
+    *u = *force;
+    const std::string now(c.configuration());
+    if (device.configurations.empty() || device.configurations.back() != now) device.configurations.push_back(now);
+  }
 };
 
 constexpr TaskId kHand{0u}, kDrill{1u}, kArm{2u};
@@ -130,6 +135,7 @@ TEST_P(SameResource, ASwitchClosesTheDeviceBeforeItOpensItForTheOther) {
   EXPECT_EQ(device.story, (Story{"init hand", "on hand", "off hand", "kill hand", "init drill", "on drill",  //
                                  "off drill", "kill drill", "init hand", "on hand"}));
   EXPECT_EQ(states(), (Story{"ON", "NOT-CREATED", "ON"}));
+  EXPECT_EQ(device.configurations, (Story{"hand", "drill", "hand"})) << "each changes at the end of its slow switch";
   EXPECT_FALSE(set_->flag().is_up());
   EXPECT_EQ(set_->tasks()[kArm.index].profile.dropped, 0u);
 }

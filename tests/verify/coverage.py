@@ -29,7 +29,8 @@ def key_patterns(text):
     patterns = []
     for array_name, place in (("kFileKeys", r"(?!\w)"), ("kRtpuKeys", " of rtpu"), ("kTaskKeys", " of task"),
                               ("kTolerateKeys", " in 'tolerate'"), ("kServerKeys", " in 'server'"),
-                              ("kSetKeys", " of configuration"),
+                              ("kSetKeys", " of configuration"), ("kSequenceKeys", " in 'sequence'"),
+                              ("kStepKeys", " of step"),
                               ("kStandbyKeys", " in 'standby_for'")):
         for key in array(text, array_name):
             # `operator`, `tasks` and the like may be spoken of without quotes ("the version of the format").

@@ -34,7 +34,9 @@ def keys_of(schema):
     rtpu = schema["properties"]["rtpus"]["additionalProperties"]["properties"]
     return {"kFileKeys": schema["properties"], "kRtpuKeys": rtpu, "kTaskKeys": task,
             "kTolerateKeys": task["tolerate"]["properties"], "kServerKeys": task["server"]["properties"],
-            "kSetKeys": schema["properties"]["configurations"]["additionalProperties"]["oneOf"][1]["properties"]}
+            "kSetKeys": schema["properties"]["configurations"]["additionalProperties"]["oneOf"][1]["properties"],
+            "kSequenceKeys": schema["properties"]["sequence"]["oneOf"][1]["properties"],
+            "kStepKeys": schema["definitions"]["step"]["properties"]}
 
 
 def main():
@@ -43,11 +45,11 @@ def main():
     judge = jsonschema.Draft7Validator(schema)
     faults = []
     header = (ROOT / "chimera/description/keys.h").read_text()
-    document = (ROOT / "docs/formats/description.md").read_text()
+    document = "".join((ROOT / f"docs/formats/{name}.md").read_text() for name in ("description", "sequence"))
     for name, properties in keys_of(schema).items():
         reader = set(array(header, name))
         faults += [f"{name}: {key} is in the reader or in the schema only" for key in sorted(reader ^ set(properties))]
-        faults += [f"{name}: {key} is not in description.md" for key in sorted(reader)
+        faults += [f"{name}: {key} is in neither description.md nor sequence.md" for key in sorted(reader)
                    if f"| `{key}` |" not in document]
     good = sorted((ROOT / "tests/verify/good").glob("*.yaml")) + sorted((ROOT / "examples").glob("**/*.yaml"))
     cases = json.loads((ROOT / "docs/formats/cases.schema.json").read_text())

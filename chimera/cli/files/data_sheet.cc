@@ -43,6 +43,7 @@ std::string remarks(const PortDescriptor& port) {
   if (!port.one_of.empty()) add("one of " + join(port.one_of, " "));
   if (port.names_configuration) add("names a configuration");
   if (port.shared) add("shared");
+  if (port.intermittent) add("a configuration may lack a producer");
   if (port.safe_state) add(port.kind == CHIMERA_RESOURCE ? "never moves" : "safe state");
   if (port.safety) add("safety");
   if (port.repeated) add("repeated, at most " + std::to_string(port.max_instances));

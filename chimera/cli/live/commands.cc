@@ -10,6 +10,7 @@
 #include "chimera/cli/live/one_shot.h"
 #include "chimera/cli/live/receipts_command.h"
 #include "chimera/cli/live/scope_command.h"
+#include "chimera/cli/live/sequence_command.h"
 #include "chimera/cli/print/answer_text.h"
 #include "chimera/cli/print/status_text.h"
 #include "chimera/task/signal.h"
@@ -279,6 +280,22 @@ RunningCommand scope_row() {
       .once = scope};
 }
 
+RunningCommand sequence_row() {
+  return {.words = {.name = "sequence",
+                    .help = "Show the steps of the sequence; go on, go to a step, or pause",
+                    .operands = "[go [STEP] | pause]",
+                    .most = 2,
+                    .operand_kind = WordKind::kOneOf,
+                    .operand_words = "go pause",
+                    .example = "chimera sequence go 2",
+                    .manual = "Prints the steps of the sequence and what the present one does. `go` begins the present "
+                              "step anew, `go STEP` a step by its name or number; both confirm a step that waits for "
+                              "Go. `pause` stays where it is.",
+                    .is_act = true},
+          .method = "set",
+          .once = sequence};
+}
+
 RunningCommand set_row() {
   return {.words = {.name = "set",
                     .help = "Give an operator variable a value with its unit",
@@ -414,8 +431,9 @@ RunningCommand why_row() {
 std::vector<RunningCommand> table() {
   std::vector<RunningCommand> rows = {clear_row(),  drill_row(), end_row(),    events_row(), flag_row(), get_row(),
                                       kill_row(),   off_row(),   on_row(),     profile_row(), receipts_row(),
-                                      reinit_row(), ring_row(),  save_row(),   scope_row(),  set_row(),  spawn_row(),
-                                      status_row(), switch_row(), top_row(),  watch_row(),  why_row()};
+                                      reinit_row(), ring_row(),  save_row(),   scope_row(),  sequence_row(),
+                                      set_row(),    spawn_row(), status_row(), switch_row(), top_row(),
+                                      watch_row(),  why_row()};
   constexpr std::string_view kRare[] = {"clear", "kill", "reinit", "ring", "spawn"};
   for (RunningCommand& row : rows) {
     row.words.which = kWhichOne;

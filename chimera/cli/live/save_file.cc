@@ -90,7 +90,9 @@ Result<std::string> edited(Session& session, const DescriptionFile& file, const 
   std::vector<EditAct> acts;
   for (const auto& [name, value] : values.items()) {
     const auto is_given = [&key = name](const NamedNode& node) { return node.name.text == key; };
-    if (std::ranges::none_of(reading.draft->operators, is_given)) return refusal("is not under `operator:`", name);
+    const auto given = std::ranges::find_if(reading.draft->operators, is_given);
+    if (given == reading.draft->operators.end()) return refusal("is not under `operator:`", name);
+    if (reading.draft->sequence && given->name.at == reading.draft->sequence->at) continue;  // `sequence_go`
     acts.emplace_back(SetValue{{"operator", name}, text_of(values, name), &units.value()});
   }
   auto text = edit_text(file.text, acts);

@@ -60,6 +60,10 @@ struct FakeSubject final : control::ControlBackend {
     if (name == "save") return reply(RpcResponse::good({{"operator", {{"kp", "[1 N.m/rad, 2 N.m/rad]"}}}}));
     if (name == "check") return reply(RpcResponse::good({{"legal", is_legal}, {"faults", Json::array()}}));
     if (name == "signal") return signal(parameters, reply);
+    if (name == "get" && parameters.dump().find("sequence_steps") != std::string::npos)
+      return reply(RpcResponse::good(Json::parse(test::kSequence)));
+    if (const Json* go = parameters["values"].find("sequence_go"); name == "set" && go != nullptr)
+      return reply(RpcResponse::good({{"values", {{"sequence_go", {{"value", *go}}}}}}));
     if (name == "get") return reply(RpcResponse::good({{"values", {{"error", reading(0.5)}}}}));
     if (name == "events") return reply(RpcResponse::good({{"events", Json::array()}, {"first", 1}, {"last", 0}}));
     reply(RpcResponse::error(control::kRefused, "not now", {{"where", "kp"}, {"remedy", "off first"}}));
@@ -268,6 +272,15 @@ TEST_F(ShellTest, AScriptStopsAtTheFirstRefusalAndNamesItsLine) {
                                "a.txt:5: refused: statsu\n";
     EXPECT_EQ(text(err), keeps_going ? first + second : first);
   }
+}
+
+TEST_F(ShellTest, ASequenceGoesToAStepByItsName) {
+  serve();
+  EXPECT_EQ(run({"sequence"}),
+            "0|[puma_pid]   1 near\n[puma_pid] > 2 grip  runs for 1.5 s\n[puma_pid]   3 home\n|");
+  EXPECT_EQ(run({"sequence", "go", "home"}), "0|[puma_pid] goes to step 3\n|");
+  EXPECT_EQ(run({"sequence", "pause"}), "0|[puma_pid] paused\n|");
+  EXPECT_EQ(run({"sequence", "go", "hmoe"}), "2||[puma_pid] sequence: no step 'hmoe'; did you mean 'home'?\n");
 }
 
 TEST_F(ShellTest, AScopeRecordsRoundItsTriggerAndCountsItsGaps) {

@@ -39,7 +39,7 @@ Words offered(const std::string& before) {
 
 TEST(Words, CommandsAreCompletedBeforeTheirOperands) {
   EXPECT_EQ(offered("sta"), Words{"status"});
-  EXPECT_EQ(offered("s"), (Words{"save", "scope", "set", "spawn", "status", "switch"}));
+  EXPECT_EQ(offered("s"), (Words{"save", "scope", "sequence", "set", "spawn", "status", "switch"}));
   EXPECT_EQ(offered("off "), (Words{"trajectory", "pid", "arm"}));
   EXPECT_EQ(offered("ring a"), Words{"arm"});
   EXPECT_EQ(offered("on h"), Words{"hand"}) << "a configuration";

@@ -37,6 +37,8 @@ std::span<const std::string_view> keys_at(const EditPath& path) {
   if (path.size() == 2 && section == "tasks") return kTaskKeys;
   if (path.size() == 2 && section == "rtpus") return kRtpuKeys;
   if (path.size() == 2 && section == "configurations") return kSetKeys;
+  if (section == "sequence" && path.size() == 1) return kSequenceKeys;
+  if (section == "sequence" && index_of(path.back())) return kStepKeys;
   if (path.size() != 3 || section != "tasks") return {};
   if (path[2] == "server") return kServerKeys;
   if (path[2] == "tolerate") return kTolerateKeys;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Follows a name through the tree of a description: lists of tasks, reactions, standbys, aliases, conditions,
-// constants.
+// constants, steps of a sequence.
 #include "chimera/description/edit/rename_tree.h"
 
 #include <algorithm>
@@ -21,6 +21,13 @@ template <class Visit>
 void each_item(Node* node, Visit visit) {
   if (node != nullptr)
     for (Node& item : node->items) visit(item);
+}
+
+/// The list of steps; nullptr: there is none.
+Node* steps_of(Node& root) {
+  Node* const sequence = found(root, {"sequence"});
+  Node* const steps = sequence != nullptr && sequence->is_map() ? found(*sequence, {"steps"}) : sequence;
+  return steps != nullptr && steps->is_list() ? steps : nullptr;
 }
 
 struct NameChange {
@@ -89,8 +96,23 @@ void follow_task(Node& root, NameChange& change) {
   change.constants(root);
 }
 
+// A step without a name has that of its configuration, and `else` of other steps names it.
+void follow_steps(Node& root, NameChange& change) {
+  Node* const steps = steps_of(root);
+  bool is_name = false;
+  each_item(steps, [&](Node& step) {
+    const Node* const name = found(step, {"name"});
+    is_name = is_name || (name != nullptr && name->is_scalar() && name->text == change.from);
+  });
+  each_item(steps, [&](Node& step) {
+    change.scalar(found(step, {"switch"}));
+    if (!is_name && change.from != "stop") change.scalar(found(step, {"else"}));
+  });
+}
+
 void follow_configuration(Node& root, NameChange& change) {
   change.scalar(found(root, {"start"}));
+  follow_steps(root, change);
   each_item(found(root, {"tasks"}), [&](Node& task) {
     for (const char* key : {"on_miss", "on_overrun", "on_fault"}) change.scalar(found(task, {key, "switch"}));
     change.scalar(found(task, {"on_fault", "then", "switch"}));
@@ -132,6 +154,7 @@ std::size_t rename_variable(Node& root, const std::string& from, const std::stri
     each_item(found(task, {"alias"}), [&](Node& variables) { change.scalars(variables); });
   });
   each_item(found(root, {"configurations"}), [&](Node& set) { change.condition(found(set, {"safe_when"})); });
+  each_item(steps_of(root), [&](Node& step) { change.condition(found(step, {"until"})); });
   return change.places;
 }
 

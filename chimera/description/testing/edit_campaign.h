@@ -293,7 +293,8 @@ class EditCampaign {
     if (section == "rtpus") return in_task && at(2) == "rtpu";
     if (section == "tasks")
       return (at(0) == "configurations" && at(2) != "safe_when") || (in_task && at(2) == "standby_for") || is_constant;
-    if (section == "configurations") return at(0) == "start" || path.back() == "switch" || is_constant;
+    const bool is_else = at(0) == "sequence" && path.back() == "else";
+    if (section == "configurations") return at(0) == "start" || path.back() == "switch" || is_else || is_constant;
     return in_task && at(2) == "alias";
   }
 
@@ -306,11 +307,17 @@ class EditCampaign {
     if (!edit({RenameKey{{section, from}, to, {}}}, "rename " + section + "/" + from + " " + to)) return;
     FlatTree wanted;
     const std::string top = "/" + section + "/" + from;
+    const bool is_step = std::ranges::any_of(old_.flat, [&](const auto& one) {
+      return one.first.starts_with("/sequence/") && one.first.ends_with("/name") && one.second == from;
+    });
     for (const auto& [path, value] : old_.flat) {
       const std::string quote = value.starts_with('"') ? "\"" : "";
-      const bool is_named = value == quote + from && path.size() > 1 && may_name(section, edit_path(path.substr(1)));
+      const bool is_of_step = is_step && path.ends_with("/else");
+      const bool is_named = value == quote + from && path.size() > 1 && !is_of_step &&
+                            may_name(section, edit_path(path.substr(1)));
       const std::string moved = is_within(path, top) ? "/" + section + "/" + to + path.substr(top.size()) : path;
-      const bool is_condition = path.ends_with("/safe_when") && (section == "operator" || section == "constants");
+      const bool is_condition = (path.ends_with("/safe_when") || path.ends_with("/until")) &&
+                                (section == "operator" || section == "constants");
       wanted[moved] = is_named ? quote + to : is_condition ? now_.flat[moved] : value;
     }
     const std::string task = "/tasks/" + to;

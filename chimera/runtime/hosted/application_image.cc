@@ -43,7 +43,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31474d49'4d494843;  // "CHIMIMG1" in memory
-constexpr std::uint32_t kVersion = 10;
+constexpr std::uint32_t kVersion = 11;
 
 struct Header {
   std::uint64_t magic = kMagic;
@@ -124,6 +124,7 @@ void port_fields(Archive& archive, Port& port, const Counts& counts) {
                       (port.kind == CHIMERA_OUT_VAR && port.max_step.size() == port.max_bytes()),
                   "a largest step that does not fill an output");
   archive.choice(port.shared, true);
+  archive.choice(port.intermittent, true);
 }
 
 // Its producers are the out-consts that carry its id.

@@ -161,8 +161,8 @@ TEST(ApplicationImage, StrangersAreRefusedByName) {
   bytes[0] = std::byte{'X'};
   EXPECT_EQ(refusal(bytes), "not an application image");
   bytes = good;
-  bytes[kVersionAt] = std::byte{11};
-  EXPECT_EQ(refusal(bytes), "image version 11, this program reads 10");
+  bytes[kVersionAt] = std::byte{12};
+  EXPECT_EQ(refusal(bytes), "image version 12, this program reads 11");
   bytes = good;
   bytes.pop_back();
   EXPECT_EQ(refusal(bytes), "the image says it has " + std::to_string(good.size()) + " bytes, here are " +

@@ -37,7 +37,7 @@ void Links::fill(std::span<const TaskSpec> tasks, std::span<const GivenSpec> ope
     for (const PortSpec& port : tasks[t].ports) {
       const std::size_t list = lists.of(port);
       const std::uint32_t mine = index[port.kind]++;
-      if (list < lists.count()) ports_[next[list]++] = {TaskId(t), mine};
+      if (list < lists.count()) ports_[next[list]++] = {TaskId(t), mine, port.intermittent};
     }
   }
   const std::span<const PortOf> all = ports_;

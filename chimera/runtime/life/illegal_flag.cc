@@ -29,7 +29,8 @@ void IllegalFlag::raise_for(TaskId task, State in) noexcept {
   judge();
 }
 
-void IllegalFlag::follow(std::span<const bool> on, bool is_uncovered) noexcept {
+void IllegalFlag::follow(std::span<const bool> on, bool is_uncovered, std::uint32_t configuration) noexcept {
+  if (!is_held_) configuration_.store(configuration, std::memory_order_relaxed);
   is_on_set_legal_ = !is_uncovered && is_legal_set(variables_, on);
   if (raised_by_.is_valid()) lower(false);
   judge();

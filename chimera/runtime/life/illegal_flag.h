@@ -45,7 +45,11 @@ class IllegalFlag {
   /// The flag words of the other processes, read from here on by is_up(). The words and the span outlive this.
   void watch(std::span<const std::atomic<std::uint32_t>* const> flags) noexcept { foreign_ = flags; }
   /// `on[t]`: task t is ON, over all contexts. `is_uncovered`: a task that has standbys failed, and none took over.
-  void follow(std::span<const bool> on, bool is_uncovered) noexcept;
+  /// `configuration`: the number of the one that is ON; kNoSet: none.
+  void follow(std::span<const bool> on, bool is_uncovered, std::uint32_t configuration) noexcept;
+  /// The configuration in force at the last follow(). While a slow switch holds the flag, the states are a mixture, and
+  /// the one before it stays. Context: any; wait-free.
+  std::uint32_t configuration() const noexcept { return configuration_.load(std::memory_order_relaxed); }
 
  private:
   void lower(bool for_all) noexcept;
@@ -56,6 +60,7 @@ class IllegalFlag {
   // Relaxed, pair with nothing: a job that reads one a cycle late is a job that ran a cycle earlier.
   std::span<const std::atomic<std::uint32_t>* const> foreign_;
   std::span<State> raises_in_;  // by task: its reaction holds the flag up in this state; NOT-CREATED: it does not
+  std::atomic<std::uint32_t> configuration_{UINT32_MAX};  // relaxed, pairs with nothing: as `foreign_`
   TaskId raised_by_;          // one of them
   bool is_raised_ = false;
   bool is_held_ = false;

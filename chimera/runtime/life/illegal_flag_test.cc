@@ -34,7 +34,7 @@ struct IllegalFlagTest : ::testing::Test {
   void turn(TaskId task, bool on) {
     tasks[task.index].state = on ? State::kOn : State::kOff;
     const bool now[] = {tasks[0].state == State::kOn, tasks[1].state == State::kOn};
-    flag.follow(now, false);
+    flag.follow(now, false, 0);
   }
 
   testing::TestApplication app;

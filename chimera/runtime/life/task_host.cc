@@ -103,6 +103,13 @@ chimera_text host_unit(void* context, const chimera_port* port) {
   return {spec->unit.data(), static_cast<std::uint32_t>(spec->unit.size())};
 }
 
+chimera_text host_configuration(void* context) {
+  TaskSet& set = *host_of(context).set;
+  const std::uint32_t number = set.flag().configuration();
+  const std::string_view name = number < set.spec().sets.size() ? set.spec().sets[number].name : std::string_view{};
+  return {name.data(), static_cast<std::uint32_t>(name.size())};
+}
+
 SafeFrames* frames_of(void* context) noexcept { return host_of(context).set->safe_frames(); }
 
 std::int32_t host_safe_frame(void* context, std::uint32_t index, std::int32_t descriptor, std::int64_t pause_ns) {
@@ -121,7 +128,8 @@ std::int32_t host_safe_bytes(void* context, std::uint32_t index, const void* byt
 
 }  // namespace
 
-const chimera_host TaskHost::kCalls = {&host_expired, &host_signal, &host_spend,   &host_note,      &host_variable,
-                                       &host_unit,    &host_request, &host_safe_frame, &host_safe_bytes};
+const chimera_host TaskHost::kCalls = {&host_expired,  &host_signal,  &host_spend,      &host_note,
+                                       &host_variable, &host_unit,    &host_request,    &host_safe_frame,
+                                       &host_safe_bytes, &host_configuration};
 
 }  // namespace chimera

@@ -4,6 +4,7 @@
 
 #include "chimera/base/message.h"
 #include "chimera/runtime/life/stale_inputs.h"
+#include "chimera/runtime/plan/switch_plan.h"
 
 namespace chimera {
 namespace {
@@ -107,7 +108,8 @@ void TaskSet::on_set_changed() noexcept {
     if (standbys_.is_any_waiting() || standbys_.has_hot()) sent_.want_edge();
   }
   for (const Task& task : tasks_) on_[task.id.index] = counts_as_on(task.id);
-  flag_.follow(on_, standbys_.is_any_uncovered());
+  const std::uint32_t in_force = set_in_force(spec_, [this](TaskId task) -> bool { return on_[task.index]; });
+  flag_.follow(on_, standbys_.is_any_uncovered(), in_force);
   for (Task& task : tasks_) {
     if (!is_mine(task.id)) continue;
     if (task.standing == Standing::kWarm && !task.is_warm()) task.standing = Standing::kPlain;

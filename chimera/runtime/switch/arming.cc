@@ -51,6 +51,7 @@ VariableId missing_value(TaskSet& set, Task& task, std::span<const Handover> han
   read_inputs(task);
   const TaskMemory& memory = set.memory(task.id);
   for (std::size_t i = 0; i < task.inputs.size(); ++i) {
+    if (memory.input_spec(i).intermittent) continue;
     const VariableId variable = memory.input_spec(i).variable;
     const auto is_its = [&](const Handover& handover) { return handover.variable == variable; };
     if (std::any_of(handovers.begin(), handovers.end(), is_its)) continue;

@@ -64,6 +64,7 @@ inline void compare_ports(SpecDifference& d, const PortSpec& a, const PortSpec& 
   d.compare(a.has_range, b.has_range, "has_range");
   d.values(a.max_step, b.max_step, "max_step");
   d.compare(a.shared, b.shared, "shared");
+  d.compare(a.intermittent, b.intermittent, "intermittent");
   compare_values(d, a, b);
 }
 

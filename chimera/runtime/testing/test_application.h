@@ -46,6 +46,7 @@ class TestApplication {
       port.element_bytes = decl.element_size;
       port.type = decl.type;
       port.safety = (decl.flags & CHIMERA_PORT_SAFETY) != 0;
+      port.intermittent = (decl.flags & CHIMERA_PORT_INTERMITTENT) != 0;
       port.has_range = (decl.flags & CHIMERA_PORT_HAS_RANGE) != 0;
       port.min = decl.min;
       port.max = decl.max;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rules on `safe_when`: a condition compares one number or truth value that exists when a switch begins.
+// Rules on `safe_when` and `until`: a condition compares one number or truth value that exists where it counts.
 #include <algorithm>
 
 #include "chimera/description/draft_values.h"
@@ -17,25 +17,27 @@ constexpr double kLargestWhole = 9007199254740992.0;
 /// A condition and its place.
 class ConditionJudge {
  public:
-  ConditionJudge(Model& model, const DraftSet& draft, SetModel& set)
-      : model_(model), draft_(*draft.safe_when), set_(set),
-        what_("'safe_when' of configuration '" + set.name + "'") {}
+  ConditionJudge(Model& model, const DraftCondition& draft, const ConditionPlace& place)
+      : model_(model), draft_(draft), place_(place), what_(place.what) {}
 
-  void judge() {
+  std::optional<JudgedCondition> judge() {
     const VariableModel* variable = find();
-    if (variable == nullptr || !is_produced(*variable)) return;
+    if (variable == nullptr || !is_produced(*variable)) return std::nullopt;
     const LinkedPort& port =
         model_.port(variable->producers.empty() ? variable->consumers[0] : variable->producers[0]);
-    if (!is_solved(port) || !is_number(port) || !is_one_element(port)) return;
-    const auto bytes = value_bytes(model_, draft_.value, {port, what_, false, &set_});
-    if (!bytes) return;
+    if (!is_solved(port) || !is_number(port) || !is_one_element(port)) return std::nullopt;
+    const SetModel* set = place_.is_until ? &nowhere_ : place_.set;
+    const auto bytes = value_bytes(model_, draft_.value, {port, what_, false, set});
+    if (!bytes) return std::nullopt;
     const std::uint32_t element = draft_.element.value_or(0);
     const double limit = number_at(*port.type, bytes->data() + std::size_t{element} * port.element_bytes);
-    if (*port.type == CHIMERA_INT64 && !(limit > -kLargestWhole && limit < kLargestWhole))
-      return refuse("value-range", "compares with " + draft_.value.text + "; expected less than 2^53",
-                    draft_.value.text, "a number of at most 53 bits");
-    set_.safe_when = {{}, element, draft_.comparison, limit};
-    set_.safe_variable = static_cast<std::size_t>(variable - model_.variables.data());
+    if (*port.type == CHIMERA_INT64 && !(limit > -kLargestWhole && limit < kLargestWhole)) {
+      refuse("value-range", "compares with " + draft_.value.text + "; expected less than 2^53",
+             draft_.value.text, "a number of at most 53 bits");
+      return std::nullopt;
+    }
+    const auto number = static_cast<std::size_t>(variable - model_.variables.data());
+    return JudgedCondition{{{}, element, draft_.comparison, limit}, number, &port};
   }
 
  private:
@@ -48,26 +50,38 @@ class ConditionJudge {
   const VariableModel* find() {
     const std::string& name = draft_.variable.text;
     const VariableModel* found = model_.variable(name);
-    if (found != nullptr && !found->is_constant) return found;
+    const auto has_no_value = [&](const VariableModel& one) {
+      return place_.is_until && one.producers.empty() && !one.is_given();
+    };
+    if (found != nullptr && !found->is_constant && !has_no_value(*found)) return found;
     if (model_.is_incomplete()) return nullptr;
     std::vector<std::string> names;
     for (const VariableModel& one : model_.variables)
-      if (!one.is_constant) names.push_back(one.name);
+      if (!one.is_constant && !has_no_value(one)) names.push_back(one.name);
     const std::string near = nearest(name, names);
     refuse("condition-variable",
-           found != nullptr ? "names '" + name + "', which is a constant and never changes"
+           found != nullptr && found->is_constant ? "names '" + name + "', which is a constant and never changes"
                             : "names the variable '" + name + "', which is not there",
            name, "a state variable", near, near.empty() && !names.empty() ? "there are: " + listed(names) : "");
     return nullptr;
   }
 
-  /// True if the operator produces it, or a configuration from which a switch to this one can begin.
+  /// True if the operator produces it, or the configuration of the step; of `safe_when`, one from which a switch
+  /// to this one can begin.
   bool is_produced(const VariableModel& variable) {
     if (variable.given != nullptr && !variable.consumers.empty()) return true;
-    if (model_.is_incomplete()) return false;
-    const bool is_elsewhere = std::ranges::any_of(model_.sets, [&](const SetModel& other) {
-      return &other != &set_ && std::ranges::any_of(variable.producers, [&](PortRef p) { return other.has(p.task); });
-    });
+    if (model_.is_incomplete() || place_.set == nullptr) return false;
+    const auto is_made_in = [&](const SetModel& set) {
+      return std::ranges::any_of(variable.producers, [&](PortRef p) { return set.has(p.task); });
+    };
+    const std::string& name = place_.set->name;
+    if (place_.is_until && !is_made_in(*place_.set))
+      refuse("condition-variable",
+             "can never hold: no task of configuration '" + name + "' produces '" + variable.name + "'", variable.name,
+             "a variable of configuration '" + name + "'", {}, "add its producer to '" + name + "', or name another");
+    if (place_.is_until) return is_made_in(*place_.set);
+    const bool is_elsewhere = std::ranges::any_of(
+        model_.sets, [&](const SetModel& other) { return &other != place_.set && is_made_in(other); });
     if (!is_elsewhere)
       refuse("condition-variable",
              "can never hold: no other configuration produces '" + variable.name + "', so it has no value there",
@@ -110,16 +124,27 @@ class ConditionJudge {
 
   Model& model_;
   const DraftCondition& draft_;
-  SetModel& set_;
+  const ConditionPlace& place_;
+  const SetModel nowhere_;  // a fault of `until` stands at no configuration
   std::string what_;
 };
 
 }  // namespace
 
+std::optional<JudgedCondition> judge_condition(Model& model, const DraftCondition& draft, const ConditionPlace& place) {
+  return ConditionJudge(model, draft, place).judge();
+}
+
 void check_conditions(Model& model) {
-  for (std::size_t i = 0; i < model.draft.configurations.size(); ++i)
-    if (model.draft.configurations[i].safe_when)
-      ConditionJudge(model, model.draft.configurations[i], model.sets[i]).judge();
+  for (std::size_t i = 0; i < model.draft.configurations.size(); ++i) {
+    SetModel& set = model.sets[i];
+    const auto& safe_when = model.draft.configurations[i].safe_when;
+    if (!safe_when) continue;
+    const auto judged = judge_condition(model, *safe_when, {"'safe_when' of configuration '" + set.name + "'", &set});
+    if (!judged) continue;
+    set.safe_when = judged->condition;
+    set.safe_variable = judged->variable;
+  }
 }
 
 }  // namespace chimera

@@ -34,6 +34,7 @@ void add_given(Model& model, const std::vector<NamedNode>& given, bool is_consta
 }
 
 void refuse_both(Model& model, const LinkedPort& port) {
+  if (model.sequence_of(port.task) != nullptr && port.declared->intermittent) return;  // rule_sequence.cc
   const bool is_constant = port.declared->is_constant();
   const char *constant = "constant", *state = "state variable";
   model.error("variable-and-constant", port,
@@ -125,6 +126,7 @@ void report_unmet(Model& model, const UnmetInput& unmet) {
   const VariableModel& variable = model.variables[unmet.variable];
   const SetModel& set = model.sets[unmet.set];
   const LinkedPort& port = model.port(unmet.port);
+  if (model.sequence_of(port.task) != nullptr) return;  // rule_sequence.cc
   const std::string near = nearest(variable.name, fitting(model, port, set));
   const std::string unit = port.unit && port.unit_text != "1" ? "; it is in " + port.unit_text : "";
   model.error("input-unmet", Spot(port).in(set),
@@ -144,6 +146,11 @@ std::vector<PortRef> without_standbys(const Model& model, const std::vector<Port
   return left;
 }
 
+/// An intermittent input needs a producer in some configuration only.
+bool needs_producer(const Model& model, const VariableModel& variable, PortRef port) {
+  return !model.port(port).declared->intermittent || variable.producers.empty();
+}
+
 using Members = std::vector<bool>;  // by task
 
 Members members(const Model& model, const SetModel& set) {
@@ -160,9 +167,9 @@ Members readers(const Model& model, const Members& on) {
   return tasks;
 }
 
-SetFault fault_of(const VariableModel& variable, const Members& on, const Members& reading) {
+SetFault fault_of(const Model& model, const VariableModel& variable, const Members& on, const Members& reading) {
   return set_fault(variable, [&](std::size_t task) -> bool { return on[task]; },
-                   [&](std::size_t task) -> bool { return reading[task]; });
+                   [&](PortRef port) { return reading[port.task] && needs_producer(model, variable, port); });
 }
 
 void report_two(Model& model, const VariableModel& variable, const SetModel& set) {
@@ -202,7 +209,7 @@ void refuse_two_producers(Model& model) {
   for (const SetModel& set : model.sets) on.push_back(members(model, set));
   for (const VariableModel& variable : model.variables)
     for (std::size_t s = 0; s < on.size(); ++s)
-      if (!variable.is_constant && fault_of(variable, on[s], on[s]) == SetFault::kTwoProducers)
+      if (!variable.is_constant && fault_of(model, variable, on[s], on[s]) == SetFault::kTwoProducers)
         report_two(model, variable, model.sets[s]);
 }
 
@@ -213,9 +220,9 @@ void find_unmet_inputs(Model& model) {
     const Members on = members(model, model.sets[s]), reading = readers(model, on);
     for (std::size_t v = 0; v < model.variables.size(); ++v) {
       const VariableModel& variable = model.variables[v];
-      if (variable.is_constant || fault_of(variable, on, reading) != SetFault::kNoProducer) continue;
+      if (variable.is_constant || fault_of(model, variable, on, reading) != SetFault::kNoProducer) continue;
       for (const PortRef ref : variable.consumers)
-        if (reading[ref.task] && found.insert(&model.port(ref)).second)
+        if (reading[ref.task] && needs_producer(model, variable, ref) && found.insert(&model.port(ref)).second)
           model.unmet.push_back({ref, s, v, model.say(model.port(ref))});
     }
   }

@@ -7,7 +7,9 @@ namespace chimera {
 namespace {
 
 void check_own(Model& model, LinkedPort& port) {
-  auto bytes = value_bytes(model, *port.own, {port, value_name(model, port)});
+  ValueTarget target{port, value_name(model, port)};
+  target.is_quiet = model.sequence_of(port.task) != nullptr;  // rule_sequence.cc
+  auto bytes = value_bytes(model, *port.own, target);
   if (bytes) port.value = *std::move(bytes);
 }
 

@@ -72,6 +72,23 @@ void check_values(Model& model);
 // rule_conditions.cc
 /// `safe_when` compares one number or truth value that another configuration or the operator produces.
 void check_conditions(Model& model);
+/// A condition of the text, and where its variable must have a value.
+struct ConditionPlace {
+  std::string what;               ///< "'until' of step 1 'approach'"
+  const SetModel* set = nullptr;  ///< nullptr: its name is not known
+  bool is_until = false;          ///< a task of `set` produces the variable; else of another configuration
+};
+/// The condition with its limit in the unit of the variable, and the port that settled that; nothing after a fault.
+struct JudgedCondition {
+  SafeCondition condition;
+  std::size_t variable = 0;  ///< in Model::variables
+  const LinkedPort* port = nullptr;
+};
+std::optional<JudgedCondition> judge_condition(Model& model, const DraftCondition& draft, const ConditionPlace& place);
+
+// rule_sequence.cc
+/// Each step of `sequence` names a configuration, and has a condition that can hold in it.
+void check_sequence(Model& model);
 
 // rule_order.cc
 /// No element of a constant is below the constant that its component names as the lower one.

@@ -60,4 +60,9 @@ inline constexpr const char* kDescribed = R"({
       {"variable": "kp", "type": "float64", "unit": "N.m/rad", "shape": "[2]", "constant": false, "given": true,
        "producers": [], "consumers": [{"task": "pid", "port": "kp"}]}]})";
 
+/// The answer of `get` for the second of three steps.
+inline constexpr const char* kSequence = R"({"values": {
+    "sequence_steps": {"value": ["near", "grip", "home"]}, "sequence_step": {"value": 2},
+    "sequence_state": {"value": 2}, "sequence_waited": {"value": 1.5, "text": "1.5 s"}}})";
+
 }  // namespace chimera::cli::test

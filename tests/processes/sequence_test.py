@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A sequence over real processes: without its manager, and after the death of each rtpu."""
+import unittest
+
+from descriptions import preemptive
+from system import System, await_that
+
+STEPS = """
+subsystem: subject
+rtpus:
+  servo: {cpu: 0, policy: edf}
+  brain: {cpu: 1, policy: edf}
+tasks:
+  near:
+    component: signal_generator
+    rate: 100 Hz
+    alias: {y: level}
+    constants: {amplitude: 0 m, offset: 1 m}
+  far:
+    component: signal_generator
+    rate: 100 Hz
+    alias: {y: level}
+    constants: {amplitude: 0 m, offset: 2 m}
+configurations:
+  near_by: [near]
+  far_off: [far]
+"""
+RUNS = STEPS + """
+sequence:
+  rtpu: brain
+  steps:
+    - {name: first, switch: near_by, until: 'level < 1500 mm', within: 60 s}
+    - {name: second, switch: far_off, until: level >= 2 m, within: 60 s}
+    - {name: third, switch: near_by, for: 50 ms}
+    - {name: last, switch: far_off}
+"""
+STAYS = STEPS + """
+sequence:
+  rtpu: brain
+  steps:
+    - {name: first, switch: near_by, for: 1 h}
+    - {name: second, switch: far_off, for: 1 h, reentry: true}
+    - {name: third, switch: near_by}
+"""
+PAUSED, RUNNING, DONE = 0, 2, 6
+
+
+class Sequence(unittest.TestCase):
+    def await_step(self, system, step, state):
+        await_that(lambda: (system.value("sequence_step"), system.value("sequence_state")) == (step, state),
+                   lambda: f"step {step} in state {state}: {system.value('sequence_step')} "
+                           f"{system.value('sequence_state')} {system.told()}")
+
+    def go(self, system, *words):
+        system.chimera("sequence", *words, "--subsystem", "subject")
+
+    def kill_and_await(self, system, rtpu):
+        before = system.rtpu(rtpu)
+        self.assertTrue(system.kill(before["pid"]))
+        system.await_restart(rtpu, before)
+
+    def test_goes_through_its_steps(self):
+        for form in (str, preemptive):
+            with self.subTest(form.__name__), System(form(RUNS)) as system:
+                self.await_step(system, 4, DONE)
+                self.assertEqual([receipt["to"] for receipt in system.call("receipts")["receipts"]],
+                                 ["far_off", "near_by", "far_off"])
+                shown = system.chimera("sequence", "--subsystem", "subject").stdout
+                self.assertEqual(shown.replace("[subject] ", ""), "  1 first\n  2 second\n  3 third\n> 4 last  done\n")
+
+    def test_goes_on_after_a_death_only_where_reentry_is_allowed(self):
+        with System(STAYS) as system:
+            self.await_step(system, 1, RUNNING)
+            self.kill_and_await(system, "servo")
+            self.await_step(system, 1, PAUSED)
+            system.await_event(0, "note", "may go on with step 2", task="sequence")
+            self.go(system, "go", "second")
+            self.await_step(system, 2, RUNNING)
+            since = system.next_event()
+            self.kill_and_await(system, "servo")
+            system.await_event(since, "note", "goes on with step 2", task="sequence")
+            self.await_step(system, 2, RUNNING)
+
+    def test_goes_on_after_the_death_of_its_own_rtpu_only_where_reentry_is_allowed(self):
+        with System(STAYS) as system:
+            self.go(system, "go", "2")
+            self.await_step(system, 2, RUNNING)
+            since = system.next_event()
+            self.kill_and_await(system, "brain")
+            system.await_event(since, "note", "goes on with step 2", task="sequence")
+            self.await_step(system, 2, RUNNING)
+            self.go(system, "go", "first")
+            self.await_step(system, 1, RUNNING)
+            self.kill_and_await(system, "brain")
+            self.await_step(system, 0, PAUSED)
+
+    def test_a_pause_outlives_the_death_of_its_rtpu(self):
+        with System(STAYS) as system:
+            self.go(system, "go", "2")
+            self.await_step(system, 2, RUNNING)
+            self.go(system, "pause")
+            self.await_step(system, 2, PAUSED)
+            self.kill_and_await(system, "brain")
+            self.await_step(system, 0, PAUSED)
+
+    def test_goes_on_without_its_manager(self):
+        with System(STAYS) as system:
+            self.await_step(system, 1, RUNNING)
+            self.assertTrue(system.kill(system.call("hello")["manager"]["pid"]))
+            self.await_step(system, 1, RUNNING)
+            self.go(system, "go", "2")
+            self.await_step(system, 2, RUNNING)
+
+
+if __name__ == "__main__":
+    unittest.main()
