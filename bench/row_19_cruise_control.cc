@@ -2,7 +2,7 @@
 // Row 19: one cycle of each component of the cruise control, and of those that schedules and tests are made of, beside
 // the same law written out.
 // Components: accel brake busy car ccui control control_pm dashboard electric_car engine faulty motor position
-// Components: split_pm split_pm_override wheels on_event ringer
+// Components: split_pm split_pm_override wheels on_event ringer sequence
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +10,7 @@
 #include "library/car/car_model.h"
 #include "library/control/pi.h"
 #include "library/script/script.h"
+#include "library/sequence/step.h"
 
 namespace chimera {
 namespace {
@@ -75,6 +76,22 @@ std::vector<ComponentCase> controls() {
           {"motor", "clamp", forces, repeated([](double x) { return std::clamp(x, -5000.0, 5000.0); }, 500)}};
 }
 
+/// A sequence that waits for a value.
+void two_steps(ArmRig& rig) {
+  for (const char* port : {"value", "level"}) rig.instances(port, 1);
+  rig.instances("configuration", 2);
+  rig.extent("n", 1);
+  rig.extent("steps", 2);
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    rig.set("configuration", Text<72>("near"), 0, i);
+    rig.set("step", library::Step{"near", 3600, 3600.0 * i, i == 0 ? 0 : -1, 0, 1, -1, false, false}, i);
+  }
+  rig.set("level", 5.0);
+  rig.set("value", 6.0);
+  rig.set("sequence_go", 1);
+  rig.configuration("near");
+}
+
 std::vector<ComponentCase> worlds() {
   library::CarModel car;
   const auto drive = [car](double force) mutable {
@@ -98,6 +115,7 @@ std::vector<ComponentCase> worlds() {
           {"ringer", "countdown", [](ArmRig& rig) {
              rig.set("target", Text<64>("x")), rig.set("every", std::int64_t{1'000'000'000}); },
            repeated([left = std::int64_t{1'000'000'000}](double x) mutable { return --left > 0 ? x : 0; }, 1)},
+          {"sequence", "comparison", two_steps, repeated([](double x) { return x <= 5 ? 2.0 : 1.0; }, 6)},
           {"faulty", "counter", [](ArmRig&) {}, repeated([](double x) { return x + 1; }, 0)}};
 }
 
