@@ -190,7 +190,7 @@ class Acts(AssembleTest):
         self.assemble(name="first.yaml")
         with self.one_act():
             self.page.press("n")
-            self.page.await_that("document.activeElement.id === 'add-task-component'", "the field of the component")
+            self.await_focus("add-task-component")
             self.page.press("t_source", Keys.TAB, "source", Keys.ENTER)
         self.page.await_one(f"{self.page.box('source')}.chosen")
         with self.one_act():
@@ -247,7 +247,7 @@ class Faults(AssembleTest):
         self.assemble(CHAIN)
         self.page.click("li[data-fault='0'] .link")
         self.page.await_one(f"{self.page.box('twice')}.chosen")
-        self.page.await_that("document.activeElement.id === 'draft-text'", "the text")
+        self.await_focus("draft-text")
         line = self.page.script("const e = document.getElementById('draft-text');"
                                 "return e.value.slice(0, e.selectionStart).split('\\n').length")
         self.assertIn("twice:", CHAIN.splitlines()[line - 1])

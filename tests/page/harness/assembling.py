@@ -7,6 +7,7 @@ import subprocess
 from selenium.webdriver.common.action_chains import ActionChains
 
 from case import PageTest
+from machine import await_that
 from page import Keys, quoted
 from web import BUILD, Web
 
@@ -74,6 +75,10 @@ class AssembleTest(PageTest):
 
     def await_text(self, text):
         self.page.await_that(f"document.getElementById('draft-text').value === {json.dumps(text)}", "the text")
+
+    def await_focus(self, name):
+        """Polls: a focus is no change of the document."""
+        await_that(lambda: self.page.script("return document.activeElement.id") == name, f"the focus of {name}")
 
     def await_verdict(self, verdict):
         self.page.await_root("verdict", verdict)
