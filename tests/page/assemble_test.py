@@ -30,8 +30,8 @@ tasks:
   pid: {component: pid_joint}
   arm: {component: puma_torque}
 """
-VALUES = (("arm", "resources/model", "puma560.xml"), ("trajectory", "constants/duration", "2 s"),
-          ("", "constants/goal", "0.5 rad"), ("", "operator/kp", "1000 N.m/rad"), ("", "operator/kd", "50 N.m.s/rad"))
+VALUES = (("trajectory", "constants/duration", "2 s"), ("", "constants/goal", "0.5 rad"),
+          ("", "operator/kp", "1000 N.m/rad"), ("", "operator/kd", "50 N.m.s/rad"))
 CHAIN = """# two tasks
 subsystem: chain
 tasks:
