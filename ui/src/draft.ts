@@ -62,7 +62,7 @@ export class Draft {
   async begin(door: Door): Promise<void> {
     this.door = door;
     try {
-      this.take(await door.call("draft"), "act");
+      await this.inTurn(async () => this.take(await door.call("draft"), "act"));  // acts wait for the version
       await door.call("subscribe", { to: "draft" });
       const library = await door.call("library").catch(() => null);
       if (library) this.state.set({ library: library.components });
