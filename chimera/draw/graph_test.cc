@@ -216,6 +216,12 @@ TEST(Svg, ShowsEveryNameAndEscapesIt) {
   EXPECT_TRUE(document.ends_with("</svg>\n"));
 }
 
+TEST(Svg, HasNoLabelForAnEmptyTitle) {
+  Graph graph = figure4();
+  graph.title = "";
+  for (const Label& label : lay_out(graph).labels) EXPECT_NE(label.text, "");
+}
+
 TEST(Dot, JoinsPairsDirectlyAndFansThroughADot) {
   const std::string document = dot(figure4());
   EXPECT_EQ(count(document, "\"pid\" -> \"arm\" [label=\"tau\"];"), 1u);

@@ -124,7 +124,7 @@ Layout lay_out(const Graph& graph) {
   Layout layout{graph.title, {}, {}, std::move(routes.lines), {}, {}, 0, routes.height};
   layout.dots = dots_of(layout.lines);
   layout.width = std::max(routes.width, width_of(graph.title) * 3 / 2 + 48);
-  layout.labels.push_back({graph.title, 24, 26, "title"});
+  if (!graph.title.empty()) layout.labels.push_back({graph.title, 24, 26, "title"});
   for (const Placed& box : boxes) BoxDrawer(layout, graph, box).draw();
   return layout;
 }

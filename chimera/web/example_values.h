@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What descriptions give to the ports of components: values to offer, and the lessons that use a component.
+// Values of ports in the descriptions of lessons and tests, to be offered; and the lessons that use a component.
 #pragma once
 
 #include <string>

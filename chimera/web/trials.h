@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `try`, `scope`, `result`, `halt`: commands of chimera that a page asks for, each a child of chimera-web with a folder
-// of its own. docs/formats/web.md, "Trials".
+// The methods `try`, `scope`, `result` and `halt`. Each trial is a command of chimera, run as a child of chimera-web in
+// a private folder. docs/formats/web.md, "Trials".
 #pragma once
 
 #include <cstdint>

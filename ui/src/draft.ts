@@ -93,6 +93,9 @@ export class Draft {
   replace = (text: string, base: number): Promise<string> => 
     this.change("replace", () => ({ text, version: base }));
 
+  /** Until all that was begun is done: the first answer of the draft, then each act. */
+  settled = (): Promise<void> => this.inTurn(async () => undefined);
+
   /** An act of a button: its refusal is said above the picture. */
   press = async (acts: EditAct[]): Promise<void> => {
     this.report(await this.edit(acts));

@@ -110,10 +110,10 @@ function Reading({ at, machine, canvas, why, isOpen }:
     return () => window.removeEventListener("keydown", take);
   }, [machine, isAssembling, at.doc]);
   const add = async (component: LibraryComponent, port?: string) => {
+    await draft.settled();
     const { outline, draft: now } = draft.state.get();
-    const subsystem = outline?.subsystem || nameOfFile(now?.file ?? "");
-    const [name, acts] = addedTask(outline, subsystem, component, port);
-    if (why !== "") return;
+    if (why !== "" || !now) return;
+    const [name, acts] = addedTask(outline, outline?.subsystem || nameOfFile(now.file), component, port);
     await draft.press(acts);
     choose([name]);
     go({ doc: "library", at: "" });

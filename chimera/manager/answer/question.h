@@ -22,9 +22,9 @@ struct Question {
   std::uint64_t version = 0;  ///< written into the answer of the last three kinds
 };
 
-/// 32 bytes over a Channel, with memory. For a question the memory has `file_bytes` of the name, `text_bytes` of the
-/// text, `with_bytes` of Question::with and one unused byte; for an answer it has `text_bytes` of JSON and `with_bytes`
-/// of AnalystAnswer::edited.
+/// 32 bytes over a Channel, with memory. The memory of a question: `file_bytes` of the name, `text_bytes` of the text,
+/// `with_bytes` of Question::with, one unused byte. The memory of an answer: `text_bytes` of JSON, `with_bytes` of
+/// AnalystAnswer::edited.
 struct QuestionMessage {
   enum class What : std::uint16_t {
     kQuestion,
