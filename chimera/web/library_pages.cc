@@ -182,7 +182,7 @@ std::string words_of(std::string_view text) {
   std::set<std::string> words;
   std::string word;
   const auto end = [&] {
-    if (word.size() >= 3) words.insert(word);
+    if (word.size() >= 3 || (!word.empty() && std::isdigit(static_cast<unsigned char>(word[0])) != 0)) words.insert(word);
     word.clear();
   };
   for (const char c : text) {

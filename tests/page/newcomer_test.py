@@ -39,7 +39,7 @@ return top !== null && arguments[0].contains(top);
 # A press of it, or Enter in it, makes a version of the draft: it is a button at a fault, or adds a task.
 EDITS = """
 const [e, isKey] = arguments;
-const buttons = 'li[data-fault] .acts button, [data-try-message] ~ .acts button, form[aria-label="Add task"] button';
+const buttons = '.faults .acts button, [data-try-message] ~ .acts button, form[aria-label="Add task"] button';
 return e.matches(buttons) || (isKey && e.matches('form[aria-label="Add task"] input'));
 """
 # What follows from an act is shown: the next version, remedies and where the keyboard goes on, the end of a try.
@@ -106,7 +106,7 @@ class NewcomerTest(PageTest):
             return self.page.press(words)
         element = self.named(words) if verb == "press" else self.page.script("return document.activeElement")
         edits = (verb == "press" or words == "Enter") and self.page.script(EDITS, element, verb == "key")
-        is_in_faults = verb == "key" and self.page.script("return arguments[0].matches('li[data-fault] *')", element)
+        is_in_faults = verb == "key" and self.page.script("return arguments[0].matches('.faults *')", element)
         version = int(self.page.root("draft")) + bool(edits)
         if verb == "press":
             ActionChains(self.browser.driver, duration=0).move_to_element(element).click().perform()

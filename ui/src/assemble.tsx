@@ -4,14 +4,13 @@ import { memo, useEffect, useMemo, useState } from "react";
 import { AddTask, AssemblyForm, VariableForm } from "./assembly_form";
 import { MessageBox } from "./banners";
 import { Canvas, useFit } from "./canvas";
-import { Button } from "./controls";
 import { draft, DraftState, lamps } from "./draft";
 import { DraftPicture } from "./draft_picture";
 import { pulledActs } from "./edits";
 import { focusField } from "./edit_field";
 import { DraftCpus, FaultList } from "./fault_list";
 import { boxOf } from "./faults";
-import { addTask, assembleKeys, takeKey } from "./keys";
+import { assembleKeys, takeKey } from "./keys";
 import { DraftBanners, runsFile, whyNot } from "./lamps";
 import { Machine, MachineState } from "./machine";
 import { mark } from "./marks";
@@ -102,7 +101,7 @@ export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
   const { draft: now, picture, outline } = state;
   const [canvas, fit] = useFit(picture);
   const hasPicture = picture !== null && picture.boxes.length > 0;
-  useEffect(() => { if (hasPicture) fit(); }, [picture?.boxes.length]);  // other acts leave the zoom as it is
+  useEffect(() => { if (hasPicture) fit(); }, [picture?.boxes.length, isTrying]);  // other acts leave the zoom as it is
   useEffect(() => {
     const take = (event: KeyboardEvent) => takeKey(event, machine, fit, assembleKeys);
     window.addEventListener("keydown", take);
@@ -147,11 +146,11 @@ export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
         </Canvas>
         <aside aria-label="Details">
           {still !== "" && <p className="hint">{still}</p>}
-          {outline && (of || task) && <Button label="Add a task" title="key n" press={addTask} />}
+          {outline && outline.tasks.length > 0 && <AddTask outline={outline} file={now.file} why={still} />}
           {outline && (of ? <VariableForm key={variable} of={of} why={still} />
             : task ? <TaskForm key={task.task} outline={outline} task={task} text={text} why={still}
                                measured={measured} faults={analysis.report.faults} />
-            : <AssemblyForm outline={outline} text={text} why={still} file={now.file} />)}
+            : <AssemblyForm outline={outline} text={text} why={still} />)}
         </aside>
       </main>
       {isTrying && <TryPanel why={why} />}

@@ -14,6 +14,8 @@ interface Props { outline: Outline; text: string; why: string }
 export const nameOfFile = (file: string): string =>
   joinPath("/", file).replace(/^.*\//, "").replace(/\.[^.]*$/, "").replace(/\W/g, "_").replace(/^(?=\d)/, "_");
 
+export const focusAddTask = (): void => document.getElementById("add-task-component")?.focus();
+
 export function AddTask({ outline, file, why }: { outline: Outline | null; file: string; why: string }) {
   const taken = (outline?.tasks ?? []).map((task) => task.task);
   return <AddForm label="Add task" why={why}
@@ -24,6 +26,7 @@ export function AddTask({ outline, file, why }: { outline: Outline | null; file:
                     const sentence = await draft.edit([{ act: "add_task", name, component: component!,
                       subsystem: outline?.subsystem || nameOfFile(file) }]);
                     if (sentence === "") choose([name]);
+                    if (sentence === "") window.setTimeout(focusAddTask, 0);  // the first task brings another form
                     return sentence;
                   }} />;
 }
@@ -111,11 +114,10 @@ function Rtpus({ outline, text, why }: Props) {
   );
 }
 
-export function AssemblyForm({ outline, text, why, file }: Props & { file: string }) {
+export function AssemblyForm({ outline, text, why }: Props) {
   const of = (origin: string) => outline.variables.filter((one) => one.origin === origin);
   return (
     <>
-      {outline.tasks.length > 0 && <AddTask outline={outline} file={file} why={why} />}
       <EditField label="subsystem" name="name of the subsystem" mark={["field", "subsystem"]} why={why}
                  present={outline.subsystem} commit={(typed) => draft.edit(valueActs("subsystem", typed, false))} />
       <Values words="Operator variables" section="operator" list={of("operator")} why={why} />

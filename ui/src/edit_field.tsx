@@ -105,7 +105,11 @@ export function AddForm({ label, fields, why, commit }: {
           <input id={field.id} ref={i === 0 ? first : undefined} value={words[i]} list={field.list} spellCheck={false}
                  autoComplete="off" readOnly={why !== ""} title={why || undefined}
                  onChange={(event) => type(words.map((one, k) => (k === i ? event.target.value : one)))}
-                 onKeyDown={onEscape(() => { type(fields.map(() => "")); refuse(""); })} />
+                 onKeyDown={onEscape(() => {
+                   if (words.every((one) => one === "")) (document.activeElement as HTMLElement).blur();
+                   type(fields.map(() => ""));
+                   refuse("");
+                 })} />
         </label>))}
       <button type="submit" aria-label={label} aria-disabled={why !== "" || undefined} title={why || undefined}>
         {label}</button>

@@ -4,6 +4,7 @@ import { useLayoutEffect, useRef } from "react";
 import { Button } from "./controls";
 import { draft } from "./draft";
 import { cpuVerdicts } from "./faults";
+import { wholeLessons } from "./lesson_values";
 import type { Analysis, Fault, Offer } from "./protocol";
 
 const MOST_SHOWN = 200;
@@ -15,10 +16,12 @@ function focusFault(number: number): void {
   (next?.querySelector<HTMLElement>(".acts button") ?? next?.querySelector<HTMLElement>(".link"))?.focus();
 }
 
-/** From a fault to its first button, from there to the next fault. */
+/** To the values of a whole lesson; from a fault to its first button, from there to the next fault. */
 export function focusNextFault(): void {
+  const whole = document.querySelector<HTMLElement>("[data-whole-lessons] button");
   const focused = document.activeElement, present = focused?.closest<HTMLElement>("li[data-fault]");
   const isBefore = focused?.matches(".link") && present?.querySelector(".acts button");
+  if (whole && !focused?.closest(".faults")) return whole.focus();
   focusFault(present ? Number(present.dataset.fault) + (isBefore ? 0 : 1) : 0);
 }
 
@@ -34,7 +37,10 @@ export function FaultList({ analysis, offers, why, go }:
   return (
     <section className="faults" aria-label="Faults">
       <h2>Faults {errors}{warnings > 0 && `, warnings ${warnings}`}</h2>
-      {analysis.report.legal && <p className="hint">The draft is legal.</p>}
+      {analysis.report.legal && <p className="hint">The draft is legal. Try shows what a component itself refuses.</p>}
+      <p className="acts" data-whole-lessons>{wholeLessons(offers).map((offer) => (
+        <Button key={offer.label} label={offer.label} forbidden={why}
+                press={() => { pressed.current = 0; void draft.press(offer.acts); }} />))}</p>
       <ol aria-label="Faults, in order of their place">
         {faults.slice(0, MOST_SHOWN).map((fault, number) => (
           <li key={number} data-fault={number} className={fault.severity}
@@ -45,7 +51,8 @@ export function FaultList({ analysis, offers, why, go }:
               go(fault);
             }}>
               {fault.severity === "warning" && "warning: "}{fault.message}</span>
-            <span className="soft"> {fault.line > 0 && `line ${fault.line}`} {fault.remedy}</span>
+            <span className="soft"> {fault.line > 0 && `line ${fault.line}`}{" "}
+              {analysis.text.trim() === "" ? "add a task above" : fault.remedy}</span>
             <span className="acts">{offers.filter((offer) => offer.fault === number).map((offer) => (
               <Button key={offer.label} label={offer.label} forbidden={why}
                       press={() => { pressed.current = number; void draft.press(offer.acts); }} />))}</span>

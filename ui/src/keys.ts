@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keys of the whole page.
 import { ACTS } from "./acts";
+import { focusAddTask } from "./assembly_form";
 import { draft } from "./draft";
 import { removedTask } from "./edits";
 import { focusNextFault } from "./fault_list";
@@ -48,7 +49,7 @@ export const assembleKeys: Keys = (event) => {
   const { outline, draft: now } = draft.state.get();
   const [task] = view.get().chosen;
   if (event.key === "F2") document.querySelector<HTMLInputElement>("aside input[data-rename]")?.select();
-  else if (event.key === "n") addTask();
+  else if (event.key === "n") focusAddTask();
   else if (event.key === "F8") focusNextFault();
   else if (event.key === "t") void tryDraft();
   else if (event.key === "Delete" && outline?.tasks.some((one) => one.task === task))
@@ -65,11 +66,6 @@ function save(): void {
   field?.focus();
 }
 
-export function addTask(): void {
-  choose([]);
-  window.setTimeout(() => document.getElementById("add-task-component")?.focus(), 0);  // when its form is there
-}
-
 export function takeKey(event: KeyboardEvent, machine: Machine | null, fit: () => void, ofMode: Keys): void {
   if (event.defaultPrevented || event.altKey || event.metaKey) return;
   const { question } = view.get();
@@ -78,7 +74,7 @@ export function takeKey(event: KeyboardEvent, machine: Machine | null, fit: () =
     else if (question || !ofMode(event, machine)) return;
     return event.preventDefault();
   }
-  if (isTypedInto(event.target)) return;
+  if (isTypedInto(event.target) && !/^F\d/.test(event.key)) return;
   if (event.key === "F" && event.shiftKey && machine) return raiseFlag(machine, true);
   if (question) return;
   if (event.key === "/") go({ doc: "library", at: "" });

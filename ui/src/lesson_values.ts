@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Values of lessons in the place of those that an offer makes up. No function here knows the browser.
 import { valuePath, variablePath } from "./edits";
-import type { Fault, Offer, Outline, OutlinePort, OutlineTask } from "./protocol";
+import type { EditAct, Fault, Offer, Outline, OutlinePort, OutlineTask } from "./protocol";
 
 export interface Offered { value: string; origin: string }
 export interface PortOfComponent { component: string; port: string }
@@ -29,7 +29,7 @@ async function lessonOffers(fault: number, path: string, task: OutlineTask, port
                             ask: Ask): Promise<Offer[]> {
   const values = await ask({ component: task.component, port: port.declared });
   return values.filter(({ value }) => fits(value, port.shape)).slice(0, MOST_VALUES)
-    .map(({ value, origin }): Offer => ({ fault, acts: [{ act: "set", path, value }],
+    .map(({ value, origin }): Offer => ({ fault, origin, acts: [{ act: "set", path, value }],
       label: `${path.split("/").pop()} of ${originWords(origin)}: ${shortened(value)}` }));
 }
 
@@ -44,6 +44,19 @@ export async function withLessons(offers: Offer[], faults: Fault[], outline: Out
     return [...await lessonOffers(offer.fault, act.path, task, port, ask), offer];
   });
   return (await Promise.all(all)).flat();
+}
+
+/** All values of one lesson in one act, for each lesson that has more than one. */
+export function wholeLessons(offers: Offer[]): Offer[] {
+  const origins = [...new Set(offers.flatMap(({ origin }) => (origin?.startsWith("examples/") ? [origin] : [])))];
+  return origins.flatMap((origin) => {
+    const acts = new Map<string, EditAct>();
+    for (const offer of offers)
+      for (const act of offer.acts)
+        if (offer.origin === origin && act.act === "set" && !acts.has(act.path)) acts.set(act.path, act);
+    return acts.size < 2 ? [] : [{ fault: 0, acts: [...acts.values()],
+      label: `all ${acts.size} values of ${originWords(origin)}` }];
+  });
 }
 
 /** Values for the constants and resources of a task that its refusal names. */

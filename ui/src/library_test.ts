@@ -5,7 +5,7 @@ import fs from "node:fs";
 import test from "node:test";
 import { Around, markdown } from "./document";
 import { formula, textOf } from "./math";
-import { againstRefusal, withLessons } from "./lesson_values";
+import { againstRefusal, wholeLessons, withLessons } from "./lesson_values";
 import { addedTask, portFor } from "./library_acts";
 import { anchorOf, hashWith, placeOf, targetOf } from "./place";
 import type { Fault, Offer, Outline } from "./protocol";
@@ -178,6 +178,11 @@ test("values of lessons stand before the offer that makes one up, if they have i
   assert.deepEqual(offers.map((one) => one.label), ["link", "gain of lesson 02_b: [1 V, 2 V]",
     "gain of test of pid_joint: 3 V", "made up", "made up", "made up"]);
   assert.deepEqual(offers[1]!.acts, [{ act: "set", path: "operator/gain", value: "[1 V, 2 V]" }]);
+  assert.deepEqual(wholeLessons(offers), []);
+  const goal: Offer = { ...offers[1]!, fault: 1, acts: [{ act: "set", path: "constants/goal", value: "1" }] };
+  const [whole, ...rest] = wholeLessons([...offers, goal, { ...goal, acts: [{ ...goal.acts[0]!, value: "2" } as never] }]);
+  assert.deepEqual([whole?.label, whole?.acts, rest], ["all 2 values of lesson 02_b",
+    [...offers[1]!.acts, ...goal.acts], []]);
 });
 
 test("a refusal that names constants of its task offers their values where they stand", async () => {
@@ -205,4 +210,6 @@ test("the search finds names, ports, units, papers, words and documents, the bes
   assert.deepEqual(names("any bump"), ["pid (its sheet)"]);
   assert.deepEqual(names("drill"), ["Drill the safe state"]);
   assert.deepEqual(names("pid nothing"), []);
+  const figure = { ...library, components: [component("car", { words: "figure 450 rad" }), component("arm", { words: "4 figure" })] };
+  assert.deepEqual(search("Figure 4", figure).map((one) => one.name), ["arm"]);
 });

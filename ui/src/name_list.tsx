@@ -5,17 +5,19 @@ import { Button } from "./controls";
 
 interface Props {
   id: string; label: string; names: string[]; most: number; change: (names: string[]) => void;
+  /** A comma ends a name. */
+  isList?: boolean;
   /** Of a datalist, or what the empty field shows. */
   list?: string; hint?: string;
   unitOf?: (name: string) => string;
 }
 
-export function NameList({ id, label, names, most, change, list, hint, unitOf }: Props) {
+export function NameList({ id, label, names, most, change, isList, list, hint, unitOf }: Props) {
   const [typed, type] = useState("");
   const add = () => {
-    const word = typed.trim();
-    if (word === "" || names.length >= most) return;
-    if (!names.includes(word)) change([...names, word]);
+    const words = typed.split(isList ? "," : "\n").map((word) => word.trim()).filter((word) => word !== "");
+    if (words.length === 0 || names.length >= most) return;
+    change([...new Set([...names, ...words])].slice(0, most));
     type("");
   };
   return (

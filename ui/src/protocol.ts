@@ -232,7 +232,7 @@ export interface DraftNews {
 export interface DraftAnswer extends DraftNews { analysis: Analysis }
 
 /** An edit that was tried: after it the fault is gone. The page adds edits with values of lessons. */
-export interface Offer { fault: number; label: string; acts: EditAct[] }
+export interface Offer { fault: number; label: string; acts: EditAct[]; origin?: string }
 
 export interface LibraryComponent { name: string; doc: string; file: string }
 

@@ -16,8 +16,10 @@ export interface Library {
 export interface Found { place: string; name: string; doc: string; why: string; component?: LibraryComponent }
 
 const lower = (text: string): string => text.toLowerCase();
+/** A number has to be the very one: 4 is not found by 450. */
+const starts = (one: string, word: string): boolean => (/^\d+$/.test(word) ? one === word : one.startsWith(word));
 const begins = (text: string, word: string): boolean =>
-  lower(text).split(/[^\p{L}\d_.]+/u).some((one) => one.startsWith(word));
+  lower(text).split(/[^\p{L}\d_.]+/u).some((one) => starts(one, word));
 
 /** How well one word fits, and why; 0: not at all. */
 function fit(word: string, one: LibraryComponent): [number, string] {
@@ -35,7 +37,7 @@ function fit(word: string, one: LibraryComponent): [number, string] {
   if (paper) return [25, `paper ${paper}`];
   const described = one.ports.find((p) => lower(p.port).startsWith(small) || begins(p.doc, small));
   if (described) return [15, `port ${described.port}`];
-  if (lower(one.words).split(" ").some((w) => w.startsWith(small))) return [5, "its sheet"];
+  if (lower(one.words).split(" ").some((w) => starts(w, small))) return [5, "its sheet"];
   return [0, ""];
 }
 

@@ -55,6 +55,34 @@ export function reduced({ time }: Table, { values }: Channel, most = MOST_COLUMN
   return columns;
 }
 
+/** A variable q follows the variable q_ref. */
+export const REFERENCE = "_ref";
+
+/** The number of the channel that the channel `name` is the reference of: of q[0] for q_ref[0]; below 0: of none. */
+export const followerOf = (channels: Channel[], name: string): number => {
+  const [variable = "", element = ""] = name.split(/(?=\[)/);
+  return !variable.endsWith(REFERENCE) ? -1
+    : channels.findIndex((one) => one.name === variable.slice(0, -REFERENCE.length) + element);
+};
+
+/** How far each variable and its reference are apart at most, in which channel and when. */
+export function apartOf({ time, channels }: Table):
+  { name: string; reference: string; unit: string; most: number; channel: string; at: number }[] {
+  const all = new Map<string, ReturnType<typeof apartOf>[number]>();
+  for (const to of channels) {
+    const from = channels[followerOf(channels, to.name)];
+    if (!from || from.unit !== to.unit) continue;
+    const [name = ""] = from.name.split("[");
+    const one = all.get(name) ?? { name, reference: name + REFERENCE, unit: to.unit, most: -1, channel: "", at: 0 };
+    time.forEach((at, row) => {
+      const apart = Math.abs(from.values[row]! - to.values[row]!);
+      if (apart > one.most) Object.assign(one, { most: apart, channel: from.name, at });
+    });
+    if (one.most >= 0) all.set(name, one);
+  }
+  return [...all.values()];
+}
+
 /** The spans in which rows are missing. */
 export function gapsOf({ time, lost }: Table): { from: number; to: number; rows: number }[] {
   const gaps: { from: number; to: number; rows: number }[] = [];

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import type { Outline } from "./protocol";
-import { curvePath, gapsOf, rangeOf, readTable, reduced, rowAt, ticks, unitsOf } from "./table";
+import { apartOf, curvePath, followerOf, gapsOf, rangeOf, readTable, reduced, rowAt, ticks, unitsOf } from "./table";
 import { blame, MOST_MISSES, MOST_PER_SECOND, TapRecords } from "./tap";
 import { tuneActs, writtenValue } from "./tune";
 
@@ -114,4 +114,12 @@ test("present values of operator variables become edits where they differ", () =
   const present = new Map([["kp", "7 N.m"], ["kd", "1"], ["q", "3"], ["none", "4"]]);
   assert.deepEqual(tuneActs(outline, present), [{ act: "set", path: "operator/kp", value: "7 N.m" }]);
   assert.deepEqual(tuneActs(outline, new Map()), []);
+});
+
+test("a variable follows its reference of the same unit", () => {
+  const table = readTable("t(s),q[0](rad),q[1](rad),q_ref[0](rad),q_ref[1](rad),x_ref(m),x(mm)\n" +
+    "0,0,0,0,0,1,1\n1,0.5,,0.75,3,1,1\n2,1,1,1,0.5,1,1\n")!;
+  assert.deepEqual(table.channels.map((one) => followerOf(table.channels, one.name)), [-1, -1, 0, 1, 5, -1]);
+  assert.deepEqual(apartOf(table),
+    [{ name: "q", reference: "q_ref", unit: "rad", most: 0.5, channel: "q[1]", at: 2 }]);
 });

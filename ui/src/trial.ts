@@ -7,7 +7,7 @@ import { againstRefusal } from "./lesson_values";
 import { offered } from "./offered_values";
 import type { Offer, RunAnswer, TrialResult } from "./protocol";
 import { Store } from "./store";
-import { readTable, Table } from "./table";
+import { readTable, REFERENCE, Table } from "./table";
 import { ask } from "./view";
 
 const ASK_MS = 200;
@@ -61,10 +61,12 @@ export const tried = new Store<TryState>({
   table: null, before: null, message: "", offers: [],
 });
 
-/** While a person chooses none: what tasks produce, numbers first. */
+/** While a person chooses none: a pair as q and q_ref, else what tasks produce, numbers first. */
 export function firstWatched(): string[] {
   const produced = (draft.state.get().outline?.variables ?? [])
     .filter((one) => !one.constant && one.producers.length > 0);
+  const followed = produced.find(({ variable }) => produced.some((one) => one.variable === variable + REFERENCE));
+  if (followed) return [followed.variable, followed.variable + REFERENCE];
   const rank = ({ type, shape }: { type: string; shape: string }) => (type === "bool" ? 2 : shape === "" ? 0 : 1);
   return produced.sort((a, b) => rank(a) - rank(b)).slice(0, FIRST_WATCHED).map((one) => one.variable);
 }
@@ -87,12 +89,13 @@ export async function tryDraft(devices = false): Promise<void> {
   if (tried.get().isBusy) return;
   const version = draft.state.get().draft?.version;
   const known = new Set(draft.state.get().outline?.variables.map((one) => one.variable));
-  const wanted = tried.get().watch.filter((name) => known.has(name));
+  const { duration, at, expect, watch: wanted } = tried.get();
+  const strange = wanted.filter((name) => !known.has(name));
   const watch = wanted.length > 0 ? wanted : firstWatched();
-  const { duration, at, expect } = tried.get();
-  tried.set({ isOpen: true, watch: wanted, offers: [],
-    message: watch.length === 0 ? "no task of the draft produces a variable" : "" });
-  if (watch.length === 0 || version === undefined) return;
+  const message = strange.length > 0 ? `the draft has no variable ${strange.join(", ")}: take it away`
+    : watch.length === 0 ? "no task of the draft produces a variable" : "";
+  tried.set({ isOpen: true, offers: [], message });
+  if (message !== "" || version === undefined) return;
   tried.set({ isBusy: true, version });
   try {
     take(await follow("try", { version, duration, watch, at, expect, devices }, (running) => tried.set({ running })));

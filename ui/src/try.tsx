@@ -8,11 +8,12 @@ import { NameList, SaveButton } from "./name_list";
 import type { RunAnswer } from "./protocol";
 import { useStore } from "./store";
 import { receiptText } from "./switch_menu";
-import { duration } from "./text";
+import { apartOf } from "./table";
+import { duration, short } from "./text";
 import { firstWatched, halt, MOST_WATCHED, tried, tryDraft } from "./trial";
 
 /** Clean or not, and what was counted. */
-function Verdict({ answer }: { answer: RunAnswer }) {
+function Verdict({ answer, isSaved }: { answer: RunAnswer; isSaved: boolean }) {
   const { verdict, expectations = [], receipts = [], tasks = [] } = answer;
   if (!verdict) return null;
   const isClean = verdict.clean && verdict.failures.length === 0 && expectations.every((one) => one.holds);
@@ -20,7 +21,7 @@ function Verdict({ answer }: { answer: RunAnswer }) {
     <div className="verdict" role="status" aria-label="Verdict" data-verdict-of-try={isClean ? "clean" : "not clean"}>
       <strong className={isClean ? "" : "fault"}>{isClean ? "clean" : "not clean"}</strong>{" "}
       in {duration(answer.ran_ns ?? 0)}: {verdict.missed} deadlines missed, {verdict.dropped} releases dropped,{" "}
-      {verdict.faults} faults
+      {verdict.faults} faults{!isSaved && ". Not saved yet: Ctrl-S"}
       <ul>
         {[...verdict.failures, ...verdict.remarks].map((words) => <li key={words}>{words}</li>)}
         {expectations.map((one) => (
@@ -64,11 +65,11 @@ export function TryPanel({ why }: { why: string }) {
         <Button key={offer.label} label={offer.label} title="sets it and tries again" forbidden={why}
                 press={() => { focus(); void draft.press(offer.acts).then(() => tryDraft()); }} />))}</p>}
       <form className="add" onSubmit={(event) => { event.preventDefault(); void tryDraft(); }}>
-        <label>Duration
+        <label>Run for
           <input id="try-duration" value={length} placeholder="2 s"
                  onChange={(event) => { type(event.target.value); tried.set({ duration: event.target.value }); }} />
         </label>
-        <NameList id="try-watch" label="Variables" list="known" names={state.watch} most={MOST_WATCHED} unitOf={unitOf}
+        <NameList id="try-watch" label="Variables" isList list="known" names={state.watch} most={MOST_WATCHED} unitOf={unitOf}
                   hint={firstWatched().join(", ")} change={(watch) => tried.set({ watch })} />
         <NameList id="try-at" label="Timed acts" hint="1 s: set kp 100 N.m/rad" names={state.at} most={MOST_WATCHED}
                   change={(at) => tried.set({ at })} />
@@ -76,7 +77,10 @@ export function TryPanel({ why }: { why: string }) {
                   change={(expect) => tried.set({ expect })} />
         <button type="submit" hidden />
       </form>
-      {!state.isBusy && <Verdict answer={answer} />}
+      {!state.isBusy && <Verdict answer={answer} isSaved={!now?.touched} />}
+      {state.table && apartOf(state.table).map(({ name, reference, unit, most, channel, at }) => (
+        <p key={name} className="hint" data-follows={name}>{name} and {reference}: at most {short(most)}{" "}
+          {unit === "1" ? "" : unit} apart ({channel} at {short(at)} s)</p>))}
       {state.table && <Curves table={state.table} before={state.before} label="Curves of the try" />}
     </section>
   );
