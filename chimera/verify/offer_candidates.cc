@@ -209,7 +209,8 @@ class Candidates {
       const bool is_made =
           !variable.producers.empty() || variable.origin == Origin::kOperator || variable.origin == Origin::kConstants;
       const bool is_kind = variable.is_constant == (port.kind == CHIMERA_IN_CONST);
-      if (is_kind && is_made && variable.name != port.variable && is_like(port, variable)) all.push_back(&variable);
+      const bool is_itself = variable.name == port.variable || port.declared == variable.name + "_ref";
+      if (is_kind && is_made && !is_itself && is_like(port, variable)) all.push_back(&variable);
     }
     std::ranges::stable_sort(all, {}, [&](const OutlineVariable* v) { return v->name != fault_.nearest; });
     if (all.size() > kMostLinks) all.resize(kMostLinks);
