@@ -42,6 +42,9 @@ export function TryPanel({ why }: { why: string }) {
   const { draft: now, outline } = useStore(draft.state);
   const [length, type] = useState(state.duration);
   const unitOf = (name: string) => outline?.variables.find((one) => one.variable === name)?.unit ?? "";
+  const [first] = outline?.variables.filter((one) => one.variable === firstWatched()[0]) ?? [];
+  const expectation = !first ? "" : `max |${first.variable}${first.shape === "" ? "" : "[0]"}| <= 1 ${
+    first.unit === "1" ? "" : first.unit}`.trim();
   const answer = (state.result?.output ?? {}) as RunAnswer;
   const acts = useRef<HTMLDivElement>(null);
   const focus = () => acts.current?.querySelector("button")?.focus();
@@ -73,7 +76,7 @@ export function TryPanel({ why }: { why: string }) {
                   hint={firstWatched().join(", ")} change={(watch) => tried.set({ watch })} />
         <NameList id="try-at" label="Timed acts" hint="1 s: set kp 100 N.m/rad" names={state.at} most={MOST_WATCHED}
                   change={(at) => tried.set({ at })} />
-        <NameList id="try-expect" label="Expectations" hint="max |u| <= 1 V" names={state.expect} most={MOST_WATCHED}
+        <NameList id="try-expect" label="Expectations" hint={expectation} names={state.expect} most={MOST_WATCHED}
                   change={(expect) => tried.set({ expect })} />
         <button type="submit" hidden />
       </form>
