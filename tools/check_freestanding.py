@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Floors 0, 2, 3 and 4, the runtime without its folders hosted, preemptive and virtual, and components build
 freestanding for x86-64 and for a 32-bit microcontroller (ARM Cortex-M3), without exceptions or RTTI, and ask for no
-heap, stream, thread or file. The hosted halves of these floors lie in subfolders (base/hosted, runtime/hosted),
+heap, stream, thread or file. Components in C need no C library either, and their tables are constant: no byte of RAM,
+no constructor. The hosted halves of these floors lie in subfolders (base/hosted, runtime/hosted),
 which a microcontroller replaces, and which the other half does not include."""
 import concurrent.futures
 import itertools
@@ -21,10 +22,15 @@ FOLDERS = ("base", "table", "task", "schedule", "runtime", "runtime/record", "ru
 FILE = re.compile(rf"chimera/({'|'.join(FOLDERS)})/[^/]+(?<!_test)(?<!_stress)(?<!_fuzz)\.(h|cc)$")
 HOSTED = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"(chimera/\w+/hosted/[^"]+)"', re.MULTILINE)
 COMPONENTS = ("library/gain/gain.cc", "library/pid_joint/pid_joint.cc", "library/tderiv/tderiv.cc")
+IN_C = ("tests/components/t_paper.c", "tests/components/t_parts.c", "tests/components/t_tderiv.c")
 FREESTANDING = ("-std=c++20", "-ffreestanding", "-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics")
 ARM = "arm-none-eabi-g++"
 MACHINES = {"x86-64": ("g++", "-O1", *FREESTANDING),
             "ARM": (ARM, "-Os", "-mcpu=cortex-m3", "-mthumb", *FREESTANDING)}
+FREESTANDING_C = ("-std=c11", "-ffreestanding", "-DCHIMERA_BARE", "-Wall", "-Wextra", "-Wpedantic", "-Werror")
+MACHINES_C = {"x86-64": ("gcc", "-O1", *FREESTANDING_C),
+              "ARM": ("arm-none-eabi-gcc", "-Os", "-mcpu=cortex-m3", "-mthumb", *FREESTANDING_C)}
+IN_RAM = re.compile(r"\.(data(?!\.rel\.ro)|bss|init_array|ctors)")
 # All that an object may ask of the outside: our own names, and what every C library for microcontrollers has.
 OURS = re.compile(r"_ZN[KVR]*7chimera|_ZT[VSI]N7chimera|chimera_|_GLOBAL_OFFSET_TABLE_$|__cxa_pure_virtual$")
 C_MEMORY = {"memcpy", "memmove", "memset", "memcmp", "memchr", "strlen", "strcmp", "strncmp", "strcpy", "strncpy"}
@@ -44,12 +50,22 @@ def is_known(name, symbol):
 def undefined_symbols(root, source, machine):
     """(symbols the object asks for, what the compiler said)"""
     target = source.with_suffix(".o")
-    command = [*MACHINES[machine], "-I", str(root), "-c", str(source), "-o", str(target)]
+    compiler = MACHINES_C if source.suffix == ".c" else MACHINES
+    command = [*compiler[machine], "-I", str(root), "-c", str(source), "-o", str(target)]
     compiled = subprocess.run(command, capture_output=True, text=True, env=dict(os.environ, LC_ALL="C"))
     if compiled.returncode != 0:
         return [], compiled.stderr
     listing = subprocess.run(["nm", "-u", "--format=posix", str(target)], capture_output=True, text=True, check=True)
-    return [line.split()[0] for line in listing.stdout.splitlines() if line.strip()], ""
+    symbols = [line.split() for line in listing.stdout.splitlines() if line.strip()]
+    return [name for name, kind in symbols if kind != "w" or source.suffix != ".c"], ""
+
+
+def sections_in_ram(source):
+    """Of the object of `source`: what lies in RAM or runs before main."""
+    listing = subprocess.run(["size", "-A", str(source.with_suffix(".o"))], capture_output=True, text=True, check=True)
+    sections = [line.split() for line in listing.stdout.splitlines()]
+    return [name for name, size, _ in (line for line in sections if len(line) == 3)
+            if IN_RAM.match(name) and size != "0"]
 
 
 def complaints_about(root, names, machine, folder):
@@ -63,7 +79,9 @@ def complaints_about(root, names, machine, folder):
     if said:
         error = next((line for line in said.splitlines() if "error:" in line), said.splitlines()[0])
         return [f"{name}: does not compile freestanding for {machine}: {error.split('error: ', 1)[-1]}"]
-    return [f"{name}: asks for {symbol} on {machine}" for symbol in symbols if not is_known(name, symbol)]
+    in_ram = sections_in_ram(source) if source.suffix == ".c" else []
+    return [*(f"{name}: asks for {symbol} on {machine}" for symbol in symbols if not is_known(name, symbol)),
+            *(f"{name}: has {section} on {machine}, but its tables must be constant" for section in in_ram)]
 
 
 def check(root, machine):
@@ -71,18 +89,18 @@ def check(root, machine):
     for name in filter(FILE.match, there):
         yield from (f"{name}: includes {path}, which a microcontroller does not have"
                     for path in HOSTED.findall(sources.text(root, name)))
-    names = [name for name in there if (FILE.match(name) and name.endswith(".cc")) or name in COMPONENTS]
+    names = [name for name in there if (FILE.match(name) and name.endswith(".cc")) or name in (*COMPONENTS, *IN_C)]
     if "CONTRIBUTING.md" in there:  # not of a planted tree
         yield from (f"{name}: is not there, but tools/check_freestanding.py lists it"
-                    for name in (*COMPONENTS, *TEXT) if name not in names)
+                    for name in (*COMPONENTS, *IN_C, *TEXT) if name not in names)
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(2) as pool:
         for complaints in pool.map(lambda some: complaints_about(root, some, machine, folder), together(names)):
             yield from complaints
 
 
 def together(names):
-    """Lists of up to eight files of one folder; alone, who may ask for something of its own."""
-    alone = [name for name in names if name in TEXT]
+    """Lists of up to eight files of one folder. Alone: a file that may ask for more than the others, and one in C."""
+    alone = [name for name in names if name in TEXT or name.endswith(".c")]
     for _, some in itertools.groupby((name for name in names if name not in alone), os.path.dirname):
         some = list(some)
         yield from (some[i:i + 8] for i in range(0, len(some), 8))
@@ -92,6 +110,7 @@ def together(names):
 _NAME = "chimera/table/x.cc"
 _HOSTED = "chimera/runtime/hosted/y.h"
 _PRINTF = "#include <cstdio>\nvoid f(int n) { std::printf(\"%d\", n); }\n"
+_C = "const int table[] = {1};\nint later(void) __attribute__((weak));\n"
 _MUTEX = {_NAME: "#include <mutex>\nstd::mutex m;\n"}
 
 
@@ -111,7 +130,7 @@ def planted(machine):
     yield {"chimera/runtime/x_test.cc": f'#include "{_HOSTED}"\n', _HOSTED: ""}, None
     new = "_Znwj" if machine == "ARM" else "_Znwm"
     yield {COMPONENTS[0]: "int* f() { return new int; }\n"}, asks(new, COMPONENTS[0])
-    yield ({"CONTRIBUTING.md": "", **dict.fromkeys((*TEXT, *COMPONENTS[1:]), "")},
+    yield ({"CONTRIBUTING.md": "", **dict.fromkeys((*TEXT, *COMPONENTS[1:]), ""), **dict.fromkeys(IN_C, _C)},
            f"{COMPONENTS[0]}: is not there, but tools/check_freestanding.py lists it")
     yield {_NAME: "int* f() { return new int; }\n"}, asks(new)
     yield {_NAME: "#include <cstdlib>\nvoid* f() { return std::malloc(8); }\n"}, asks("malloc")
@@ -120,6 +139,8 @@ def planted(machine):
     yield ({_NAME: "void f() { throw 1; }\n"},
            f"{_NAME}: does not compile freestanding for {machine}: "
            "exception handling disabled, use '-fexceptions' to enable")
+    yield {IN_C[0]: _C}, None
+    yield ({IN_C[0]: "int count = 1;\n"}, f"{IN_C[0]}: has .data on {machine}, but its tables must be constant")
     if machine == "x86-64":
         yield ({_NAME: "#include <pthread.h>\nvoid f(pthread_mutex_t* m) { pthread_mutex_lock(m); }\n"},
                asks("pthread_mutex_lock"))

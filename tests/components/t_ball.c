@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The C face: a trackball after the 2000 paper (figure 9), whose device is a resource and an in-var. */
+#include <string.h>
+
 #include "chimera/task/pbo.h"
 
 typedef struct {

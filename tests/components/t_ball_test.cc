@@ -4,6 +4,9 @@
 
 #include "chimera/task/rig.h"
 
+// The table that a microcontroller uses.
+extern "C" const chimera_component chimera_component_t_ball;
+
 namespace chimera {
 namespace {
 
@@ -63,6 +66,19 @@ TEST(CFace, FindsTheMethodsThatAreWrittenAndTakesTermForKill) {
     EXPECT_NE(ball().methods[m], nullptr) << m;
   for (const std::uint32_t m : {CHIMERA_REINIT, CHIMERA_SYNC, CHIMERA_ERROR, CHIMERA_CLEAR})
     EXPECT_EQ(ball().methods[m], nullptr) << m;
+}
+
+TEST(CFace, TheConstantTableAnswersForMethodsThatAreNotWritten) {
+  alignas(64) std::byte state[1024] = {};
+  const chimera_component& table = chimera_component_t_ball;
+  ASSERT_LE(table.state_size, sizeof state);
+  const chimera_call call{};
+  EXPECT_EQ(table.methods[CHIMERA_REINIT](state, &call), CHIMERA_OK);
+  EXPECT_EQ(table.methods[CHIMERA_SYNC](state, &call), CHIMERA_OK);
+  EXPECT_EQ(table.methods[CHIMERA_CLEAR](state, &call), CHIMERA_OK);
+  EXPECT_EQ(table.methods[CHIMERA_ERROR](state, &call), CHIMERA_FAULT) << "it does not recover";
+  EXPECT_EQ(table.event_source(state), -1);
+  EXPECT_EQ(table.methods[CHIMERA_CYCLE], ball().methods[CHIMERA_CYCLE]);
 }
 
 TEST(CFace, AnOutVarHasItsValueAtOn) {

@@ -3,6 +3,7 @@
  * doorbell of another task, or requests a configuration. */
 #define _POSIX_C_SOURCE 200809L
 #include <fcntl.h>
+#include <string.h>
 #include <unistd.h>
 
 #include "chimera/task/pbo.h"
