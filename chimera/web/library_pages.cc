@@ -182,7 +182,8 @@ std::string words_of(std::string_view text) {
   std::set<std::string> words;
   std::string word;
   const auto end = [&] {
-    if (word.size() >= 3 || (!word.empty() && std::isdigit(static_cast<unsigned char>(word[0])) != 0)) words.insert(word);
+    const bool is_number = !word.empty() && std::isdigit(static_cast<unsigned char>(word[0])) != 0;
+    if (word.size() >= 3 || is_number) words.insert(word);
     word.clear();
   };
   for (const char c : text) {

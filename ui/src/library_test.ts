@@ -180,7 +180,8 @@ test("values of lessons stand before the offer that makes one up, if they have i
   assert.deepEqual(offers[1]!.acts, [{ act: "set", path: "operator/gain", value: "[1 V, 2 V]" }]);
   assert.deepEqual(wholeLessons(offers), []);
   const goal: Offer = { ...offers[1]!, fault: 1, acts: [{ act: "set", path: "constants/goal", value: "1" }] };
-  const [whole, ...rest] = wholeLessons([...offers, goal, { ...goal, acts: [{ ...goal.acts[0]!, value: "2" } as never] }]);
+  const other: Offer = { ...goal, acts: [{ act: "set", path: "constants/goal", value: "2" }] };
+  const [whole, ...rest] = wholeLessons([...offers, goal, other]);
   assert.deepEqual([whole?.label, whole?.acts, rest], ["all 2 values of lesson 02_b",
     [...offers[1]!.acts, ...goal.acts], []]);
 });
@@ -210,6 +211,7 @@ test("the search finds names, ports, units, papers, words and documents, the bes
   assert.deepEqual(names("any bump"), ["pid (its sheet)"]);
   assert.deepEqual(names("drill"), ["Drill the safe state"]);
   assert.deepEqual(names("pid nothing"), []);
-  const figure = { ...library, components: [component("car", { words: "figure 450 rad" }), component("arm", { words: "4 figure" })] };
+  const figure = { ...library, components: [component("car", { words: "figure 450 rad" }),
+    component("arm", { words: "4 figure" })] };
   assert.deepEqual(search("Figure 4", figure).map((one) => one.name), ["arm"]);
 });

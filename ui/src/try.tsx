@@ -76,8 +76,8 @@ export function TryPanel({ why }: { why: string }) {
                   hint={firstWatched().join(", ")} change={(watch) => tried.set({ watch })} />
         <NameList id="try-at" label="Timed acts" hint="1 s: set kp 100 N.m/rad" names={state.at} most={MOST_WATCHED}
                   change={(at) => tried.set({ at })} />
-        <NameList id="try-expect" label="Expectations" hint={expectation} names={state.expect} most={MOST_WATCHED}
-                  change={(expect) => tried.set({ expect })} />
+        <NameList id="try-expect" label="Expectations" hint={expectation} names={state.expect}
+                  most={MOST_WATCHED} change={(expect) => tried.set({ expect })} />
         <button type="submit" hidden />
       </form>
       {!state.isBusy && <Verdict answer={answer} isSaved={!now?.touched} />}
