@@ -72,8 +72,8 @@ export function TryPanel({ why }: { why: string }) {
           <input id="try-duration" value={length} placeholder="2 s"
                  onChange={(event) => { type(event.target.value); tried.set({ duration: event.target.value }); }} />
         </label>
-        <NameList id="try-watch" label="Variables" isList list="known" names={state.watch} most={MOST_WATCHED} unitOf={unitOf}
-                  hint={firstWatched().join(", ")} change={(watch) => tried.set({ watch })} />
+        <NameList id="try-watch" label="Variables" isList list="known" names={state.watch} most={MOST_WATCHED}
+                  unitOf={unitOf} hint={firstWatched().join(", ")} change={(watch) => tried.set({ watch })} />
         <NameList id="try-at" label="Timed acts" hint="1 s: set kp 100 N.m/rad" names={state.at} most={MOST_WATCHED}
                   change={(at) => tried.set({ at })} />
         <NameList id="try-expect" label="Expectations" hint={expectation} names={state.expect}
