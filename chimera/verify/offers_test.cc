@@ -29,7 +29,8 @@ const Library& offers_library() {
   static const Library kLibrary = Library::of(
       {sample_component("arm", {port_out("q", "rad"), port_out("qd", "rad/s")}),
        sample_component("law", {port_in("q", "rad"), port_in("kd", "V.s/rad"), port_out("u", "V")}),
-       sample_component("gauge", {port_in("q_ref", "rad")}), sample_component("slow", {port_in("q", "deg")}),
+       sample_component("gauge", {port_in("angle", "rad")}), sample_component("follower", {port_in("q_ref", "rad")}),
+       sample_component("slow", {port_in("q", "deg")}),
        sample_component("deg", {port_in("x", "rad"), port_out("y", "deg")}, 0),
        sample_component("norate", {port_in("q", "rad")}, 0),
        sample_component("camera",
@@ -70,7 +71,12 @@ constexpr const char* kArmAlone = "subsystem: a\ntasks:\n  arm:\n";
 
 TEST(Offers, LinkAnInputToVariablesOfItsUnitOrGiveItAValue) {
   const std::string text = std::string(kArmAlone) + "  gauge:\n";
-  EXPECT_EQ(offered(text, "input-unmet"), "link to 'q' | operator: {q_ref: 0 rad}, to be changed");
+  EXPECT_EQ(offered(text, "input-unmet"), "link to 'q' | operator: {angle: 0 rad}, to be changed");
+}
+
+TEST(Offers, DoNotMakeAVariableItsOwnReference) {
+  const std::string text = std::string(kArmAlone) + "  follower:\n";
+  EXPECT_EQ(offered(text, "input-unmet"), "operator: {q_ref: 0 rad}, to be changed");
 }
 
 TEST(Offers, DoNotLinkAGainToAVelocityOfANearName) {
@@ -99,7 +105,7 @@ TEST(Offers, InsertAConverterInEachConfigurationOfItsReader) {
 }
 
 TEST(Offers, LinkAPortThatClashesToAnotherVariableOfItsUnit) {
-  const std::string text = std::string(kArmAlone) + "  gauge: {alias: {q_ref: qd}}\n";
+  const std::string text = std::string(kArmAlone) + "  gauge: {alias: {angle: qd}}\n";
   EXPECT_EQ(offered(text, "unit-clash"), "link to 'q'");
 }
 
@@ -128,7 +134,7 @@ TEST(Offers, WriteAWordOrAUnitThatIsExpected) {
   EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm: {rate: 50}\n", "quantity-bad"), "write '50 Hz' | take it out");
   EXPECT_EQ(offered("subsystem: a\ntasks:\n  arm: {budget: 5}\n", "quantity-bad"),
             "write '5 us' | write '5 ms' | take it out");
-  EXPECT_EQ(offered("subsystem: a\ntasks:\n  gauge:\noperator: {q_ref: 1}\n", "value-unit"), "write '1 rad'");
+  EXPECT_EQ(offered("subsystem: a\ntasks:\n  gauge:\noperator: {angle: 1}\n", "value-unit"), "write '1 rad'");
   EXPECT_EQ(offered("tasks:\n  arm:\n", "key-missing"), "subsystem: untitled");
 }
 
@@ -179,7 +185,7 @@ TEST(Offers, PutAStandbyInItsPlace) {
   EXPECT_EQ(offered(text + outputs, "standby-outputs"), "link 'q' to 'q'");
   const std::string spare =
       "  spare: {component: arm, rtpu: one, standby_for: arm}\n  gauge: {rtpu: two}\n"
-      "operator: {q_ref: 1 rad}\n";
+      "operator: {angle: 1 rad}\n";
   EXPECT_EQ(offered(text + spare, "standby-same-rtpu"), "move 'spare' to rtpu 'two'");
   EXPECT_EQ(offered(text + spare + "configurations: {run: [arm, gauge, spare]}\n", "standby-in-configuration"),
             "take 'spare' out of 'run'");
@@ -205,7 +211,7 @@ TEST(Offers, EndWithTheTries) {
 }
 
 TEST(Offers, BeginWithTheLikeliestOfEachFault) {
-  const std::string text = std::string(kArmAlone) + "  gauge:\n  other: {component: gauge, alias: {q_ref: x}}\n";
+  const std::string text = std::string(kArmAlone) + "  gauge:\n  other: {component: gauge, alias: {angle: x}}\n";
   EXPECT_EQ(offered(text, "input-unmet", 2), "link to 'q' | link to 'q'");
 }
 
