@@ -65,7 +65,8 @@ function EdgeLine({ edge, to }: { edge: Edge; to: string }) {
   return (
     <span className={`edge ${edge.look}`} data-edge={to} title={edge.why}>
       <svg viewBox="0 0 44 16" aria-hidden="true">
-        <path d={LINES[edge.look]} /><path className="head" d="M37 4l6 4-6 4z" /></svg> <span>{edge.word}</span><span className="soft"> to {to}</span>
+        <path d={LINES[edge.look]} /><path className="head" d="M37 4l6 4-6 4z" /></svg>{" "}
+      {edge.word} <span className="soft">to {to}</span>
     </span>
   );
 }

@@ -108,7 +108,8 @@ const outline: Outline = {
     { configuration: "weld", tasks: ["arm", "welder", "sequence"], safe_when: null }],
   variables: [
     variable("q", { unit: "rad", shape: "[3]", ...from("arm") }),
-    variable("closed", { type: "bool", ...from("welder") }), variable("heat", { unit: "K", ...from("welder") }), variable("pose", { shape: "[4, 4]", ...from("arm") }),
+    variable("closed", { type: "bool", ...from("welder") }), variable("heat", { unit: "K", ...from("welder") }),
+    variable("pose", { shape: "[4, 4]", ...from("arm") }),
     variable("log", { type: "string", ...from("arm") }), variable("kp", { constant: true, origin: "constants" }),
     variable("wish", { origin: "operator", unit: "m/s" }), variable("sequence_step", from("sequence"))],
 };
