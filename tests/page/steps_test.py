@@ -49,7 +49,7 @@ class StepsTest(AssembleTest):
         """The words of each switch from tile to tile, once they are judged."""
         self.page.await_that("document.querySelector('li.between') && ![...document.querySelectorAll('li.between')]"
                              ".some(e => e.textContent.includes('not judged'))", "the switches")
-        return self.page.texts("li.between")
+        return [words.strip() for words in self.page.texts("li.between")]
 
 
 class Building(StepsTest):
@@ -68,7 +68,12 @@ class Building(StepsTest):
         self.check("reentry of step 4")
         self.await_verdict("legal")
         self.assertEqual(self.text(), BEFORE + "\nsequence:\n" + STEPS.replace("'", '"'))
-        self.assertEqual(self.edges(), ["fast to step 2"])
+        slow = "slow unless the constants keep their values to step"
+        self.assertEqual(self.edges(), [f"{slow} 2", f"{slow} 3", "fast to step 4"])
+        self.page.await_text(f"{tile(2)} .edge", "slow unless the constants keep their values else home")
+        self.page.await_text(f"{tile(3)} .edge", "fast else home")
+        self.assertIn("constant payload_mass comes from welder instead of gripper",
+                      self.page.attribute("li.between .edge", "title"))
         self.undo()
         self.assertNotIn("reentry", self.text())
         for _ in range(13):
@@ -133,7 +138,8 @@ class Building(StepsTest):
     def test_until_is_completed_while_it_is_typed(self):
         self.steps(LESSON)
         until = self.page.one(of_step(1, "until"))
-        until.send_keys(Keys.CONTROL + "a", "q_re")
+        until.send_keys(Keys.CONTROL + "a")
+        until.send_keys("q_re")
         words = "return [...arguments[0].list.options].map(e => e.value)"
         self.assertIn("q_ref[5] ", self.page.script(words, until))
         self.assertNotIn("sequence_step ", self.page.script(words, until))

@@ -15,13 +15,18 @@ import { wordsAt } from "./text_places";
 import { tried } from "./trial";
 import { choose, view } from "./view";
 
-const focusIn = (selector: string) =>  // when it is there
-  window.setTimeout(() => document.querySelector<HTMLElement>(`section[aria-label="Steps"] ${selector}`)?.focus(), 0);
+const PANEL = 'section[aria-label="Steps"]', FIRST = "select, button";
+
+const focusIn = (selector: string) => window.setTimeout(() => (  // when it is there
+  document.querySelector<HTMLElement>(`${PANEL} :is(${selector})`)?.focus()), 0);
+
+/** The first control of a tile; of the panel for 0. */
+const tileAt = (number: number) => (number === 0 ? FIRST : `[data-step="${number}"] select`);
 
 export function openSteps(): void {
   tried.set({ isOpen: false });
   view.set({ areStepsOpen: true });
-  focusIn("select, button");
+  focusIn(FIRST);
 }
 
 function closeSteps(): void {
@@ -38,11 +43,8 @@ export function chooseBox(tasks: string[]): void {
 /** Leads to the field of a step that a fault names, or to its tile. */
 export function goToStep({ path }: Fault, number: number): void {
   view.set({ areStepsOpen: true });
-  const key = path.split("/").pop();
-  window.setTimeout(() => {
-    focusIn(number === 0 ? "button" : `[data-step="${number}"] select`);
-    focusField("field", `step ${number} ${key}`);
-  }, 0);
+  focusIn(tileAt(number));
+  window.setTimeout(() => focusField("field", `step ${number} ${path.split("/").pop()}`), 0);
 }
 
 /** How the configurations of the draft switch into each other; null: not known, or not yet. */
@@ -66,7 +68,7 @@ function EdgeLine({ edge, to }: { edge: Edge; to: string }) {
     <span className={`edge ${edge.look}`} data-edge={to} title={edge.why}>
       <svg viewBox="0 0 44 16" aria-hidden="true">
         <path d={LINES[edge.look]} /><path className="head" d="M37 4l6 4-6 4z" /></svg>{" "}
-      {edge.word} <span className="soft">to {to}</span>
+      {edge.word} <span className="soft">{to}</span>
     </span>
   );
 }
@@ -76,7 +78,7 @@ interface StepProps extends Props { sequence: Sequence; i: number; modes: Modes 
 
 function Faults({ analysis, state, why, go, number }: Props & { number: number }) {
   const press = (_: number, acts: EditAct[]) => {
-    focusIn(number === 0 ? "button" : `[data-step="${number}"] select`);
+    focusIn(tileAt(number));
     void draft.press(acts);
   };
   const found = analysis.report.faults.map((fault, at) => ({ fault, at }))
@@ -150,7 +152,7 @@ function DraftStep(props: StepProps) {
       <div className="acts">
         {move(i - 1, "left")}{move(i + 1, "right")}
         <Button label={`Remove step ${n}`} forbidden={why}
-                press={() => void change(removedStep(sequence, i), "select, button")}>Remove</Button>
+                press={() => void change(removedStep(sequence, i), FIRST)}>Remove</Button>
       </div>
     </StepTile>
   );
@@ -211,7 +213,7 @@ export function StepsPanel(props: Props) {
             <DraftStep key={`${moves} ${i}`} {...props} sequence={sequence} i={i} modes={modes}
                        moved={() => count((now) => now + 1)} />,
             next && <li key={`edge ${i}`} className="between">
-              <EdgeLine edge={edgeOf(modes, step.switch, next.switch)} to={`step ${to}`} /></li>];
+              <EdgeLine edge={edgeOf(modes, step.switch, next.switch)} to={`to step ${to}`} /></li>];
         })}
       </ol>
     </section>
