@@ -439,5 +439,18 @@ TEST(TextEdit, ReplacesValuesThatHaveLinesOfTheirOwnOneByOne) {
             head + "  kp:\n    - 1\n    - 3\n    - 4\n");
 }
 
+TEST(TextEdit, RefusesEachActOnTheTaskThatTheKeyOfASequenceMakes) {
+  const std::string text = "subsystem: s\ntasks: {pid: }\nsequence: [{switch: run}]\n";
+  const EditAct acts[] = {set("tasks/sequence/rate", "50 Hz"), set("tasks/sequence", "{rate: 50 Hz}"),
+                          remove("tasks/sequence"), rename("tasks/sequence", "steps"), add("sequence", "sequence"),
+                          link("sequence", "value", "q"), rename("tasks/pid", "sequence"),
+                          rename("variables/q", "p", {{"sequence", "q"}})};
+  for (const EditAct& act : acts)
+    EXPECT_EQ(edited(text, {act}), "tasks/sequence: task 'sequence' comes from the key 'sequence': edit its steps");
+  EXPECT_EQ(edited(text, {set("tasks/sequences/rate", "1 Hz")}), "tasks/sequences: no task 'sequences'; there is: pid");
+  expect_edit("tasks: {sequence: {rate: 1 Hz}}\nsequence: []\n", {set("tasks/sequence/rate", "2 Hz")},
+              "tasks: {sequence: {rate: 2 Hz}}\nsequence: []\n");
+}
+
 }  // namespace
 }  // namespace chimera::text_edit_test
