@@ -174,6 +174,22 @@ TEST(TextEdit, BeginsAnEmptyText) {
   EXPECT_EQ(edited("subsystem: s", {add("a", "b")}), "subsystem: s\ntasks:\n  a: {component: b}");
 }
 
+TEST(TextEdit, GivesEachMapOfANewListALine) {
+  const std::string tasks = "subsystem: s\ntasks: {a: {}}\n";
+  const std::string list = tasks + "sequence:\n  - {switch: run, until: \"q[0] > 1 rad\"}\n";
+  const EditAct first = set("sequence", "[{switch: run, until: 'q[0] > 1 rad'}]");
+  expect_edit(tasks, {first}, list);
+  expect_edit(tasks + "sequence: []\n", {first}, list);
+  expect_edit(tasks + "sequence:\n", {first}, list);
+  expect_edit(list, {set("sequence/1", "{switch: rest}")}, list + "  - {switch: rest}\n");
+  expect_edit(list, {set("sequence/0/name", "go"), set("sequence/0/within", "1 s")},
+              replaced(replaced(list, "{switch", "{name: go, switch"), "\"}", "\", within: 1 s}"));
+  expect_edit(list, {remove("sequence"), set("sequence", "{repeat: true, steps: [{switch: run}, {switch: b}]}")},
+              tasks + "sequence:\n  repeat: true\n  steps:\n    - {switch: run}\n    - {switch: b}\n");
+  expect_edit(tasks + "sequence: [{switch: run}]\n", {set("sequence/1", "{switch: rest}")},
+              tasks + "sequence: [{switch: run}, {switch: rest}]\n");
+}
+
 TEST(TextEdit, LinksAPortByAnAlias) {
   expect_edit(kFlow, {link("arm", "tau", "torque")},
               replaced(kFlow, "rtpu: servo", "rtpu: servo, alias: {tau: torque}"));
