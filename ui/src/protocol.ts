@@ -84,12 +84,20 @@ export interface Picture {
   boxes: PictureBox[]; ports: PicturePort[]; lines: PictureLine[]; dots: PictureDot[]; labels: PictureLabel[];
 }
 
+/** A step of a sequence: the words that the text gives; null: it gives none. Times and conditions are not read. */
+export interface Step {
+  number: number; name: string | null; switch: string | null; until: string | null; for: string | null;
+  within: string | null; else: string | null; confirm: boolean; reentry: boolean;
+}
+export interface Sequence { line: number; path: "sequence" | "sequence/steps"; repeat: boolean; steps: Step[] }
+
 export interface Description {
   tasks: DescribedTask[];
   variables: Variable[];
   configurations: { name: string; tasks: string[] }[];
   start: string;
   picture?: Picture;
+  sequence?: Sequence | null;
 }
 
 export interface RtpuStatus {
@@ -208,6 +216,7 @@ export interface Outline {
   subsystem: string; start: string; tasks: OutlineTask[]; variables: OutlineVariable[];
   configurations: { configuration: string; tasks: string[]; safe_when: string | null }[];
   rtpus: { rtpu: string; cpu: number; policy: string; executor: string }[];
+  sequence: Sequence | null;
 }
 
 export interface ScheduledTask { task: string; guarantee: "yes" | "no" | "not-stated" | "not-decided" }
@@ -216,6 +225,16 @@ export interface ScheduledCpu {
   cpu: number; fits: boolean; utilisation: number; limit: number; tasks: ScheduledTask[]; give_way: string[];
   remedies: { label: string; acts: EditAct[] }[];
 }
+
+/** What `chimera check --modes --json` prints: docs/formats/run.md. */
+export interface Transition {
+  from: string; to: string; way: "fast" | "slow-unless-same" | "slow" | "takeover";
+  cpus: { cpu: number; schedulable: "yes" | "no" | "not-stated" | "not-decided"; task: string | null }[];
+  constants: { constant: string; before: string; after: string; tasks: string[] }[];
+  resources: { resource: string; before: string; after: string }[];
+  initialised_anew: string[];
+}
+export interface Modes { transitions: Transition[] }
 
 export interface Schedule { fits: boolean; sets: { name: string; fits: boolean; cpus: ScheduledCpu[] }[] }
 
