@@ -7,6 +7,7 @@
 #include "chimera/description/draft.h"
 #include "chimera/description/draft_values.h"
 #include "chimera/description/keys.h"
+#include "chimera/description/yaml_words.h"
 
 namespace chimera {
 namespace {
@@ -249,7 +250,9 @@ void read_sequence(const Word& key, const Node& node, Draft& draft, Report& repo
   task.budget = Located<Nanoseconds>{kBudget, key.at};
   DraftSequence sequence;
   sequence.at = key.at;
+  sequence.has_keys = node.is_map();
   const Node* steps = node.is_map() ? node.find("steps") : &node;
+  if (steps != nullptr && steps->is_list()) sequence.written = *steps;
   if (node.is_map()) read_frame(node, sequence, task, report);
   if (steps != nullptr) read_steps(*steps, sequence, report);
   else
@@ -269,6 +272,26 @@ void read_sequence(const Word& key, const Node& node, Draft& draft, Report& repo
   if (report.errors() == before) join(draft, std::move(task));
   else draft.is_partial = true;
   draft.sequence = std::move(sequence);
+}
+
+Json sequence_json(const std::optional<DraftSequence>& sequence) {
+  if (!sequence) return {};
+  Json steps = Json::array();
+  for (const Node& step : sequence->written.items) {
+    const auto words = [&step](std::string_view key) {
+      const Node* value = step.find(key);
+      if (value == nullptr || value->is_none()) return Json();
+      return Json(value->is_scalar() ? value->text : written_text(*value));
+    };
+    Json made = {{"number", steps.size() + 1}};
+    for (const char* key : {"name", "switch", "until", "for", "within", "else"}) made[key] = words(key);
+    for (const char* key : {"confirm", "reentry"}) made[key] = words(key) == Json(kTruthWords[1]);
+    steps.push_back(std::move(made));
+  }
+  return {{"line", sequence->at.line},
+          {"path", sequence->has_keys ? "sequence/steps" : "sequence"},
+          {"repeat", sequence->repeat},
+          {"steps", std::move(steps)}};
 }
 
 }  // namespace chimera

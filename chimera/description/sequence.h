@@ -12,6 +12,7 @@
 #include "chimera/description/condition_text.h"
 #include "chimera/description/node.h"
 #include "chimera/description/report.h"
+#include "chimera/text/json.h"
 
 namespace chimera {
 
@@ -37,6 +38,8 @@ struct DraftSequence {
   Place at;
   std::vector<DraftStep> steps;
   bool repeat = false;
+  bool has_keys = false;  ///< the list of steps stands under the key `steps`
+  Node written;           ///< this list, as far as it is one
 
   /// The step whose condition input number `input` of the task has. Requires: there is one.
   const DraftStep& step_of_input(std::size_t input) const noexcept;
@@ -47,5 +50,8 @@ struct DraftSequence {
 /// Reads the value under the key `key`. Without faults in it, the task `sequence` joins the tasks, the configurations
 /// and the operator variables of the draft. Call it behind the reading of these. Context: setup.
 void read_sequence(const Word& key, const Node& node, Draft& draft, Report& report);
+
+/// docs/formats/web.md, "The outline". Context: setup.
+Json sequence_json(const std::optional<DraftSequence>& sequence);
 
 }  // namespace chimera

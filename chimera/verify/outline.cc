@@ -208,6 +208,7 @@ Outline outline_of(const Model& model) {
   for (std::size_t s = 0; s < model.sets.size(); ++s) outline.configurations.push_back(set_of(model, s));
   outline.start = model.start;
   outline.rtpus = model.rtpus;
+  outline.sequence = model.draft.sequence;
   return outline;
 }
 
@@ -247,7 +248,8 @@ Json outline_json(const Outline& outline) {
           {"variables", std::move(variables)},
           {"configurations", std::move(configurations)},
           {"start", outline.configurations[outline.start].name},
-          {"rtpus", std::move(rtpus)}};
+          {"rtpus", std::move(rtpus)},
+          {"sequence", sequence_json(outline.sequence)}};
 }
 
 }  // namespace chimera

@@ -79,6 +79,7 @@ struct Outline {
   std::vector<OutlineSet> configurations;  ///< `all` if the text has none
   std::size_t start = 0;                   ///< in `configurations`
   std::vector<DraftRtpu> rtpus;            ///< `main` if the text has none
+  std::optional<DraftSequence> sequence;   ///< also one with faults
 };
 
 /// A verdict and the outline behind it; none if the text is no tree.

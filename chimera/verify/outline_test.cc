@@ -85,6 +85,37 @@ TEST(Outline, HasTheLineOfEachTask) {
   EXPECT_EQ(of["tasks"][1]["line"], 5);
 }
 
+TEST(Outline, KeepsTheWordsOfEachStepAlsoOfFaultyOnes) {
+  const Json of = outline_for("subsystem: a\ntasks: {source: }\nconfigurations: {run: [source]}\n"
+                              "sequence:\n  repeat: true\n  steps:\n"
+                              "    - {switch: rn, until: 'angle > 1 rad', within: 2 s, else: 7, confirm: true}\n"
+                              "    - run\n"
+                              "    - {name: [a, 'b'], switch: , for: 0 s, reentry: on}\n")["sequence"];
+  EXPECT_EQ(of["line"], 4);
+  EXPECT_EQ(of["path"], "sequence/steps");
+  EXPECT_EQ(of["repeat"], true);
+  EXPECT_EQ(of["steps"].dump(),
+            R"([{"confirm":true,"else":"7","for":null,"name":null,"number":1,"reentry":false,"switch":"rn",)"
+            R"("until":"angle > 1 rad","within":"2 s"},)"
+            R"({"confirm":false,"else":null,"for":null,"name":null,"number":2,"reentry":false,"switch":null,)"
+            R"("until":null,"within":null},)"
+            R"({"confirm":false,"else":null,"for":"0 s","name":"[a, \"b\"]","number":3,"reentry":false,)"
+            R"("switch":null,"until":null,"within":null}])");
+}
+
+TEST(Outline, ShowsEachFormOfASequence) {
+  const std::string text = "subsystem: a\ntasks: {source: }\n";
+  EXPECT_TRUE(outline_for(text)["sequence"].is_null());
+  const std::pair<const char*, const char*> forms[] = {
+      {"sequence: [a]\n", "sequence 1"},       {"sequence: a\n", "sequence 0"},
+      {"sequence:\n", "sequence 0"},           {"sequence: {repeat: true}\n", "sequence/steps 0"},
+      {"sequence: {steps: {a: 1}}\n", "sequence/steps 0"}};
+  for (const auto& [form, shown] : forms) {
+    const Json of = outline_for(text + form)["sequence"];
+    EXPECT_EQ(of["path"].as_string() + " " + std::to_string(of["steps"].size()), shown) << form;
+  }
+}
+
 /// The ports that an act gets from the outline of `text`: "task.port ".
 std::string named(EditAct act, const std::string& text) {
   name_ports(act, *verify_with_outline(read_description(text, "a.yaml"), drawn_library()).outline);

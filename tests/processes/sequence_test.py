@@ -66,6 +66,10 @@ class Sequence(unittest.TestCase):
                 self.assertEqual([receipt["to"] for receipt in system.call("receipts")["receipts"]],
                                  ["far_off", "near_by", "far_off"])
                 shown = system.chimera("sequence", "--subsystem", "subject").stdout
+                described = system.call("describe")["sequence"]
+                self.assertEqual([step["until"] or step["for"] for step in described["steps"]],
+                                 ["level < 1500 mm", "level >= 2 m", "50 ms", None])
+                self.assertEqual(described["path"], "sequence/steps")
                 self.assertEqual(shown.replace("[subject] ", ""), "  1 first\n  2 second\n  3 third\n> 4 last  done\n")
 
     def test_goes_on_after_a_death_only_where_reentry_is_allowed(self):

@@ -311,7 +311,7 @@ Json status_json(const ManagerState& state, Nanoseconds at) {
 }
 
 Json describe_json(const ManagerState& state) {
-  Json tasks = Json::array(), variables = Json::array(), sets = Json::array();
+  Json tasks = Json::array(), variables = Json::array(), sets = Json::array(), sequence;
   std::string start;
   if (state.configuration) {
     const Configuration& configuration = *state.configuration;
@@ -324,11 +324,13 @@ Json describe_json(const ManagerState& state) {
       sets.push_back({{"name", set.name}, {"tasks", std::move(names)}});
     }
     start = configuration.sets()[configuration.start()].name;
+    sequence = sequence_json(configuration.draft().sequence);
   }
   return {{"tasks", std::move(tasks)},
           {"variables", std::move(variables)},
           {"configurations", std::move(sets)},
-          {"start", start}};
+          {"start", start},
+          {"sequence", std::move(sequence)}};
 }
 
 Json profile_json(const ManagerState& state, Nanoseconds at) {

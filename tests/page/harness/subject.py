@@ -119,7 +119,8 @@ class Subject:
                   "ports": task["ports"]} for name, task in self.tasks.items()]
         configurations = [{"name": name, "tasks": its} for name, its in self.configurations.items()]
         answer = {"tasks": tasks, "variables": [self.variable(name) for name in self.values],
-                  "configurations": configurations, "start": next(iter(self.configurations), "")}
+                  "configurations": configurations, "start": next(iter(self.configurations), ""),
+                  "sequence": None}
         return {**answer, "picture": self.picture()} if picture else answer
 
     def ends(self, variable, kind):
