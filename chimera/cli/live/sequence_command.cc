@@ -42,9 +42,18 @@ std::size_t step_named(const std::vector<std::string>& steps, const std::string&
   return 0;
 }
 
+/// The words of a step that runs or switches: "waits for q >= 1 rad, 1.5 s of 3 s".
+std::string wait_text(const std::string& state, const Json& step, const std::string& waited) {
+  const std::string until = text_of(step, "until"), time = text_of(step, "for");
+  const bool runs = state == "runs";
+  const std::string limit = runs && until.empty() ? time : text_of(step, "within");
+  const std::string of = waited + (limit.empty() ? "" : " of " + plain_line(limit));
+  return runs && !until.empty() ? "waits for " + plain_line(until) + ", " + of : state + " for " + of;
+}
+
 }  // namespace
 
-std::string sequence_text(const Json& answer) {
+std::string sequence_text(const Json& answer, const Json& described) {
   const std::vector<std::string> steps = steps_of(answer);
   const auto present = static_cast<std::size_t>(sequence_number(answer, "sequence_step"));
   const auto state = static_cast<std::size_t>(sequence_number(answer, "sequence_state"));
@@ -53,9 +62,9 @@ std::string sequence_text(const Json& answer) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     const bool is_present = i + 1 == present;
     text += (is_present ? "> " : "  ") + std::to_string(i + 1) + ' ' + plain_line(steps[i]);
-    if (is_present) text += "  " + word;
-    const bool waits = is_present && (word == "runs" || word == "switches");
-    if (waits) text += " for " + text_of(answer["values"]["sequence_waited"], "text");
+    const std::string waited = text_of(answer["values"]["sequence_waited"], "text");
+    const bool waits = word == "runs" || word == "switches";
+    if (is_present) text += "  " + (waits ? wait_text(word, described["sequence"]["steps"][i], waited) : word);
     text += '\n';
   }
   return text;
@@ -66,7 +75,11 @@ CommandResult sequence(Session& session, const Call& call, const Screen&) {
                                                               std::begin(kSequenceNames), std::end(kSequenceNames)))}});
   if (!answer.is_good()) return refused(answer, call.json);
   const std::string act = call.operand(0), word = call.operand(1);
-  if (act.empty()) return answered(answer, call.json, sequence_text);
+  if (act.empty())
+    return answered(answer, call.json, [&session](const Json& values) {
+      const control::RpcResponse described = session.ask("describe");
+      return sequence_text(values, described.is_good() ? *described.result : Json());
+    });
   if ((act != "go" && act != "pause") || (act == "pause" && !word.empty()))
     return wrong_words("sequence: found '" + join(call.operands, " ") + "', expected go, go STEP or pause", call.json);
   const std::vector<std::string> steps = steps_of(*answer.result);

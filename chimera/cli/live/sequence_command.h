@@ -8,7 +8,7 @@ namespace chimera::cli {
 
 /// Context: setup; may block.
 CommandResult sequence(Session& session, const Call& call, const Screen& screen);
-/// The steps with their names, and what the present one does. Context: setup.
-std::string sequence_text(const Json& answer);
+/// The steps with their names, and what the present one does, from answers to `get` and `describe`. Context: setup.
+std::string sequence_text(const Json& answer, const Json& described);
 
 }  // namespace chimera::cli

@@ -276,8 +276,8 @@ TEST_F(ShellTest, AScriptStopsAtTheFirstRefusalAndNamesItsLine) {
 
 TEST_F(ShellTest, ASequenceGoesToAStepByItsName) {
   serve();
-  EXPECT_EQ(run({"sequence"}),
-            "0|[puma_pid]   1 near\n[puma_pid] > 2 grip  runs for 1.5 s\n[puma_pid]   3 home\n|");
+  const std::string waits = "> 2 grip  waits for distance <= 5 mm, 1.5 s of 10 s\n";
+  EXPECT_EQ(run({"sequence"}), "0|[puma_pid]   1 near\n[puma_pid] " + waits + "[puma_pid]   3 home\n|");
   EXPECT_EQ(run({"sequence", "go", "home"}), "0|[puma_pid] goes to step 3\n|");
   EXPECT_EQ(run({"sequence", "pause"}), "0|[puma_pid] paused\n|");
   EXPECT_EQ(run({"sequence", "go", "hmoe"}), "2||[puma_pid] sequence: no step 'hmoe'; did you mean 'home'?\n");

@@ -58,7 +58,11 @@ inline constexpr const char* kDescribed = R"({
       {"variable": "ndof", "type": "int32", "unit": "1", "shape": "", "constant": true, "given": true,
        "producers": [], "consumers": []},
       {"variable": "kp", "type": "float64", "unit": "N.m/rad", "shape": "[2]", "constant": false, "given": true,
-       "producers": [], "consumers": [{"task": "pid", "port": "kp"}]}]})";
+       "producers": [], "consumers": [{"task": "pid", "port": "kp"}]}],
+    "sequence": {"steps": [
+      {"number": 1, "name": "near", "switch": "run", "until": null, "for": "2 s", "within": null},
+      {"number": 2, "name": "grip", "switch": "hand", "until": "distance <= 5 mm", "for": null, "within": "10 s"},
+      {"number": 3, "name": null, "switch": "home", "until": null, "for": null, "within": null}]}})";
 
 /// The answer of `get` for the second of three steps.
 inline constexpr const char* kSequence = R"({"values": {
