@@ -99,7 +99,7 @@ function TuneButton({ machine, state, variables }: { machine: Machine; state: Ma
 
 export function Operator({ machine, state }: { machine: Machine; state: MachineState }) {
   const variables = (state.description?.variables ?? []).filter(
-    (v) => !v.constant && (v.operator ?? (v.given && v.producers.length === 0)));
+    (v) => !v.constant && !(state.description?.sequence && v.variable === "sequence_go") && (v.operator ?? (v.given && v.producers.length === 0)));
   if (variables.length === 0) return null;
   const why = forbidden(state.hello?.role, "operate");
   return (

@@ -4,7 +4,7 @@ import type { Reading, Sequence, Step } from "./protocol";
 
 /** Values of `sequence_state`, in their order. */
 export const STATES = ["paused", "switches", "runs", "waits for Go", "interrupted", "failed", "done", "begins"];
-export const PAUSED = 0, SWITCHES = 1, RUNS = 2, INTERRUPTED = 4, FAILED = 5, DONE = 6, BEGINS = 7;
+export const PAUSED = 0, SWITCHES = 1, RUNS = 2, INTERRUPTED = 4, FAILED = 5, DONE = 6;
 
 /** Most time for a switch, in nanoseconds, if the step gives none. */
 const SWITCH_NS = 10e9;
@@ -32,7 +32,7 @@ export function conditionOf(until: string | null): Condition | null {
 
 /** What a page reads of a sequence, however large its variables are. */
 export const variablesOf = (sequence: Sequence | null | undefined): string[] => (!sequence ? []
-  : ["sequence_step", "sequence_state", "sequence_waited", "sequence_go",
+  : ["sequence_step", "sequence_state", "sequence_waited",
     ...sequence.steps.flatMap((step) => conditionOf(step.until)?.variable ?? [])]);
 
 const PREFIXES: Record<string, number> = { n: 1e-9, u: 1e-6, m: 1e-3, c: 1e-2, k: 1e3, M: 1e6 };
@@ -44,16 +44,17 @@ function factor(wanted: string, has: string): number {
   return wanted.slice(1) === has ? PREFIXES[wanted[0]!] ?? 0 : 0;
 }
 
-/** The present value of a condition, in the unit that the condition has; more digits than beside a port, so that a
- *  value just below its limit does not look like the limit. */
+/** The present value of a condition, in the unit of the condition, with digits enough to tell it from the limit. */
 export function valueOf({ element, level }: Condition, reading: Reading): string {
   const value = element === null ? reading.value : (reading.value as unknown[] | null)?.flat(9)[element];
   if (value === null || value === undefined) return "never published";
   if (typeof value !== "number") return String(value);
   const wanted = /[^\d.]\S*$/.exec(level)?.[0]?.trim() ?? "";
   const times = factor(wanted, reading.unit);
-  const unit = times === 0 ? reading.unit : wanted;
-  return `${Number((value / (times || 1)).toPrecision(5))}${unit === "1" || unit === "" ? "" : ` ${unit}`}`;
+  const number = value / (times || 1), unit = times === 0 ? reading.unit : wanted;
+  const size = Math.max(Math.abs(number), Math.abs(parseFloat(level)) || 0);
+  const digits = size === 0 ? 0 : Math.max(0, Math.min(20, 4 - Math.floor(Math.log10(size))));
+  return `${Number(number.toFixed(digits))}${unit === "1" || unit === "" ? "" : ` ${unit}`}`;
 }
 
 /** The steps with which a sequence may go on after an error. */
@@ -62,11 +63,9 @@ export function mayGoOn({ steps }: Sequence): string {
   return numbers.length === 0 ? "no step allows reentry" : `may go on with step ${numbers.join(", ")}`;
 }
 
-/** The state in words. `go`: the value of `sequence_go`. */
-export function stateWords(sequence: Sequence, state: number, go: unknown): string {
-  if (state === INTERRUPTED) return `interrupted: ${mayGoOn(sequence)}`;
-  return state === BEGINS && go === 0 ? "waits for Go" : STATES[state] ?? "…";
-}
+/** The state in words. */
+export const stateWords = (sequence: Sequence, state: number): string =>
+  state === INTERRUPTED ? `interrupted: ${mayGoOn(sequence)}` : STATES[state] ?? "…";
 
 /** The step that Go begins: at the end the first one. */
 export const goStep = (number: number, state: number): number => (state === DONE ? 1 : Math.max(1, number));

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import type { Reading, Sequence, Step } from "./protocol";
-import { BEGINS, conditionOf, DONE, goStep, INTERRUPTED, limitOf, mayGoOn, nanoseconds, PAUSED, RUNS, stateWords,
+import { conditionOf, DONE, goStep, INTERRUPTED, limitOf, mayGoOn, nanoseconds, PAUSED, RUNS, stateWords,
   STATES, SWITCHES, valueOf, variablesOf } from "./sequence";
 
 const step = (number: number, words: Partial<Step>): Step => ({ name: null, switch: "a", until: null, for: null,
@@ -38,7 +38,9 @@ test("the present value has the unit of its condition", () => {
   const cases: [string, unknown, string, string][] = [
     ["d <= 5 mm", 0.0043, "m", "4.3 mm"], ["d <= 5 m", 0.0043, "m", "0.0043 m"], ["d <= 3 in", 0.0043, "m", "0.0043 m"],
     ["q[1] > 0.5 rad", [0, 0.499999], "rad", "0.5 rad"], ["q[1] > 0.5 rad", [0, 0.49996], "rad", "0.49996 rad"],
-    ["q[3] > 90 deg", [[0, 0], [0, Math.PI / 2]], "rad", "90 deg"], ["v < 60 deg/s", Math.PI, "rad/s", "180 deg/s"],
+    ["q[3] > 90 deg", [[0, 0], [0, Math.PI / 2]], "rad", "90 deg"],
+    ["q[0] > 0.5 rad", [1.23456e-4], "rad", "0.00012 rad"], ["q[0] > 0 rad", [1.23456e-4], "rad", "0.00012346 rad"],
+    ["q[0] > 0 rad", [0], "rad", "0 rad"], ["v < 60 deg/s", Math.PI, "rad/s", "180 deg/s"],
     ["v < 1e-3 km/s", 20, "m/s", "0.02 km/s"], ["n >= 3", 2, "1", "2"], ["ok == true", false, "1", "false"],
     ["q[7] > 0 rad", [1], "rad", "never published"], ["q[0] > 0 rad", null, "rad", "never published"],
     ["m < 500 g", 0.4, "kg", "0.4 kg"]];
@@ -48,18 +50,17 @@ test("the present value has the unit of its condition", () => {
 
 test("the page reads the variables of the conditions beside those of the task", () => {
   assert.deepEqual(variablesOf(null), []);
-  assert.deepEqual(variablesOf(sequence({ until: "q[2] > 1" }, { for: "1 s" }, {})).slice(4), ["q"]);
+  assert.deepEqual(variablesOf(sequence({ until: "q[2] > 1" }, { for: "1 s" }, {})).slice(3), ["q"]);
 });
 
 test("each state has words, an interruption names the steps that go on", () => {
   const two = sequence({ reentry: true }, {}, { reentry: true });
-  assert.equal(stateWords(two, INTERRUPTED, 1), "interrupted: may go on with step 1, 3");
+  assert.equal(stateWords(two, INTERRUPTED), "interrupted: may go on with step 1, 3");
   assert.equal(mayGoOn(sequence({})), "no step allows reentry");
-  assert.equal(stateWords(two, BEGINS, 0), "waits for Go");
-  assert.deepEqual(STATES.map((_, state) => stateWords(two, state, 1)).filter((_, state) => state !== INTERRUPTED),
+  assert.deepEqual(STATES.map((_, state) => stateWords(two, state)).filter((_, state) => state !== INTERRUPTED),
     STATES.filter((word) => word !== "interrupted"));
 });
 
 test("Go begins the present step, at the end the first one", () => {
-  assert.deepEqual([goStep(0, BEGINS), goStep(3, PAUSED), goStep(3, DONE)], [1, 3, 1]);
+  assert.deepEqual([goStep(0, PAUSED), goStep(3, PAUSED), goStep(3, DONE)], [1, 3, 1]);
 });

@@ -14,7 +14,7 @@ import { conditionOf, DONE, FAILED, goStep, limitOf, mayGoOn, PAUSED, RUNS, stat
   } from "./sequence";
 import { movedTasks, nameOf, StepTile, Thumbnail, wordsOf } from "./step_tile";
 import { useStore } from "./store";
-import { clock, duration } from "./text";
+import { clock } from "./text";
 import { useReading } from "./values";
 
 export const STEPS_PLACE = "steps";
@@ -34,14 +34,13 @@ interface Present {
 function usePresent(machine: Machine, state: MachineState, sequence: Sequence): Present {
   const { reading: step, age } = useReading(machine.values, "sequence_step");
   const { reading: phase } = useReading(machine.values, "sequence_state");
-  const { reading: told } = useReading(machine.values, "sequence_go");
   const number = Number(step?.value ?? 0), now = Number(phase?.value ?? -1);
   const task = state.status?.tasks.find((one) => one.task === "sequence");
   const rtpu = state.status?.rtpus.find((one) => one.name === task?.rtpu);
   const ended = rtpu && !rtpu.alive ? rtpu.name : "";
   const lack = ended !== "" ? `its rtpu ${ended} has ended` : !task || task.state === "ON" ? ""
     : `task sequence is ${task.state}`;
-  return { number, phase: now, age, ended, words: lack || stateWords(sequence, now, told?.value),
+  return { number, phase: now, age, ended, words: lack || stateWords(sequence, now),
     step: sequence.steps[number - 1], isUnderWay: lack === "" && (now === RUNS || now === SWITCHES) };
 }
 
@@ -83,12 +82,13 @@ function Wait({ machine, step, phase }: { machine: Machine; step: Step; phase: n
   const { reading, age } = useReading(machine.values, "sequence_waited");
   const limit = limitOf(step, phase);
   if (limit === null || typeof reading?.value !== "number") return null;
-  const ns = reading.value * 1e9;
-  const words = `${duration(ns)} of ${step.for !== null && phase === RUNS ? "" : "at most "}${duration(limit)}`;
+  const isTimed = step.for !== null && phase === RUNS;
+  const words = `${reading.value.toFixed(1)} s of ${isTimed ? step.for : `at most ${step.within ?? "10 s"}`}`;
   return (
     <div className={age === "" ? "wait live" : "wait live old"}>
-      <progress value={Math.min(1, ns / limit)} aria-label={`Wait of step ${step.number}`} aria-valuetext={words} />
-      <span data-waited>{words}{phase === SWITCHES && " for the switch"}{age !== "" && `, ${age} old`}</span>
+      <progress value={Math.min(1, reading.value * 1e9 / limit)} aria-label={`Wait of step ${step.number}`}
+                aria-valuetext={words} />
+      <span data-waited>{words}{phase === SWITCHES && " for the switch"}{age !== "" && `, ${age}`}</span>
     </div>
   );
 }
@@ -102,7 +102,7 @@ function ConditionValue({ machine, until }: { machine: Machine; until: string })
     <div className={age === "" && reading?.valid !== false ? "now live" : "now live old"}>
       {variable}{element === null ? "" : `[${element}]`} is{" "}
       <span data-condition-value>{reading ? valueOf(condition, reading) : "not known"}</span>
-      {age !== "" && `, ${age} old`}
+      {age !== "" && `, ${age}`}
     </div>
   );
 }
@@ -122,7 +122,7 @@ function PresentStep({ machine, present }: { machine: Machine; present: Present 
   return (
     <>
       <p className={age === "" ? "live state-of" : "live state-of old"} data-sequence-state={phase}>{words}
-        {age !== "" && `, ${age} old`}</p>
+        {age !== "" && `, ${age}`}</p>
       {step && isUnderWay && <Wait machine={machine} step={step} phase={phase} />}
       {step && step.until !== null && conditionOf(step.until) &&
         <ConditionValue key={step.until} machine={machine} until={step.until} />}
@@ -141,7 +141,7 @@ export function StepsPanel({ machine, state, sequence }: Omit<Shown, "present">)
       <div className="acts">
         <Acts machine={machine} state={state} sequence={sequence} present={present} />
         <PlaceLink to={{ doc: STEPS_PLACE, at: "" }} go={go}>Large view</PlaceLink>
-        <span className="soft">{mayGoOn(sequence)}</span>
+        <span className="soft">after an error: {mayGoOn(sequence)}</span>
       </div>
       {!present.step && <PresentStep machine={machine} present={present} />}
       <LastNote state={state} />
@@ -172,7 +172,7 @@ function Ways({ sequence, step }: { sequence: Sequence; step: Step }) {
       <div><dt>then</dt><dd data-next>{isLast ? "stays" : next ? `${next.number}. ${nameOf(next)}${
         next.confirm ? ", which waits for Go" : ""}` : "the end"}</dd></div>
       {!isLast && step.within !== null &&
-        <div><dt>after {step.within} else</dt><dd data-else>{step.else ?? "stop"}</dd></div>}
+        <div><dt>else, after {step.within}</dt><dd data-else>{step.else ?? "stop"}</dd></div>}
     </dl>
   );
 }
@@ -183,8 +183,9 @@ function Large({ machine, state, sequence }: Omit<Shown, "present">) {
   return (
     <>
       <main className={isLive(state, useStore(bench).door === "open") ? "large" : "large stale"}>
-        <p className="soft">step {present.number} of {sequence.steps.length}</p>
-        <h1 data-present={present.number}>{step ? nameOf(step) : "none yet"}</h1>
+        <p className="soft">{step ? `step ${step.number} of ` : "steps: "}{sequence.steps.length}</p>
+        <h1 className={present.age === "" ? "live" : "live old"} data-present={present.number}>
+          {step ? nameOf(step) : "no step yet"}</h1>
         {step?.until && <p className="until" data-until>until {step.until}</p>}
         <PresentStep machine={machine} present={present} />
         {step && <Ways sequence={sequence} step={step} />}

@@ -68,11 +68,11 @@ export function besidePort(reading: Reading, ageNs: number): string {
   return reading.producer === "operator" ? valueText(reading.value) : `${valueText(reading.value)} ${duration(ageNs)}`;
 }
 
-/** The latest reading, drawn again when its text changes; `age`: "" while it is fresh. */
+/** The latest reading, drawn again when its text changes; `age`: "" while it is fresh, else in words. */
 export function useReading(values: LiveValues, variable: string): { reading?: Reading; age: string } {
   const [shown, set] = useState<{ reading?: Reading; age: string }>({ reading: values.reading(variable), age: "" });
   useEffect(() => values.watch(variable, (reading, ageNs, isOld) => {
-    const age = isOld ? duration(ageNs) : "";
+    const age = !isOld ? "" : reading.published_ns === 0 ? "never published" : `${duration(ageNs)} old`;
     set((known) => (known.reading?.text === reading.text && known.age === age ? known : { reading, age }));
   }), [values, variable]);
   return shown;

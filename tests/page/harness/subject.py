@@ -120,7 +120,7 @@ class Subject:
         configurations = [{"name": name, "tasks": its} for name, its in self.configurations.items()]
         answer = {"tasks": tasks, "variables": [self.variable(name) for name in self.values],
                   "configurations": configurations, "start": next(iter(self.configurations), ""),
-                  "sequence": None}
+                  "sequence": self.sequence}
         return {**answer, "picture": self.picture()} if picture else answer
 
     def ends(self, variable, kind):
