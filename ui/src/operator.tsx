@@ -98,8 +98,9 @@ function TuneButton({ machine, state, variables }: { machine: Machine; state: Ma
 }
 
 export function Operator({ machine, state }: { machine: Machine; state: MachineState }) {
-  const variables = (state.description?.variables ?? []).filter(
-    (v) => !v.constant && !(state.description?.sequence && v.variable === "sequence_go") && (v.operator ?? (v.given && v.producers.length === 0)));
+  const { variables: all = [], sequence } = state.description ?? {};
+  const variables = all.filter((v) => !v.constant && (v.operator ?? (v.given && v.producers.length === 0)) &&
+    !(sequence && v.variable === "sequence_go"));  // a slider would begin steps; Steps has buttons for it
   if (variables.length === 0) return null;
   const why = forbidden(state.hello?.role, "operate");
   return (
