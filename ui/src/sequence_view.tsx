@@ -58,6 +58,8 @@ const whyNotBegin = (state: MachineState, { ended }: Present): string =>
 const begin = (machine: Machine, number: number): void =>
   void machine.act("set", { values: { sequence_go: number } });
 
+interface Shown { machine: Machine; state: MachineState; sequence: Sequence; present: Present }
+
 /** Go and Pause. Go begins no step that runs: it may have become the next one just now. */
 function Acts({ machine, state, sequence, present }: Shown) {
   const { number, phase, isUnderWay } = present;
@@ -74,8 +76,6 @@ function Acts({ machine, state, sequence, present }: Shown) {
     </>
   );
 }
-
-interface Shown { machine: Machine; state: MachineState; sequence: Sequence; present: Present }
 
 /** The wait of the present step as a bar and as words. */
 function Wait({ machine, step, phase }: { machine: Machine; step: Step; phase: number }) {
@@ -121,8 +121,8 @@ function PresentStep({ machine, present }: { machine: Machine; present: Present 
   const { step, phase, words, age, isUnderWay } = present;
   return (
     <>
-      <p className={age === "" ? "live state-of" : "live state-of old"} data-sequence-state={phase}>{words}
-        {age !== "" && `, ${age}`}</p>
+      <p className={age === "" ? "live state-of" : "live state-of old"} data-sequence-state={phase}>
+        <span role="status">{words}</span>{age !== "" && `, ${age}`}</p>
       {step && isUnderWay && <Wait machine={machine} step={step} phase={phase} />}
       {step && step.until !== null && conditionOf(step.until) &&
         <ConditionValue key={step.until} machine={machine} until={step.until} />}
