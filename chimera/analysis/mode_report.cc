@@ -101,7 +101,7 @@ class ModeWriter {
       for (std::size_t at = 0; at + port.element_bytes <= bytes.size(); at += port.element_bytes) {
         const auto* start = reinterpret_cast<const char*>(bytes.data() + at);
         const std::string_view text(start, ::strnlen(start, port.element_bytes));
-        const ModeAsker asker{ModeCause::kConstant, task, name_of(ports, port)};
+        const ModeAsker asker{ModeCause::kConstant, task, name_of(ports, port), port.instance};
         if (const auto set = find_set(text)) wishes_.push_back({asker, *set, {}});
         else if (const TaskLists lists = lists_of(text); lists.are_there()) wishes_.push_back({asker, 0, lists});
       }
@@ -309,9 +309,11 @@ std::string asker_text(const Configuration& configuration, const ModeAsker& aske
     case ModeCause::kMiss: return "on_miss of " + task;
     case ModeCause::kOverrun: return "on_overrun of " + task;
     case ModeCause::kFault: return "on_fault of " + task;
-    case ModeCause::kConstant: return "constant " + asker.constant + " of " + task;
+    case ModeCause::kConstant: break;
   }
-  return "?";
+  const auto& sequence = configuration.draft().sequence;
+  if (sequence && task == kSequenceTask) return sequence->say(sequence->steps[asker.instance]) + " of the sequence";
+  return "constant " + asker.constant + " of " + task;
 }
 
 const char* schedulable_word(Guarantee guarantee) noexcept {

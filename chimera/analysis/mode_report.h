@@ -22,6 +22,7 @@ struct ModeAsker {
   ModeCause cause = ModeCause::kMiss;
   std::size_t task = 0;  ///< in Configuration::tasks()
   std::string constant;  ///< of kConstant: its name
+  std::uint32_t instance = 0;  ///< of kConstant: number of its port among those of a repeated one
 
   bool is_reaction() const noexcept { return cause != ModeCause::kConstant; }
 };
@@ -81,7 +82,7 @@ struct ModeReport {
 
 /// Context of all: setup.
 ModeReport mode_report(const Configuration& configuration, const Library& library);
-/// "on_miss of heater", "constant when_near of monitor".
+/// "on_miss of heater", "constant when_near of monitor", "step 2 'weld_it' of the sequence".
 std::string asker_text(const Configuration& configuration, const ModeAsker& asker);
 /// "yes", "no", "not-stated", "not-decided": of those tasks that must keep their deadlines.
 const char* schedulable_word(Guarantee guarantee) noexcept;

@@ -79,6 +79,7 @@ constexpr MethodRule kMethods[] = {
     {MethodId::kEdit, "edit", Role::kConfigure, true, false, {kVersion, {"acts", Kind::kObjects, true}}},
     {MethodId::kReplace, "replace", Role::kConfigure, true, false, {kVersion, kText}},
     {MethodId::kRemedies, "remedies", Role::kObserve, false, true, {kVersion}},
+    {MethodId::kTransitions, "transitions", Role::kObserve, false, true, {kVersion}},
     {MethodId::kDifferences, "differences", Role::kObserve, false, true, {{"text", Kind::kText, false}}},
     {MethodId::kWrite, "write", Role::kConfigure, true, false, {kVersion}},
     {MethodId::kKeep, "keep", Role::kConfigure, true, false, {{"what", Kind::kText, true, "draft file"}}},

@@ -27,7 +27,7 @@ struct Parameter {
 enum class MethodId : unsigned char {
   kHello, kStatus, kDescribe, kGet, kProfile, kEvents, kReceipts, kWhy, kPlan, kSubscribe, kUnsubscribe, kCheck,
   kSchedule, kLibrary, kText, kSignal, kRing, kSet, kFlag, kSwitch, kCancel, kDrill, kSave, kEnd,
-  kMachines, kDraft, kEdit, kReplace, kRemedies, kDifferences, kWrite, kKeep, kStart, kOutput, kSheet,
+  kMachines, kDraft, kEdit, kReplace, kRemedies, kTransitions, kDifferences, kWrite, kKeep, kStart, kOutput, kSheet,
   kDocument, kValues, kTry, kScope, kResult, kHalt
 };
 

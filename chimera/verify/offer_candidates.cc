@@ -293,11 +293,9 @@ class Candidates {
     if (set == outline_.configurations.end() || variable == outline_.variables.end()) return {};
     const auto is_on = [&](const std::string& name) { return std::ranges::find(set->tasks, name) != set->tasks.end(); };
     JoinProducers act{variable->name, JoinBy::kMean, {}};
-    for (const PortRef ref : variable->producers) {
-      const OutlineTask& producer = outline_.tasks[ref.task];
-      if (is_on(producer.name) || is_on(producer.standby_for))
-        act.producers.push_back({producer.name, producer.ports[ref.port].name});
-    }
+    for (const PortRef ref : variable->producers)
+      if (const OutlineTask& producer = outline_.tasks[ref.task]; is_on(producer.name) || is_on(producer.standby_for))
+        act.producers.push_back(task_port(outline_, ref));
     std::vector<Offer> offers;
     for (const auto& [by, label] :
          {std::pair{JoinBy::kMean, "join by mean"}, std::pair{JoinBy::kPriority, "join by priority"},

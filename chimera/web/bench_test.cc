@@ -140,7 +140,7 @@ TEST_F(BenchTest, NotifiesAtOnceAndAtEachChange) {
 TEST_F(BenchTest, WithoutFileThereIsNoDraft) {
   bench.emplace(facts(""), clock, [](const std::string&) {});
   for (const char* method :
-       {"draft", "edit", "replace", "remedies", "differences", "write", "keep", "start"}) {
+       {"draft", "edit", "replace", "remedies", "transitions", "differences", "write", "keep", "start"}) {
     EXPECT_EQ(call(method).code, control::kRefused) << method;
     EXPECT_EQ(call(method).detail("kind"), "draft") << method;
   }

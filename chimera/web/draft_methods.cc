@@ -82,7 +82,9 @@ void DraftMethods::call(MethodId method, const Json& parameters, const control::
     case MethodId::kReplace:
       return change_to(parameters.at("text").as_string(), "", caller.connection, reply);
     case MethodId::kRemedies:
-      return analyst_.ask({Question::Kind::kOffers, disk_.path(), draft_.text(), "", draft_.version()},
+    case MethodId::kTransitions:
+      return analyst_.ask({method == MethodId::kRemedies ? Question::Kind::kOffers : Question::Kind::kModes,
+                           disk_.path(), draft_.text(), "", draft_.version()},
                           caller.connection, [reply](const RpcResponse& given, std::string_view) { reply(given); });
     case MethodId::kWrite:
       return reply(write());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The methods `draft`, `edit`, `replace`, `remedies`, `differences`, `write` and `keep`: docs/formats/web.md.
+// The methods `draft`, `edit`, `replace`, `remedies`, `transitions`, `differences`, `write` and `keep` of
+// docs/formats/web.md.
 #pragma once
 
 #include <cstdint>

@@ -150,7 +150,8 @@ TEST_F(DraftMethodsTest, OfTwoEditsOfOneVersionTheSecondIsStale) {
   ASSERT_EQ(answers.size(), 2u);
   EXPECT_TRUE(answers[0].is_good());
   EXPECT_EQ(whole(answers[1]).dump(), R"({"kind":"stale","version":2,"where":"version"})");
-  for (const MethodId method : {MethodId::kEdit, MethodId::kReplace, MethodId::kRemedies, MethodId::kWrite})
+  for (const MethodId method :
+       {MethodId::kEdit, MethodId::kReplace, MethodId::kRemedies, MethodId::kTransitions, MethodId::kWrite})
     EXPECT_EQ(call(method, {{"version", 1}, {"acts", kActs}, {"text", ""}})["kind"], Json("stale"));
   EXPECT_EQ(call(MethodId::kDraft)["analysis"]["text"], Json("a: 1\n# edited\n"));
 }
@@ -325,18 +326,20 @@ TEST_F(DraftMethodsTest, RefusesATextThatNoFileMayHave) {
   EXPECT_EQ(draft->note()["version"], Json(1));
 }
 
-TEST_F(DraftMethodsTest, PassesRemediesAndDifferencesOn) {
+TEST_F(DraftMethodsTest, PassesRemediesTransitionsAndDifferencesOn) {
   ask(MethodId::kRemedies, {{"version", 1}}, 5);
   ask(MethodId::kDifferences, {{"text", "b: 2\n"}}, 5);
   ask(MethodId::kDifferences, Json::object(), 5);
-  ASSERT_EQ(analyst.asked.size(), 3u);
+  ask(MethodId::kTransitions, {{"version", 1}}, 5);
+  ASSERT_EQ(analyst.asked.size(), 4u);
   EXPECT_EQ(analyst.asked[0].question.kind, Question::Kind::kOffers);
   EXPECT_EQ(analyst.asked[0].connection, 5u);
   EXPECT_EQ(analyst.asked[1].question.kind, Question::Kind::kDifferences);
   EXPECT_EQ(analyst.asked[1].question.with, "b: 2\n");
   EXPECT_EQ(analyst.asked[2].question.with, "a: 1\n");
-  for (int i = 0; i < 3; ++i) analyst.answer();
-  EXPECT_EQ(answers.size(), 3u);
+  EXPECT_EQ(analyst.asked[3].question.kind, Question::Kind::kModes);
+  for (int i = 0; i < 4; ++i) analyst.answer();
+  EXPECT_EQ(answers.size(), 4u);
 }
 
 TEST_F(DraftMethodsTest, ADraftIsStartedOnlyAsFileHasIt) {

@@ -78,10 +78,12 @@ class Drafts(unittest.TestCase):
     def test_every_answer_fits_the_schema(self):
         with self.server.open() as page:
             for method, parameters in (("draft", {}), ("library", {}), ("output", {}), ("differences", {}),
-                                       ("remedies", {"version": 1}), ("keep", {"what": "draft"}),
+                                       ("remedies", {"version": 1}), ("transitions", {"version": 1}),
+                                       ("keep", {"what": "draft"}),
                                        ("replace", {"version": 1, "text": "subsystem: [\n"}), ("draft", {}),
                                        ("replace", {"version": 2, "text": TEXT.replace("t_counter", "nothing")}),
-                                       ("remedies", {"version": 3}), ("keep", {"what": "file"}),
+                                       ("remedies", {"version": 3}), ("transitions", {"version": 3}),
+                                       ("keep", {"what": "file"}),
                                        ("edit", {"version": 4, "acts": [rate(50)]}), ("write", {"version": 5})):
                 with self.subTest(method):
                     name = "bench_library" if method == "library" else method + "_result"
@@ -96,7 +98,8 @@ class Drafts(unittest.TestCase):
         wrong = {"draft": [{"version": 1}], "edit": [{}, {"version": 1}, {"version": 1, "acts": {}},
                                                      {"version": 1, "acts": [1]}, {"version": "1", "acts": []}],
                  "replace": [{"version": 1, "text": None}, {"version": 0, "text": ""}, {"version": 1.5, "text": ""}],
-                 "remedies": [{}, {"version": -1}], "differences": [{"text": 1}], "write": [{}, {"version": True}],
+                 "remedies": [{}, {"version": -1}], "transitions": [{}],
+                 "differences": [{"text": 1}], "write": [{}, {"version": True}],
                  "keep": [{}, {"what": "both"}], "start": [{"file": "/etc/passwd"}], "output": [{"pid": 1}]}
         with self.server.open() as page:
             for method, all_parameters in wrong.items():

@@ -347,7 +347,8 @@ class Hostile(unittest.TestCase):
         with self.server.open() as page:
             for method, parameters in (("draft", {}), ("edit", {"version": 1, "acts": []}), ("start", {}),
                                        ("replace", {"version": 1, "text": ""}), ("remedies", {"version": 1}),
-                                       ("differences", {}), ("write", {"version": 1}), ("keep", {"what": "file"})):
+                                       ("transitions", {"version": 1}), ("differences", {}), ("write", {"version": 1}),
+                                       ("keep", {"what": "file"})):
                 answer = page.ask(method, **parameters)
                 JUDGES["answer"].validate(answer)
                 self.assertEqual(answer["error"]["data"]["kind"], "draft", method)

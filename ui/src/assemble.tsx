@@ -10,13 +10,14 @@ import { DraftPicture } from "./draft_picture";
 import { pulledActs } from "./edits";
 import { focusField } from "./edit_field";
 import { DraftCpus, FaultList } from "./fault_list";
-import { boxOf } from "./faults";
+import { boxOf, stepOf } from "./faults";
 import { addTask, assembleKeys, takeKey } from "./keys";
 import { DraftBanners, runsFile, whyNot } from "./lamps";
 import { meanAndLongest } from "./load";
 import { Machine, MachineState } from "./machine";
 import { mark } from "./marks";
 import type { BenchHello, Fault, LibraryComponent, Outline, TaskPort } from "./protocol";
+import { chooseBox, goToStep, SequenceForm, StepsPanel } from "./steps_panel";
 import { useStore } from "./store";
 import { TaskForm } from "./task_form";
 import { taskAt } from "./text_places";
@@ -95,12 +96,13 @@ interface Props { machine: Machine | null; machineState: MachineState | null; be
 
 export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
   const state = useStore(draft.state);
-  const { chosen, variable, zoom } = useStore(view);
+  const { chosen, variable, zoom, areStepsOpen: wantsSteps } = useStore(view);
   const { isOpen: isTrying } = useStore(tried);
   const [place, setPlace] = useState<TextPlace | null>(null);
   const [line, setLine] = useState(0);
   const { draft: now, picture, outline } = state;
   const [canvas, fit] = useFit(picture);
+  const areStepsOpen = wantsSteps && !isTrying && outline !== null;
   const hasPicture = picture !== null && picture.boxes.length > 0;
   useEffect(() => { if (hasPicture) fit(); }, [picture?.boxes.length]);  // other acts leave the zoom as it is
   useEffect(() => {
@@ -120,7 +122,8 @@ export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
   const still = standingStill(state, why);
   const of = outline?.variables.find((one) => one.variable === variable);
   const go = (fault: Fault) => {
-    const box = boxOf(fault, outline);
+    const box = boxOf(fault, outline), step = stepOf(fault);
+    if (step !== null) goToStep(fault, step);
     if (box !== "") choose([box]);
     document.querySelector(`g.box[data-task="${CSS.escape(box)}"]`)
       ?.scrollIntoView({ block: "nearest", inline: "nearest" });
@@ -140,7 +143,7 @@ export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
         <Canvas place={canvas} fit={fit}>
           {hasPicture && picture
             ? <DraftPicture picture={picture} faults={analysis.report.faults} zoom={zoom} chosen={chosen} link={link}
-                            variable={variable} cursorTask={cursorTask} choose={choose} why={still}
+                            variable={variable} cursorTask={cursorTask} choose={chooseBox} why={still}
                             showVariable={showVariable} pressPort={pressPort} />
             : <Empty state={state} why={why} />}
         </Canvas>
@@ -148,13 +151,15 @@ export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
           {still !== "" && <p className="hint">{still}</p>}
           {outline && (of || task) && <Button label="Add a task" title="key n" press={addTask} />}
           {outline && (of ? <VariableForm key={variable} of={of} why={still} />
+            : task?.task === "sequence" && outline.sequence ? <SequenceForm />
             : task ? <TaskForm key={task.task} outline={outline} task={task} text={text} why={still}
                                measured={measured} faults={analysis.report.faults} />
             : <AssemblyForm outline={outline} text={text} why={still} file={now.file} />)}
         </aside>
       </main>
       {isTrying && <TryPanel why={why} />}
-      <section className="panels drawer" aria-label="Faults and text" hidden={isTrying}>
+      {areStepsOpen && <StepsPanel outline={outline} state={state} analysis={analysis} why={still} go={go} />}
+      <section className="panels drawer" aria-label="Faults and text" hidden={isTrying || areStepsOpen}>
         <FaultList analysis={analysis} offers={state.offers} why={why} go={go} />
         <TextPanel text={text} why={why} place={place} atLine={setLine} />
       </section>

@@ -2,7 +2,7 @@
 // The draft as a whole, while no task is chosen: a task to add, operator variables, constants, configurations, rtpus.
 import { Button } from "./controls";
 import { draft } from "./draft";
-import { freeName, memberActs, renameActs, rtpuActs, valueActs, variablePath } from "./edits";
+import { freeName, memberActs, ownTasks, renameActs, rtpuActs, valueActs, variablePath } from "./edits";
 import { AddForm, EditChoice, EditField, MoreOf } from "./edit_field";
 import type { Outline, OutlineVariable } from "./protocol";
 import { joinPath } from "./text";
@@ -61,7 +61,7 @@ function Configurations({ outline, text, why }: Props) {
                      present={name} why={why}
                      commit={(to) => draft.edit([{ act: "rename", path: `configurations/${name}`, to }])} />
           {safe_when !== null && <p className="hint">safe when {safe_when}</p>}
-          {outline.tasks.map(({ task }) => (
+          {ownTasks(outline).map(({ task }) => (
             <label key={task} className="check"><input type="checkbox" checked={tasks.includes(task)} title={why}
                 disabled={why !== ""} aria-label={`${task} in ${name}`}
                 onChange={(event) => void draft.press(
@@ -75,8 +75,8 @@ function Configurations({ outline, text, why }: Props) {
           </div>
         </details>))}
       <AddForm label="Add configuration" why={why} fields={[{ id: "add-configuration-name", label: "name" }]}
-               commit={([name]) => draft.edit([{ act: "set", path: `configurations/${name}`,
-                 value: `[${outline.tasks.filter((one) => !one.standby_for).map((one) => one.task).join(", ")}]` }])} />
+               commit={([name]) => draft.edit([{ act: "set", path: `configurations/${name}`, value: `[${
+                 ownTasks(outline).filter((one) => !one.standby_for).map((one) => one.task).join(", ")}]` }])} />
     </section>
   );
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Markdown as elements, made of the tokens of marked: every text of a document stays a text.
 import { createElement, Fragment, ReactNode, useEffect, useState } from "react";
-import { marked } from "marked";
+import { Lexer, type marked } from "marked";
 import { formula, MathNode } from "./math";
 import { anchorOf, hashWith, Place, Target, targetOf } from "./place";
 
@@ -135,4 +135,4 @@ function blocks(tokens: marked.Token[], around: Around): ReactNode {
 }
 
 /** The elements of a Markdown text. */
-export const markdown = (text: string, around: Around): ReactNode => blocks(marked.lexer(text), around);
+export const markdown = (text: string, around: Around): ReactNode => blocks(Lexer.lex(text), around);

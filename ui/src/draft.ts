@@ -30,7 +30,7 @@ const EMPTY: DraftState = {
 };
 
 const OUTPUT_MS = 500;
-const OFFERS_MS = 200;  // acts and typed letters that follow each other need no offers in between
+export const OFFERS_MS = 200;  // acts and typed letters that follow each other need no offers in between
 
 /** What a person reads of a refused act. */
 export function sentenceOf(why: unknown): string {

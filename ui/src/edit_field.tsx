@@ -19,12 +19,14 @@ interface Props {
   note?: string;
   title?: string;
   list?: string;
+  /** In place of `list`: words that may follow the typed ones. */
+  complete?: (typed: string) => string[];
 }
 
 const idOf = (mark: Props["mark"]) => mark.join("-").replace(/\s/g, "~");
 
 export function EditField(
-  { label, name, present, mark, why, commit, placeholder, note = "", title = "", list }: Props) {
+  { label, name, present, mark, why, commit, placeholder, note = "", title = "", list, complete }: Props) {
   const [typed, type] = useState<string | null>(null);
   const [refusal, refuse] = useState("");
   const sent = useRef<string | null>(null);
@@ -43,7 +45,8 @@ export function EditField(
     <div className="field line">
       <label htmlFor={id}>{label}{note !== "" && <span className="unit"> {note}</span>}</label>
       <input id={id} {...{ [`data-${mark[0]}`]: mark[1] }} value={typed ?? present} placeholder={placeholder}
-             aria-label={name} title={why || title || "Enter sets it"} readOnly={why !== ""} list={list}
+             aria-label={name} title={why || title || "Enter sets it"} readOnly={why !== ""}
+             list={complete ? `${id}-words` : list}
              spellCheck={false} autoComplete="off"
              aria-invalid={refusal !== "" || undefined} aria-describedby={refusal !== "" ? `${id}-why` : undefined}
              className={typed === null || typed === present ? "" : "edited"}
@@ -53,6 +56,8 @@ export function EditField(
                if (event.key === "Enter") void send(true);
                onEscape(restore)(event);
              }} />
+      {complete && <datalist id={`${id}-words`}>{complete(typed ?? present).map((one) => (
+        <option key={one} value={one} />))}</datalist>}
       {refusal !== "" && <p id={`${id}-why`} className="fault" role="alert">{refusal}</p>}
     </div>
   );
@@ -60,7 +65,7 @@ export function EditField(
 
 /** A value out of a few. */
 export function EditChoice({ label, name, present, mark, why, commit, options }:
-  Omit<Props, "placeholder" | "note" | "title" | "list"> & { options: [value: string, words: string][] }) {
+  Omit<Props, "placeholder" | "note" | "title" | "list" | "complete"> & { options: [value: string, words: string][] }) {
   const [refusal, refuse] = useState("");
   const id = idOf(mark);
   const known = options.some(([value]) => value === present) ? options : [[present, present] as const, ...options];

@@ -66,10 +66,15 @@ export const instanceActs = (task: string, port: OutlineTask["repeated"][number]
 export const removedInstance = (task: string, port: OutlinePort): EditAct[] =>
   [{ act: "remove", path: `tasks/${task}/${LIST[port.kind]}/${port.declared}/${instanceOf(port.port) ?? 0}` }];
 
+/** The tasks of the text: the key `sequence` makes one more. */
+export const ownTasks = ({ tasks, sequence }: Outline): OutlineTask[] =>
+  tasks.filter((one) => !sequence || one.task !== "sequence");
+
 /** Puts a task into a configuration, or takes it out. */
 export function memberActs(text: string, outline: Outline, name: string, task: string, isMember: boolean): EditAct[] {
   const written = membersAt(text, `configurations/${name}`);
-  const members = written?.members ?? outline.configurations.find((one) => one.configuration === name)?.tasks ?? [];
+  const present = outline.configurations.find((one) => one.configuration === name)?.tasks ?? [];
+  const members = written?.members ?? present.filter((one) => ownTasks(outline).some((own) => own.task === one));
   if (members.includes(task) === isMember) return [];
   const value = isMember ? [...members, task] : members.filter((one) => one !== task);
   return [{ act: "set", path: written?.path ?? `configurations/${name}`, value: `[${value.join(", ")}]` }];

@@ -4,13 +4,14 @@ import { useLayoutEffect, useRef } from "react";
 import { Button } from "./controls";
 import { draft } from "./draft";
 import { cpuVerdicts } from "./faults";
-import type { Analysis, Fault, Offer } from "./protocol";
+import type { Analysis, EditAct, Fault, Offer } from "./protocol";
 
 const MOST_SHOWN = 200;
 
 /** Gives the focus to the first button of a fault, or to the fault. `number`: at least that of the fault. */
 function focusFault(number: number): void {
-  const all = [...document.querySelectorAll<HTMLElement>("li[data-fault]")];
+  const all = [...document.querySelectorAll<HTMLElement>("li[data-fault]")]
+    .filter((one) => one.getClientRects().length > 0);
   const next = all.find((one) => Number(one.dataset.fault) >= number) ?? all[0];
   (next?.querySelector<HTMLElement>(".acts button") ?? next?.querySelector<HTMLElement>(".link"))?.focus();
 }
@@ -20,6 +21,27 @@ export function focusNextFault(): void {
   const focused = document.activeElement, present = focused?.closest<HTMLElement>("li[data-fault]");
   const isBefore = focused?.matches(".link") && present?.querySelector(".acts button");
   focusFault(present ? Number(present.dataset.fault) + (isBefore ? 0 : 1) : 0);
+}
+
+/** A fault with edits that remedy it. */
+export function FaultLine({ fault, number, offers, why, go, press }: {
+  fault: Fault; number: number; offers: Offer[]; why: string; go: (fault: Fault) => void;
+  press: (number: number, acts: EditAct[]) => void;
+}) {
+  return (
+    <li data-fault={number} className={fault.severity}
+        onClick={(event) => { if (!(event.target as Element).closest("button")) go(fault); }}>
+      <span role="button" tabIndex={0} className="link" onKeyDown={(event) => {
+        if (event.key !== " " && event.key !== "Enter") return;
+        event.preventDefault();
+        go(fault);
+      }}>
+        {fault.severity === "warning" && "warning: "}{fault.message}</span>
+      <span className="soft"> {fault.line > 0 && `line ${fault.line}`} {fault.remedy}</span>
+      <span className="acts">{offers.filter((offer) => offer.fault === number).map((offer) => (
+        <Button key={offer.label} label={offer.label} forbidden={why}
+                press={() => press(number, offer.acts)} />))}</span>
+    </li>);
 }
 
 export function FaultList({ analysis, offers, why, go }:
@@ -37,19 +59,8 @@ export function FaultList({ analysis, offers, why, go }:
       {analysis.report.legal && <p className="hint">The draft is legal.</p>}
       <ol aria-label="Faults, in order of their place">
         {faults.slice(0, MOST_SHOWN).map((fault, number) => (
-          <li key={number} data-fault={number} className={fault.severity}
-              onClick={(event) => { if (!(event.target as Element).closest("button")) go(fault); }}>
-            <span role="button" tabIndex={0} className="link" onKeyDown={(event) => {
-              if (event.key !== " " && event.key !== "Enter") return;
-              event.preventDefault();
-              go(fault);
-            }}>
-              {fault.severity === "warning" && "warning: "}{fault.message}</span>
-            <span className="soft"> {fault.line > 0 && `line ${fault.line}`} {fault.remedy}</span>
-            <span className="acts">{offers.filter((offer) => offer.fault === number).map((offer) => (
-              <Button key={offer.label} label={offer.label} forbidden={why}
-                      press={() => { pressed.current = number; void draft.press(offer.acts); }} />))}</span>
-          </li>))}
+          <FaultLine key={number} fault={fault} number={number} offers={offers} why={why} go={go}
+                     press={(at, acts) => { pressed.current = at; void draft.press(acts); }} />))}
       </ol>
       {faults.length > MOST_SHOWN && <p className="hint">{faults.length - MOST_SHOWN} more are not shown.</p>}
     </section>

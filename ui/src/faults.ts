@@ -13,10 +13,18 @@ export function faultsAt(faults: Fault[], task: string, port?: string): string {
     .map((fault) => fault.message).join("\n");
 }
 
+/** The step that a fault belongs to, from 1; 0: the sequence as a whole; null: neither. */
+export function stepOf({ path, rule }: Fault): number | null {
+  const number = /^sequence\/(?:steps\/)?(\d+)/.exec(path)?.[1];
+  if (number !== undefined) return Number(number) + 1;
+  return /^sequence(\/|$)/.test(path) || rule.startsWith("sequence-") ? 0 : null;
+}
+
 /** The box that a fault leads to; "": it leads to the text alone. */
 export function boxOf(fault: Fault, outline: Outline | null): string {
   const tasks = (outline?.tasks ?? []).map((task) => task.task);
-  const named = fault.task !== "" ? fault.task : /^tasks\/([^/]+)/.exec(fault.path)?.[1] ?? "";
+  const named = stepOf(fault) !== null ? "sequence" : fault.task !== "" ? fault.task
+    : /^tasks\/([^/]+)/.exec(fault.path)?.[1] ?? "";
   return tasks.includes(named) ? named : "";
 }
 

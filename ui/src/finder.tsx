@@ -63,6 +63,7 @@ const KEYS: [string, string][] = [
   ["F8", "Assemble: to the next fault and its first remedy"],
   ["Delete", "Assemble: remove the chosen task"], ["Ctrl-Z, Ctrl-Y", "Assemble: undo an act, and do it again"],
   ["Ctrl-S", "Assemble: save the draft to FILE"], ["t", "Assemble: try the draft in virtual time"],
+  ["s", "Assemble: the steps of the sequence"],
   ["s", "Look: the scope"], ["Enter, Escape in a field", "Assemble: carry the act out; restore"],
   ["w", "why: where the values of the chosen task come from"], ["Shift-F", "raise the FLAG, at once"],
   ["Ctrl-K", "find anything by name"], ["/", "the library: search by word, port, unit, paper"],

@@ -8,6 +8,7 @@ import { raiseFlag } from "./header";
 import { begin } from "./inspector";
 import type { Machine } from "./machine";
 import { go } from "./place";
+import { openSteps } from "./steps_panel";
 import { undoKey } from "./text_panel";
 import { tryDraft } from "./trial";
 import { choose, view, zoomBy } from "./view";
@@ -51,6 +52,7 @@ export const assembleKeys: Keys = (event) => {
   else if (event.key === "n") addTask();
   else if (event.key === "F8") focusNextFault();
   else if (event.key === "t") void tryDraft();
+  else if (event.key === "s") openSteps();
   else if (event.key === "Delete" && outline?.tasks.some((one) => one.task === task))
     void draft.press(removedTask(now?.analysis.text ?? "", outline, task!));
   else return false;

@@ -5,6 +5,7 @@ import { Button } from "./controls";
 import { draft, DraftState, lamps, namesOf } from "./draft";
 import { forbidden, Machine, MachineState } from "./machine";
 import type { BenchHello } from "./protocol";
+import { openSteps } from "./steps_panel";
 import { joinPath } from "./text";
 import { tryDraft } from "./trial";
 import { ask } from "./view";
@@ -75,6 +76,8 @@ export function Lamps({ state, machine, machineState, bench, why }: Props) {
               forbidden={why || (now.outside ? "first take FILE or keep the draft" : "")}>
         Save</Button>
       <Button label="Try" title="run the draft in virtual time (key t)" press={() => void tryDraft()} forbidden={why} />
+      <button type="button" data-steps-button title="the sequence of the draft (key s)"
+              onClick={openSteps}>Steps</button>
       {!isRunning && <Button label="Start" title={`chimera run ${now.file}`} press={() => void draft.start()}
                              forbidden={why || (now.exists && !now.touched ? "" : "save FILE first")} />}
       {isRunning && machineLamp === "differs" && !now.touched &&

@@ -215,6 +215,7 @@ const outline: Outline = {
     outlineTask("arm", 14, [outlinePort("x", "in-var", null), outlinePort("model", "resource", null)], null)],
   configurations: ["run", "safe", "hold"].map((configuration) => (
     { configuration, tasks: membersAt(TEXT, `configurations/${configuration}`)!.members, safe_when: null })),
+  sequence: null,
 };
 const link = (task: string, port: string, variable: string, instance: number | null = null): EditAct[] =>
   [{ act: "link", task, port, variable, instance }];

@@ -109,7 +109,7 @@ test("present values of operator variables become edits where they differ", () =
   const variable = (name: string, origin: "operator" | null, value: string | null) => ({
     variable: name, constant: false, origin, value, type: "float64", unit: "1", shape: "", producers: [],
     consumers: [] });
-  const outline: Outline = { subsystem: "s", start: "", tasks: [], configurations: [], rtpus: [],
+  const outline: Outline = { subsystem: "s", start: "", tasks: [], configurations: [], rtpus: [], sequence: null,
     variables: [variable("kp", "operator", "5 N.m"), variable("kd", "operator", "1"), variable("q", null, null)] };
   const present = new Map([["kp", "7 N.m"], ["kd", "1"], ["q", "3"], ["none", "4"]]);
   assert.deepEqual(tuneActs(outline, present), [{ act: "set", path: "operator/kp", value: "7 N.m" }]);

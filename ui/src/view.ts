@@ -21,6 +21,7 @@ export interface View {
   question: Question | null;
   isFinding: boolean;
   isHelping: boolean;
+  areStepsOpen: boolean;
 }
 
 const KEPT: (keyof View)[] = ["mode", "machine", "bench", "chosen", "variable", "panel", "zoom"];
@@ -37,7 +38,7 @@ function kept(): Partial<View> {
 export const view = new Store<View>({
   mode: "", machine: "", bench: 0,
   chosen: [], variable: "", panel: "events", zoom: 1, ...kept(), question: null, isFinding: false,
-  isHelping: false,
+  isHelping: false, areStepsOpen: false,
 });
 
 view.subscribe(() => {

@@ -12,6 +12,7 @@
 #include "chimera/description/draft_values.h"
 #include "chimera/description/edit/join_tree.h"
 #include "chimera/description/keys.h"
+#include "chimera/description/sequence.h"
 #include "chimera/description/edit/rename_tree.h"
 #include "chimera/description/edit/same_value.h"
 #include "chimera/description/yaml_reader.h"
@@ -248,7 +249,13 @@ Result<void> link_port(Node& root, const LinkPort& link) {
 }
 
 Result<void> act_on(Node& root, const EditAct& one) {
-  return std::visit([&root](const auto& what) { return act(root, what); }, one);
+  const EditPath task = {"tasks", kSequenceTask};
+  const bool is_of_key = found(root, {kSequenceTask}) != nullptr && found(root, task) == nullptr;
+  const Result<void> done = std::visit([&root](const auto& what) { return act(root, what); }, one);
+  if (!is_of_key) return done;
+  const bool fails_at_it = !done && (std::string(done.error().where.view()) + '/').starts_with(text_of(task) + '/');
+  if (!fails_at_it && found(root, task) == nullptr) return done;
+  return no_edit(task, "task 'sequence' comes from the key 'sequence': edit its steps");
 }
 
 }  // namespace chimera

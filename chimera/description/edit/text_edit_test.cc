@@ -174,6 +174,22 @@ TEST(TextEdit, BeginsAnEmptyText) {
   EXPECT_EQ(edited("subsystem: s", {add("a", "b")}), "subsystem: s\ntasks:\n  a: {component: b}");
 }
 
+TEST(TextEdit, GivesEachMapOfANewListALine) {
+  const std::string tasks = "subsystem: s\ntasks: {a: {}}\n";
+  const std::string list = tasks + "sequence:\n  - {switch: run, until: \"q[0] > 1 rad\"}\n";
+  const EditAct first = set("sequence", "[{switch: run, until: 'q[0] > 1 rad'}]");
+  expect_edit(tasks, {first}, list);
+  expect_edit(tasks + "sequence: []\n", {first}, list);
+  expect_edit(tasks + "sequence:\n", {first}, list);
+  expect_edit(list, {set("sequence/1", "{switch: rest}")}, list + "  - {switch: rest}\n");
+  expect_edit(list, {set("sequence/0/name", "go"), set("sequence/0/within", "1 s")},
+              replaced(replaced(list, "{switch", "{name: go, switch"), "\"}", "\", within: 1 s}"));
+  expect_edit(list, {remove("sequence"), set("sequence", "{repeat: true, steps: [{switch: run}, {switch: b}]}")},
+              tasks + "sequence:\n  repeat: true\n  steps:\n    - {switch: run}\n    - {switch: b}\n");
+  expect_edit(tasks + "sequence: [{switch: run}]\n", {set("sequence/1", "{switch: rest}")},
+              tasks + "sequence: [{switch: run}, {switch: rest}]\n");
+}
+
 TEST(TextEdit, LinksAPortByAnAlias) {
   expect_edit(kFlow, {link("arm", "tau", "torque")},
               replaced(kFlow, "rtpu: servo", "rtpu: servo, alias: {tau: torque}"));
@@ -421,6 +437,19 @@ TEST(TextEdit, ReplacesValuesThatHaveLinesOfTheirOwnOneByOne) {
             head + "  pose:\n    x: 1 m\n    y: 3 m\n");
   EXPECT_EQ(saved(head + "  kp:\n    - 1\n    - 2\n", {{"kp", "[1, 3, 4]"}}),
             head + "  kp:\n    - 1\n    - 3\n    - 4\n");
+}
+
+TEST(TextEdit, RefusesEachActOnTheTaskThatTheKeyOfASequenceMakes) {
+  const std::string text = "subsystem: s\ntasks: {pid: }\nsequence: [{switch: run}]\n";
+  const EditAct acts[] = {set("tasks/sequence/rate", "50 Hz"), set("tasks/sequence", "{rate: 50 Hz}"),
+                          remove("tasks/sequence"), rename("tasks/sequence", "steps"), add("sequence", "sequence"),
+                          link("sequence", "value", "q"), rename("tasks/pid", "sequence"),
+                          rename("variables/q", "p", {{"sequence", "q"}})};
+  for (const EditAct& act : acts)
+    EXPECT_EQ(edited(text, {act}), "tasks/sequence: task 'sequence' comes from the key 'sequence': edit its steps");
+  EXPECT_EQ(edited(text, {set("tasks/sequences/rate", "1 Hz")}), "tasks/sequences: no task 'sequences'; there is: pid");
+  expect_edit("tasks: {sequence: {rate: 1 Hz}}\nsequence: []\n", {set("tasks/sequence/rate", "2 Hz")},
+              "tasks: {sequence: {rate: 2 Hz}}\nsequence: []\n");
 }
 
 }  // namespace

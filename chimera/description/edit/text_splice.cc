@@ -22,7 +22,7 @@ struct Splice {
 /// How the text around a value is written.
 struct Style {
   bool in_brackets = false;
-  bool block = false;      ///< a new map as value gets lines of its own
+  bool block = false;      ///< a new map as value gets lines of its own; a list of maps gets them anyway
   std::size_t indent = 0;  ///< of the entry; of such lines: `inner` more
   std::size_t inner = 2;
   bool is_root = false;
@@ -47,6 +47,13 @@ std::vector<std::size_t> paired(const Node& old, const Node& now) {
     if (next < old.items.size()) from[i] = next++;
   }
   return from;
+}
+
+/// True if a new value of a key gets lines of its own.
+bool has_lines(const Node& value, const Style& style) {
+  const auto is_filled_map = [](const Node& node) { return node.is_map() && !node.items.empty(); };
+  if (style.in_brackets || value.items.empty()) return false;
+  return value.is_list() ? std::ranges::all_of(value.items, is_filled_map) : style.block && is_filled_map(value);
 }
 
 class Splicer {
@@ -119,16 +126,15 @@ class Splicer {
     const std::string words = written_text(item, style.in_brackets);
     if (parent.is_list()) return (style.in_brackets ? "" : "- ") + words;
     const std::string key = key_words(parent.keys[i].text, style.in_brackets) + ":";
-    if (!style.in_brackets && style.block && item.is_map() && !item.items.empty())
-      return key + lines_of(item, style, line_break);
+    if (has_lines(item, style)) return key + lines_of(item, style, line_break);
     return words.empty() ? key : key + " " + words;
   }
-  /// The entries of a map in lines of their own, each behind a line end.
-  std::string lines_of(const Node& map, const Style& style, std::string_view line_break) const {
+  /// The entries of a map or list in lines of their own, each behind a line end.
+  std::string lines_of(const Node& parts, const Style& style, std::string_view line_break) const {
     std::string all;
     const Style inner{.indent = style.indent + style.inner};
-    for (std::size_t i = 0; i < map.items.size(); ++i)
-      all.append(line_break).append(inner.indent, ' ').append(entry(map, i, inner, line_break));
+    for (std::size_t i = 0; i < parts.items.size(); ++i)
+      all.append(line_break).append(inner.indent, ' ').append(entry(parts, i, inner, line_break));
     return all;
   }
 
@@ -197,11 +203,11 @@ class Splicer {
   void replace(const Node& old, const Node& now, const TextPart& part, const Style& style) {
     touch(part.after, old.is_none() ? places_.line_end(part.end) : part.end);
     const std::size_t end_of_line = places_.line_end(part.end);
-    const bool has_lines = style.block && !style.in_brackets && now.is_map() && !now.items.empty();
+    const bool is_in_lines = has_lines(now, style);
     const std::string words = written_text(now, style.in_brackets);
     if (old.is_none()) {
       if (part.end > part.after) return splice(places_.skip_blanks(part.after), part.end, words);
-      if (has_lines) return splice(end_of_line, end_of_line, lines_of(now, style, places_.line_break(part.after)));
+      if (is_in_lines) return splice(end_of_line, end_of_line, lines_of(now, style, places_.line_break(part.after)));
       return splice(part.after, part.after, (part.has_colon ? " " : ": ") + words);
     }
     if (old.is_scalar()) {
@@ -209,7 +215,7 @@ class Splicer {
       const bool keeps_quote = quote == '\'' && now.is_scalar() && now.quoted;
       return splice(part.value, part.end, keeps_quote ? quoted_words(now.text, quote) : words);
     }
-    if (old.items.empty() && has_lines) {  // empty brackets have no style
+    if (old.items.empty() && is_in_lines) {  // empty brackets have no style
       splice(part.after, part.end, "");
       return splice(end_of_line, end_of_line, lines_of(now, style, places_.line_break(part.after)));
     }

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 
+#include "chimera/analysis/mode_report.h"
 #include "chimera/analysis/schedule_report.h"
 #include "chimera/base/hosted/wording.h"
 #include "chimera/description/edit/same_value.h"
@@ -84,6 +85,13 @@ std::string offers_json(const Question& question, const Library& library) {
   return Json{{"version", question.version}, {"offers", std::move(offers)}}.dump(Json::Style::kAsMade);
 }
 
+std::string modes_json(const Question& question, const Library& library) {
+  const Verdict verdict = verify(read_description(question.text, question.file), library);
+  const std::string modes =
+      verdict.configuration ? mode_json(*verdict.configuration, mode_report(*verdict.configuration, library)) : "null";
+  return "{\"version\":" + std::to_string(question.version) + ",\"modes\":" + modes + "}";
+}
+
 Result<Node> tree_of(const std::string& text, const char* which) {
   Report faults;
   auto tree = read_yaml(text, faults);
@@ -127,6 +135,7 @@ Result<AnalystAnswer> answer_of(const Question& question, const Library& library
   switch (question.kind) {
     case Question::Kind::kDraft: return draft_answer(question, library);
     case Question::Kind::kOffers: return AnalystAnswer{offers_json(question, library), {}};
+    case Question::Kind::kModes: return AnalystAnswer{modes_json(question, library), {}};
     case Question::Kind::kDifferences: return differences(question, library);
     default: return AnalystAnswer{report_or_schedule(question, library), {}};
   }

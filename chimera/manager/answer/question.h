@@ -14,12 +14,12 @@ namespace chimera::manager {
 
 /// A question about a description that is independent of the running one.
 struct Question {
-  enum class Kind : std::uint16_t { kCheck, kSchedule, kDraft, kOffers, kDifferences };
+  enum class Kind : std::uint16_t { kCheck, kSchedule, kDraft, kOffers, kModes, kDifferences };
   Kind kind = Kind::kCheck;
   std::string file;  ///< name for messages
   std::string text;
   std::string with = {};      ///< kDraft: a JSON array of acts, or empty; kDifferences: the other text
-  std::uint64_t version = 0;  ///< written into the answer of the last three kinds
+  std::uint64_t version = 0;  ///< written into the answer of the last four kinds
 };
 
 /// 32 bytes over a Channel, with memory. The memory of a question: `file_bytes` of the name, `text_bytes` of the text,
@@ -56,8 +56,8 @@ struct AnalystAnswer {
 };
 
 /// kCheck, kSchedule: docs/formats/run.md, the report of `check`, or for a legal text the analysis of `schedule`. The
-/// other kinds: docs/formats/web.md, `draft`, `remedies`, `differences`. Refuses acts that cannot be done to the text,
-/// and differences of a text that cannot be read, with the place. Context: setup; may take seconds.
+/// other kinds: docs/formats/web.md, `draft`, `remedies`, `transitions`, `differences`. Refuses acts that cannot be
+/// done to the text, and differences of a text that cannot be read, with the place. Context: setup; may take seconds.
 Result<AnalystAnswer> answer_of(const Question& question, const Library& library);
 
 }  // namespace chimera::manager

@@ -115,6 +115,17 @@ TEST(QuestionOfOffers, NamesEachFaultByItsNumberInTheReport) {
             R"("acts":[{"act":"set","path":"start","value":"run"}]}]})");
 }
 
+TEST(QuestionOfModes, HasTheTransitionsOfALegalTextOnly) {
+  const auto asked = [](const std::string& text) {
+    return Json::parse(answer_of({Question::Kind::kModes, "a.yaml", text, "", 4}, library())->json);
+  };
+  const Json legal = asked(kFakeText), faulty = asked(with(kFakeText, "start: run", "start: rnu"));
+  EXPECT_EQ(legal["version"], 4);
+  EXPECT_EQ(legal["modes"]["transitions"].size(), 2u) << legal;
+  EXPECT_EQ(legal["modes"]["transitions"][0]["to"], "rest");
+  EXPECT_EQ(faulty.dump(), R"({"modes":null,"version":4})");
+}
+
 /// The paths at which the texts differ.
 std::string differ(const std::string& a, const std::string& b) {
   const auto answer = answer_of({Question::Kind::kDifferences, "", a, b, 5}, library());
