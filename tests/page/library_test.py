@@ -10,6 +10,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent / "harness"))
 import wire  # noqa: E402
 from access import faint, unnamed  # noqa: E402
 from case import PageTest, main  # noqa: E402
+from machine import Machine  # noqa: E402
 from page import Keys  # noqa: E402
 
 SEARCH = "#library-search"
@@ -139,6 +140,15 @@ class LibraryTest(PageTest):
         self.page.await_one("[data-fits='measured'] a")
         self.assertEqual(faint(self.browser), [])
         self.assertEqual(unnamed(self.browser), [])
+
+    def test_a_component_has_the_times_that_its_tasks_need_here(self):
+        self.open("&doc=component/gain")
+        self.page.await_text("[data-facts]", "(its sheet) · not measured here: nothing runs that uses it")
+        machine = self.using(Machine(self.runtime))
+        for task in ("strong", "shown"):
+            machine.await_cycles(task)
+        times = "/measured here: strong \\d\\S*s, longest \\d\\S*s; shown \\d\\S*s, longest \\d\\S*s$/"
+        self.page.await_that(f"{times}.test(document.querySelector('[data-facts]').textContent)", "the times of both")
 
     def test_words_that_nothing_has_are_said(self):
         self.open()

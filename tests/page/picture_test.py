@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Takes the picture of README.md: the page on examples/01_puma_pid, with a chosen task and the cause of its output.
-It goes to BUILD/page_pictures; with CHIMERA_WRITE_PICTURES=1 to docs/pictures (from a release build, with real-time
-rights, so that it shows no warning)."""
+"""Takes pictures: for README.md the page on examples/01_puma_pid, with a chosen task and the cause of its output; for
+docs/howto/operate.md the large view of examples/21_sequence, slower. They go to BUILD/page_pictures; with
+CHIMERA_WRITE_PICTURES=1 to docs/pictures (from a release build, with real-time rights, so that no warning shows)."""
 import os
 import pathlib
 import sys
@@ -17,10 +17,26 @@ IS_WRITTEN = os.environ.get("CHIMERA_WRITE_PICTURES") == "1"
 
 
 class Picture(PageTest):
+    def run_lesson(self, folder, name, slower=lambda text: text):
+        text = slower((SOURCE / "examples" / folder / f"{name}.yaml").read_text())
+        return Machine(self.runtime, text, name, ("--priority", "50") if IS_WRITTEN else ())
+
+    def take(self, name):
+        folder = SOURCE / "docs" / "pictures" if IS_WRITTEN else BUILD / "page_pictures"
+        folder.mkdir(exist_ok=True)
+        self.assertTrue(self.browser.driver.save_screenshot(str(folder / name)))
+
+    def test_the_large_view_of_a_sequence_is_in_the_picture_of_operating(self):
+        self.using(self.run_lesson("21_sequence", "cell", lambda text: text.replace(
+            "duration: 1.8 s", "duration: 18 s").replace("within: 3 s", "within: 20 s")))
+        self.page.open(self.web().link + "&doc=steps")
+        self.page.await_one("[data-present='1']")
+        self.page.await_one(".large progress")
+        self.page.await_one(".large [data-condition-value]:not(:empty)")
+        self.take("steps.png")
+
     def test_the_whole_application_is_in_the_picture_of_the_readme(self):
-        text = (SOURCE / "examples" / "01_puma_pid" / "puma_pid.yaml").read_text()
-        arguments = ("--priority", "50") if IS_WRITTEN else ()
-        self.look_at(Machine(self.runtime, text, "puma_pid", arguments))
+        self.look_at(self.run_lesson("01_puma_pid", "puma_pid"))
         self.page.press("w")
         self.page.one("g.box[data-task=pid]").click()
         self.page.await_one("[data-why=tau]")
@@ -32,9 +48,7 @@ class Picture(PageTest):
             const box = e.getBoundingClientRect();
             return box.right > place.right || box.bottom > place.bottom; }).map((e) => e.dataset.task);""")
         self.assertEqual(outside, [], "tasks outside of the picture")
-        folder = SOURCE / "docs" / "pictures" if IS_WRITTEN else BUILD / "page_pictures"
-        folder.mkdir(exist_ok=True)
-        self.assertTrue(self.browser.driver.save_screenshot(str(folder / "page.png")))
+        self.take("page.png")
 
 
 if __name__ == "__main__":

@@ -12,13 +12,13 @@ import { DraftCpus, FaultList } from "./fault_list";
 import { boxOf, stepOf } from "./faults";
 import { assembleKeys, takeKey } from "./keys";
 import { DraftBanners, runsFile, whyNot } from "./lamps";
+import { meanAndLongest } from "./load";
 import { Machine, MachineState } from "./machine";
 import { mark } from "./marks";
 import type { BenchHello, Fault, LibraryComponent, Outline, TaskPort } from "./protocol";
 import { chooseBox, goToStep, SequenceForm, StepsPanel } from "./steps_panel";
 import { useStore } from "./store";
 import { TaskForm } from "./task_form";
-import { duration } from "./text";
 import { taskAt } from "./text_places";
 import { TextPanel, TextPlace } from "./text_panel";
 import { tried } from "./trial";
@@ -131,8 +131,7 @@ export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
   };
   const status = runsFile(machineState, bench.file)
     ? machineState?.status?.tasks.find((one) => one.task === task?.task && one.cycles > 0) : undefined;
-  const measured = status
-    ? `measured ${duration(status.execution_ns.mean)}, longest ${duration(status.execution_ns.max)}` : "";
+  const measured = status ? `measured ${meanAndLongest(status)}` : "";
   return (
     <>
       <DraftBanners state={state} why={why} />

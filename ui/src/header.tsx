@@ -26,7 +26,7 @@ export function raiseFlag(machine: Machine, isUp: boolean): void {
   if (forbidden(machine.state.get().hello?.role, "operate") === "") void machine.act("flag", { up: isUp });
 }
 
-function Flag({ machine, state }: { machine: Machine; state: MachineState }) {
+export function Flag({ machine, state }: { machine: Machine; state: MachineState }) {
   const flag = state.status?.flag ?? { up: false, by: [] };
   const isOwn = flag.by.includes("operator");
   const why = forbidden(state.door === "open" ? state.hello?.role : undefined, "operate");

@@ -26,6 +26,8 @@ export interface LibraryProps {
   /** The canvas, which stands beside the search. */
   canvas?: ReactNode;
   close: () => void;
+  /** Execution times of a component in what runs. */
+  measured: (component: string) => string;
 }
 
 /** The answer of a method, asked for again when `what` changes; the reason while there is none. */
@@ -84,15 +86,15 @@ function PortTable({ component }: { component: LibraryComponent }) {
 
 type PageProps = LibraryProps & { around: (base: string) => Around };
 
-function ComponentPage({ component, call, go, add, around }: PageProps & { component: LibraryComponent }) {
+function ComponentPage({ component, call, go, add, around, measured }: PageProps & { component: LibraryComponent }) {
   const { name, rate_hz, time } = component;
   const [sheet, why] = useAnswer<Sheet>(call, "sheet", name, { component: name });
   const facts = [rate_hz === null ? "" : `${rate_hz} Hz by default`, component.aperiodic ? "released by events" : "",
-    time === null ? "" : `${time} (its sheet)`].filter((fact) => fact !== "");
+    time === null ? "" : `${time} (its sheet)`, measured(name)].filter((fact) => fact !== "");
   return (
     <>
       <p className="acts">{add && <Button label="Put on the canvas" press={() => add(component)} />}
-        <span className="soft">{facts.join(" · ")}</span></p>
+        <span className="soft" data-facts>{facts.join(" · ")}</span></p>
       {why !== "" && <p className="fault">{why}</p>}
       {sheet && (sheet.text !== null ? markdown(sheet.text, around(`library/${name}/README.md`))
         : <><h1>{name}</h1><p>{component.doc}</p><PortTable component={component} /></>)}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The load of each CPU, from two answers of `status`. No function here knows the browser.
-import type { CpuStatus, Status } from "./protocol";
+import type { CpuStatus, Status, TaskStatus } from "./protocol";
+import { duration } from "./text";
 
 export interface CpuLoad extends CpuStatus {
   rtpus: string[];
@@ -34,3 +35,7 @@ export function loads(status: Status, before: Status | null): CpuLoad[] {
     };
   });
 }
+
+/** Execution time of a task, as measured. */
+export const meanAndLongest = ({ execution_ns: { mean, max } }: TaskStatus): string =>
+  `${duration(mean)}, longest ${duration(max)}`;

@@ -3,6 +3,7 @@
 // from the last number on.
 import { Door, DoorState, Refusal } from "./door";
 import type { Description, Event, Hello, Reading, Role, Status } from "./protocol";
+import { variablesOf } from "./sequence";
 import { Store } from "./store";
 import { LiveValues } from "./values";
 
@@ -156,8 +157,9 @@ export class Machine {
       this.values.setPeriods(periodsOf(description));
       this.state.set({ hello, description, status, previous: null, version: this.state.get().version + 1 });
       await door.call("subscribe", { to: "status", period_ms: STATUS_MS });
-      const variables = description.variables
-        .filter((v) => !v.constant && elements(v.shape) <= MOST_ELEMENTS).slice(0, MOST_VALUES).map((v) => v.variable);
+      const small = description.variables
+        .filter((v) => !v.constant && elements(v.shape) <= MOST_ELEMENTS).map((v) => v.variable);
+      const variables = [...new Set([...variablesOf(description.sequence), ...small])].slice(0, MOST_VALUES);
       if (variables.length > 0) await door.call("subscribe", { to: "values", period_ms: VALUES_MS, variables });
       const known = this.state.get().events;
       await door.call("subscribe", { to: "events", since: known.length > 0 ? known[known.length - 1]!.number + 1 : 1 });

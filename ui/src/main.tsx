@@ -16,6 +16,7 @@ import { lookKeys, takeKey } from "./keys";
 import { LibraryPage } from "./library";
 import { addedTask } from "./library_acts";
 import { Lamps, runsFile, useRunningText, whyNot } from "./lamps";
+import { meanAndLongest } from "./load";
 import { Machine, MachineState } from "./machine";
 import { mark } from "./marks";
 import { Operator } from "./operator";
@@ -24,6 +25,7 @@ import { PictureView } from "./picture";
 import { followAddress, go, Place, place } from "./place";
 import type { BenchHello, MachineName } from "./protocol";
 import type { LibraryComponent } from "./search";
+import { STEPS_PLACE, StepsPage } from "./sequence_view";
 import { Store, useStore } from "./store";
 import { choose, showVariable, view } from "./view";
 
@@ -100,9 +102,18 @@ function NoMachine({ hello, machines }: { hello: BenchHello | null; machines: Ma
 const callBench = (method: string, parameters: object = {}) => door.call(method, parameters);
 const NO_MACHINE = new Store<MachineState | null>(null);
 
+/** Execution times of the tasks of a component in the subsystem that runs. */
+function measuredHere(state: MachineState | null, component: string): string {
+  const tasks = (state?.door === "open" && state.status?.tasks || []).filter(
+    (task) => task.component === component && task.cycles > 0);
+  return tasks.length === 0 ? "not measured here: nothing runs that uses it"
+    : `measured here: ${tasks.map((task) => `${task.task} ${meanAndLongest(task)}`).join("; ")}`;
+}
+
 /** The library and its documents, beside the canvas of the draft if there is one. */
-function Reading({ at, machine, canvas, why, isOpen }:
-  { at: Place; machine: Machine | null; canvas: ReactNode; why: string; isOpen: boolean }) {
+function Reading({ at, machine, state, canvas, why, isOpen }: {
+  at: Place; machine: Machine | null; state: MachineState | null; canvas: ReactNode; why: string; isOpen: boolean;
+}) {
   const isAssembling = Boolean(canvas);
   useEffect(() => {
     const take = (event: KeyboardEvent) => takeKey(event, machine, () => undefined, () => false);
@@ -120,6 +131,7 @@ function Reading({ at, machine, canvas, why, isOpen }:
   };
   if (!isOpen) return <main><p className="hint">Connecting…</p></main>;
   return <LibraryPage call={callBench} place={at} go={go} close={() => go({ doc: "", at: "" })}
+                      measured={(component) => measuredHere(state, component)}
                       {...(isAssembling ? { add, canvas } : {})} />;
 }
 
@@ -130,6 +142,7 @@ function Modes({ machine, name }: { machine: Machine | null; name: string }) {
   const drafted = useStore(draft.state);
   const isBenchOpen = benchDoor === "open";
   const at = useStore(place);
+  const isLarge = at.doc === STEPS_PLACE;
   const assembly = hello && <AssemblePage machine={machine} machineState={state} bench={hello} isOpen={isBenchOpen} />;
   const banner: Banner | null = benchBanner(benchDoor, sentence);
   useRunningText(machine, runsFile(state, hello?.file ?? null), state?.version ?? 0);
@@ -139,14 +152,16 @@ function Modes({ machine, name }: { machine: Machine | null; name: string }) {
   useEffect(() => markDraft(drafted), [drafted]);
   return (
     <>
-      <Header machine={machine} state={state} machines={machines ?? []} bench={hello} name={name} mode={mode}>
-        {mode === "assemble" && <Lamps state={drafted} machine={machine} machineState={state} bench={hello}
-                                       why={whyNot(hello, isBenchOpen)} />}
-      </Header>
+      {!isLarge &&
+        <Header machine={machine} state={state} machines={machines ?? []} bench={hello} name={name} mode={mode}>
+          {mode === "assemble" && <Lamps state={drafted} machine={machine} machineState={state} bench={hello}
+                                         why={whyNot(hello, isBenchOpen)} />}
+        </Header>}
       <QuestionBox />
       {banner && <Banners banners={[banner]} />}
-      {at.doc !== ""
-        ? <Reading at={at} machine={machine} why={whyNot(hello, isBenchOpen)} isOpen={isBenchOpen}
+      {isLarge ? <StepsPage machine={machine} state={state} />
+        : at.doc !== ""
+        ? <Reading at={at} machine={machine} state={state} why={whyNot(hello, isBenchOpen)} isOpen={isBenchOpen}
                    canvas={mode === "assemble" && assembly} />
         : mode === "assemble" ? assembly
         : machine && state ? <MachinePage key={name} machine={machine} state={state} isBenchOpen={isBenchOpen} />

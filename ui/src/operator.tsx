@@ -1,27 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // The operator variables: a field each, with its unit; a slider for a number, a check box for true and false.
-import { memo, useEffect, useRef, useState } from "react";
+import { memo, useRef, useState } from "react";
 import { bench } from "./bench";
 import { Button } from "./controls";
 import { draft } from "./draft";
 import { runsFile, whyNot } from "./lamps";
 import { forbidden, Machine, MachineState } from "./machine";
-import type { Reading, Variable } from "./protocol";
+import type { Variable } from "./protocol";
 import { useStore } from "./store";
 import { scalar, sliderRange, withUnit } from "./text";
 import { tuneActs } from "./tune";
+import { useReading } from "./values";
 
 /** A slider asks at most this often, in milliseconds; a connection may act 100 times a second. */
 const SLIDER_MS = 120;
-
-/** The reading of an operator variable, drawn again when its text changes. */
-function useReading(machine: Machine, variable: string): Reading | undefined {
-  const [reading, set] = useState(machine.values.reading(variable));
-  useEffect(() => machine.values.watch(variable, (latest) => {
-    set((known) => (known?.text === latest.text ? known : latest));
-  }), [machine, variable]);
-  return reading;
-}
 
 interface FieldProps { machine: Machine; variable: Variable; why: string }
 
@@ -53,7 +45,7 @@ function Slider({ machine, variable, why, shown }: FieldProps & { shown: { value
 }
 
 const Field = memo(function Field({ machine, variable, why }: FieldProps) {
-  const reading = useReading(machine, variable.variable);
+  const { reading } = useReading(machine.values, variable.variable);
   const [typed, type] = useState<string | null>(null);  // while the field has the focus its text stands still
   const present = reading?.text ?? "";
   const set = async (value: unknown) => {
@@ -106,8 +98,9 @@ function TuneButton({ machine, state, variables }: { machine: Machine; state: Ma
 }
 
 export function Operator({ machine, state }: { machine: Machine; state: MachineState }) {
-  const variables = (state.description?.variables ?? []).filter(
-    (v) => !v.constant && (v.operator ?? (v.given && v.producers.length === 0)));
+  const { variables: all = [], sequence } = state.description ?? {};
+  const variables = all.filter((v) => !v.constant && (v.operator ?? (v.given && v.producers.length === 0)) &&
+    !(sequence && v.variable === "sequence_go"));  // a slider would begin steps; Steps has buttons for it
   if (variables.length === 0) return null;
   const why = forbidden(state.hello?.role, "operate");
   return (

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The panels below the picture: events, receipts, profile, why.
+// The panels below the picture: events, steps, receipts, profile, why.
 import { memo, useEffect, useMemo, useState } from "react";
 import { bench } from "./bench";
 import { Button, Table } from "./controls";
@@ -7,6 +7,7 @@ import { whyNot } from "./lamps";
 import type { Machine, MachineState } from "./machine";
 import type { Event, Receipt, TaskProfile, WhyLink } from "./protocol";
 import { ScopePanel } from "./scope";
+import { StepsPanel } from "./sequence_view";
 import { useStore } from "./store";
 import { receiptText } from "./switch_menu";
 import { clock, count, duration, short } from "./text";
@@ -172,30 +173,34 @@ function Why({ machine, state, chosen, variable }:
 }
 
 const NAMES: [Panel, string][] = [
-  ["events", "Events"], ["receipts", "Receipts"], ["profile", "Profile"], ["why", "Why"],
+  ["events", "Events"], ["steps", "Steps"], ["receipts", "Receipts"], ["profile", "Profile"], ["why", "Why"],
   ["scope", "Scope"], ["timeline", "Timeline"]];
 
-export function Panels({ machine, state, panel, chosen, variable }:
+export function Panels({ machine, state, panel: wanted, chosen, variable }:
   { machine: Machine; state: MachineState; panel: Panel; chosen: string[]; variable: string }) {
   const { hello, door } = useStore(bench);
+  const sequence = state.description?.sequence;
+  const names = NAMES.filter(([name]) => name !== "steps" || sequence);
+  const panel = names.some(([name]) => name === wanted) ? wanted : "events";
   const turn = (event: { key: string }) => {
     const sign = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
     if (sign === 0) return;
-    const at = NAMES.findIndex(([name]) => name === panel);
-    const next = NAMES[(at + sign + NAMES.length) % NAMES.length]![0];
+    const at = names.findIndex(([name]) => name === panel);
+    const next = names[(at + sign + names.length) % names.length]![0];
     view.set({ panel: next });
     document.getElementById(`tab-${next}`)?.focus();
   };
   return (
-    <section className={panel === "scope" || panel === "timeline" ? "panels tall" : "panels"} aria-label="Panels">
+    <section className={["scope", "timeline", "steps"].includes(panel) ? "panels tall" : "panels"} aria-label="Panels">
       <div role="tablist" aria-label="Panels" onKeyDown={turn}>
-        {NAMES.map(([name, words]) => (
+        {names.map(([name, words]) => (
           <button key={name} id={`tab-${name}`} type="button" role="tab" aria-selected={panel === name}
                   aria-controls="panel" tabIndex={panel === name ? 0 : -1}
                   onClick={() => view.set({ panel: name })}>{words}</button>))}
       </div>
       <div id="panel" className="panel-body" role="tabpanel" aria-labelledby={`tab-${panel}`} tabIndex={0}>
         {panel === "events" && <Events state={state} chosen={chosen} />}
+        {panel === "steps" && sequence && <StepsPanel machine={machine} state={state} sequence={sequence} />}
         {panel === "receipts" && <Receipts machine={machine} state={state} />}
         {panel === "profile" && <Profile machine={machine} />}
         {panel === "why" && <Why machine={machine} state={state} chosen={chosen} variable={variable} />}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The readings of a subsystem, and the places of the page that show them. Values go from the message to the text of an
 // element; React draws nothing for them.
+import { useEffect, useState } from "react";
 import type { Reading } from "./protocol";
 import { duration, valueText } from "./text";
 
@@ -65,4 +66,14 @@ export class LiveValues {
 export function besidePort(reading: Reading, ageNs: number): string {
   if (reading.value === null || reading.value === undefined) return "never";
   return reading.producer === "operator" ? valueText(reading.value) : `${valueText(reading.value)} ${duration(ageNs)}`;
+}
+
+/** The latest reading, drawn again when its text changes; `age`: "" while it is fresh, else in words. */
+export function useReading(values: LiveValues, variable: string): { reading?: Reading; age: string } {
+  const [shown, set] = useState<{ reading?: Reading; age: string }>({ reading: values.reading(variable), age: "" });
+  useEffect(() => values.watch(variable, (reading, ageNs, isOld) => {
+    const age = !isOld ? "" : reading.published_ns === 0 ? "never published" : `${duration(ageNs)} old`;
+    set((known) => (known.reading?.text === reading.text && known.age === age ? known : { reading, age }));
+  }), [values, variable]);
+  return shown;
 }

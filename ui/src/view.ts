@@ -4,7 +4,7 @@
 import type { Question } from "./acts";
 import { Store } from "./store";
 
-export type Panel = "events" | "receipts" | "profile" | "why" | "scope" | "timeline";
+export type Panel = "events" | "steps" | "receipts" | "profile" | "why" | "scope" | "timeline";
 
 export type Mode = "look" | "assemble";
 

@@ -19,6 +19,7 @@ class Subject:
         self.tasks, self.rtpus, self.values, self.operator = {}, {}, {}, set()
         self.configurations, self.configuration, self.flag_by = {}, "", []
         self.events, self.lost, self.published = [], 0, {}
+        self.sequence = None
         self.switch, self.way = None, "fast"  # the switch under way; the way of the next one
 
     @staticmethod
@@ -35,6 +36,23 @@ class Subject:
             before = variable
         subject.configurations = {"all": list(subject.tasks), "first": ["task0"]}
         subject.configuration = "all"
+        return subject
+
+    @staticmethod
+    def steps():
+        """A chain with a sequence whose second step runs."""
+        subject = Subject.chain()
+        outputs = {"sequence_step": 2.0, "sequence_state": 2.0, "sequence_waited": 4.0}
+        subject.values.update(sequence_go=1.0, **outputs)
+        subject.operator.add("sequence_go")
+        subject.add("sequence", "Goes through steps.", [port("sequence_go", "in-var", "sequence_go"),
+                                                        *(port(name, "out-var", name) for name in outputs)])
+        keys = ("name", "switch", "until", "for", "within", "else")
+        subject.sequence = {"line": 9, "path": "sequence", "repeat": False, "steps": [
+            {**dict.fromkeys(keys), "number": number, "confirm": False, "reentry": number == 2, **words}
+            for number, words in enumerate(({"switch": "near", "until": "v0 >= 1", "within": "10 s", "else": "far"},
+                                            {"switch": "far", "until": "v1 >= 2", "within": "10 s"},
+                                            {"name": "rest", "switch": "near"}), 1)]}
         return subject
 
     def add(self, task, doc, ports, state="ON", rtpu="servo"):
@@ -102,7 +120,7 @@ class Subject:
         configurations = [{"name": name, "tasks": its} for name, its in self.configurations.items()]
         answer = {"tasks": tasks, "variables": [self.variable(name) for name in self.values],
                   "configurations": configurations, "start": next(iter(self.configurations), ""),
-                  "sequence": None}
+                  "sequence": self.sequence}
         return {**answer, "picture": self.picture()} if picture else answer
 
     def ends(self, variable, kind):
