@@ -4,7 +4,7 @@
 // its ports, and the look for NaN.
 // Components: gain tderiv join_mean pid_joint joint_trajectory limit deadband rate_limit lowpass notch unit_convert
 // Components: join_priority select signal_generator csv_player watchdog
-// Components: pid sum offset lookup_table comparator logic edge counter encoder
+// Components: servo_axis pid sum offset lookup_table comparator logic edge counter encoder
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -49,6 +49,16 @@ struct Biquad {
     s1[i] = b1 * x - a1 * y + s2[i];
     s2[i] = b2 * x - a2 * y;
     return y;
+  }
+};
+
+/// An axis with inertia and viscous friction, by its solution for one cycle.
+struct AxisLaw {
+  Joints velocity{};
+  double operator()(std::size_t i, double torque, double position) {
+    const double before = velocity[i], acceleration = torque / 0.5;
+    velocity[i] = before * 0.9998 + acceleration * 0.9999e-3;
+    return position + before * 0.9999e-3 + acceleration * 0.49997e-6;
   }
 };
 
@@ -249,6 +259,9 @@ std::vector<ComponentCase> joint_cases() {
          for (const char* p : {"reference", "measured", "kp", "ki", "kd", "low", "high"}) fill(r, p, 0.5);
          fill(r, "low", -1), r.set("filter_time", 0.002); },
        loop(PidLaw{})},
+      {"servo_axis", "6 axes, direct", [](BenchRig& r) { r.set("ndof", static_cast<std::int32_t>(kJoints));
+         fill(r, "inertia", 0.5), fill(r, "viscous", 0.1), fill(r, "tau", 0.3); },
+       loop(AxisLaw{})},
       {"joint_trajectory", "6 quintics", [](BenchRig& r) { give_motion(r, "quintic"); },
        six_quintics},
       {"joint_trajectory", "jerk; 6 quintics", [](BenchRig& r) { give_motion(r, "jerk"); },

@@ -38,13 +38,10 @@ C_MEMORY = {"memcpy", "memmove", "memset", "memcmp", "memchr", "strlen", "strcmp
 ARITHMETIC = re.compile(r"__aeabi_(?!read_tp)\w+$|__atomic_(load|store|exchange|compare_exchange)_8$|__popcountdi2$")
 # std::string_view and std::span out of range: ends the program, never in a cycle.
 ENDING = re.compile(r"_ZSt\d+__throw_\w+|abort$|_ZSt21__glibcxx_assert_failPKciS0_S0_$")
-# A number in the text of a refused output or input: every C library for microcontrollers can write it.
-TEXT = {"chimera/runtime/job/safety.cc": {"snprintf"}, "library/pid_joint/pid_joint.cc": {"snprintf"}}
 
 
-def is_known(name, symbol):
-    return (OURS.match(symbol) or ENDING.match(symbol) or ARITHMETIC.match(symbol) or symbol in C_MEMORY
-            or symbol in TEXT.get(name, ()))
+def is_known(symbol):
+    return OURS.match(symbol) or ENDING.match(symbol) or ARITHMETIC.match(symbol) or symbol in C_MEMORY
 
 
 def undefined_symbols(root, source, machine):
@@ -74,13 +71,13 @@ def complaints_about(root, names, machine, folder):
     source = pathlib.Path(folder, f"{machine}_{len(names)}_{name.replace('/', '_')}")
     source.write_text("".join(f'#include "{one}"\n' for one in names), encoding="utf-8")
     symbols, said = undefined_symbols(root, source, machine)
-    if len(names) > 1 and (said or not all(is_known(name, symbol) for symbol in symbols)):
+    if len(names) > 1 and (said or not all(map(is_known, symbols))):
         return [complaint for one in names for complaint in complaints_about(root, [one], machine, folder)]
     if said:
         error = next((line for line in said.splitlines() if "error:" in line), said.splitlines()[0])
         return [f"{name}: does not compile freestanding for {machine}: {error.split('error: ', 1)[-1]}"]
     in_ram = sections_in_ram(source) if source.suffix == ".c" else []
-    return [*(f"{name}: asks for {symbol} on {machine}" for symbol in symbols if not is_known(name, symbol)),
+    return [*(f"{name}: asks for {symbol} on {machine}" for symbol in symbols if not is_known(symbol)),
             *(f"{name}: has {section} on {machine}, but its tables must be constant" for section in in_ram)]
 
 
@@ -92,19 +89,17 @@ def check(root, machine):
     names = [name for name in there if (FILE.match(name) and name.endswith(".cc")) or name in (*COMPONENTS, *IN_C)]
     if "CONTRIBUTING.md" in there:  # not of a planted tree
         yield from (f"{name}: is not there, but tools/check_freestanding.py lists it"
-                    for name in (*COMPONENTS, *IN_C, *TEXT) if name not in names)
+                    for name in (*COMPONENTS, *IN_C) if name not in names)
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(2) as pool:
         for complaints in pool.map(lambda some: complaints_about(root, some, machine, folder), together(names)):
             yield from complaints
 
 
 def together(names):
-    """Lists of up to eight files of one folder. Alone: a file that may ask for more than the others, and one in C."""
-    alone = [name for name in names if name in TEXT or name.endswith(".c")]
-    for _, some in itertools.groupby((name for name in names if name not in alone), os.path.dirname):
+    """Lists of up to eight files of one folder. A file in C stands alone: it holds one module."""
+    for _, some in itertools.groupby(names, lambda name: name if name.endswith(".c") else os.path.dirname(name)):
         some = list(some)
         yield from (some[i:i + 8] for i in range(0, len(some), 8))
-    yield from ([name] for name in alone)
 
 
 _NAME = "chimera/table/x.cc"
@@ -124,13 +119,12 @@ def planted(machine):
     yield {"chimera/table/x_test.cc": "int* p = new int;\n"}, None
     yield {"chimera/runtime/hosted/x.cc": _MUTEX[_NAME]}, None
     yield {"chimera/runtime/x.cc": _PRINTF}, asks("printf", "chimera/runtime/x.cc")
-    yield {next(iter(TEXT)): "#include <cstdio>\nint f(char* t) { return std::snprintf(t, 9, \"%g\", 0.1); }\n"}, None
     yield ({"chimera/runtime/executive/x.h": f'#include "{_HOSTED}"\n', _HOSTED: ""},
            f"chimera/runtime/executive/x.h: includes {_HOSTED}, which a microcontroller does not have")
     yield {"chimera/runtime/x_test.cc": f'#include "{_HOSTED}"\n', _HOSTED: ""}, None
     new = "_Znwj" if machine == "ARM" else "_Znwm"
     yield {COMPONENTS[0]: "int* f() { return new int; }\n"}, asks(new, COMPONENTS[0])
-    yield ({"CONTRIBUTING.md": "", **dict.fromkeys((*TEXT, *COMPONENTS[1:]), ""), **dict.fromkeys(IN_C, _C)},
+    yield ({"CONTRIBUTING.md": "", **dict.fromkeys(COMPONENTS[1:], ""), **dict.fromkeys(IN_C, _C)},
            f"{COMPONENTS[0]}: is not there, but tools/check_freestanding.py lists it")
     yield {_NAME: "int* f() { return new int; }\n"}, asks(new)
     yield {_NAME: "#include <cstdlib>\nvoid* f() { return std::malloc(8); }\n"}, asks("malloc")

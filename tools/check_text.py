@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every tracked file: a name that says what it is. Every tracked text: the licence line, no path of one machine, no
-word about a workplace, nothing left to do. Every production source x.cc: a sentence that says what it does. Comments,
+word about a workplace, nothing left to do. Every production source x.cc: a sentence that says what it does. Every
+component: sines and powers from chimera/base/math.h, so that all machines compute the same bits. Comments,
 messages, documents and names of tests: none of the words that a reader has to guess the meaning of."""
 import io
 import pathlib
@@ -48,6 +49,24 @@ GUESSED_NAME = re.compile("Whoever|Nobody|Somebody|SoMany|SoLong|SoOften|IsTold|
 GUESSED_BEGIN = re.compile(r"/// ?(Of|The same|What|Who|Else|Whose|That)\b")
 C_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:[^"\\\n]|\\.)*"', re.DOTALL)
 TEST_NAME = re.compile(r"\b(?:TEST|TEST_F|TEST_P|TYPED_TEST)\(\w+,\s*(\w+)\)|\bdef (test_\w+)")
+
+
+# Functions that each C library rounds in its own way. Exact ones (floor, round, copysign, sqrt, fmod) are the same.
+INEXACT = "(?:a?(?:sin|cos|tan)h?|atan2|exp[2m]?1?|log(?:2|10|1p)?|pow|cbrt|hypot|erfc?|[tl]gamma)"
+INEXACT_CALL = re.compile(rf"\bstd::{INEXACT}[fl]?\b|(?<![\w:.>])(?:::)?{INEXACT}[fl]?\s*\(")
+# Components that only a host can run, and shared code of theirs.
+OF_HOSTS = ("camera_targets", "kinematics", "model_text", "mujoco", "puma", "puma_torque", "rmms")
+
+
+def inexact(name, content):
+    """Calls whose result depends on the C library, in code that a microcontroller may take."""
+    if (not re.match(rf"library/(?!(?:{'|'.join(OF_HOSTS)})/).*\.(h|cc|c)$", name)
+            or re.search(r"/testing/|_(test|fuzz|stress)\.cc$", name)):
+        return
+    code = C_TEXT.sub(lambda match: "\n" * match[0].count("\n"), content)
+    for number, line in enumerate(code.splitlines(), 1):
+        for match in INEXACT_CALL.finditer(line):
+            yield f"{name}:{number}: '{match[0].rstrip(' (')}' depends on the C library: chimera/base/math.h has one"
 
 
 def needs_licence(name):
@@ -129,6 +148,7 @@ def check(root):
                     yield f"{name}:{number}: {what}: '{match[0]}'"
         if name != "tools/check_text.py":
             yield from guessed(name, content)
+        yield from inexact(name, content)
 
 
 _HEAD = f"// {LICENCE}\n"
@@ -167,6 +187,13 @@ PLANTED = (
     ({"a.cc": _HEAD + "TEST(Bell, IsToldOnce) {}\n"}, "a.cc:2: test 'IsToldOnce': say the condition and the result"),
     ({"a.py": "# " + LICENCE + "\ndef test_nobody_comes(self):\n    pass\n"},
      "a.py:2: test 'test_nobody_comes': say the condition and the result"),
+    ({"library/a/a.h": _HEAD + "// std::sin(x)\ndouble y = math::sin(x) + exponent(x) + a.log(x) + std::floor(x);\n",
+      "library/a/a_test.cc": _HEAD + "double y = std::sin(x);\n", "chimera/a.h": _HEAD + "double y = std::sin(x);\n",
+      "library/rmms/a.h": _HEAD + "double y = std::sin(x);\n"}, None),
+    ({"library/a/a.h": _HEAD + "\ndouble y = std::atan2(x, 1);\n"},
+     "library/a/a.h:3: 'std::atan2' depends on the C library: chimera/base/math.h has one"),
+    ({"library/a/a.c": _HEAD + "double y = 2 * powf (x, 2);\n"},
+     "library/a/a.c:2: 'powf' depends on the C library: chimera/base/math.h has one"),
     ({"a.cc": _HEAD + "// TO" + "DO\n"}, "a.cc:2: something left to do: 'TO" + "DO'"),
 )
 

@@ -95,7 +95,7 @@ const std::vector<Option>& printing_options() {
   return kOptions;
 }
 
-const std::vector<Option>& own_options() {
+const std::vector<Option>& virtual_options() {
   static const std::vector<Option> kOptions = {
       {.name = "--virtual",
        .help = "in virtual time: as fast as it goes, the same result every time",
@@ -111,6 +111,13 @@ const std::vector<Option>& own_options() {
        .value = "FILE",
        .help = "virtual time: write what --watch names to this file, a line for each --every",
        .kind = WordKind::kFile},
+      {.name = "--digest",
+       .value = "FILE",
+       .help = "virtual time: write hashes of values and faults to this file, by second and task; jobs take no time",
+       .manual = "Virtual time: writes hashes of all published values and faults to this file, by second and task, to "
+                 "compare with another machine (docs/formats/digest.md). Jobs then take no time, whatever their "
+                 "budgets and components say.",
+       .kind = WordKind::kFile},
       {.name = "--preemptive", .help = "virtual time: schedule preemptively, whatever the file says of an rtpu"},
       {.name = "--seed",
        .value = "N",
@@ -118,7 +125,12 @@ const std::vector<Option>& own_options() {
        .kind = WordKind::kNumber},
       {.name = "--quantum",
        .value = "DURATION",
-       .help = "virtual time, laxity policies: compare again this often (1 ms)"},
+       .help = "virtual time, laxity policies: compare again this often (1 ms)"}};
+  return kOptions;
+}
+
+const std::vector<Option>& real_time_options() {
+  static const std::vector<Option> kOptions = {
       {.name = "--priority",
        .value = "N",
        .help = "real time: SCHED_FIFO priority; 0 runs as an ordinary process (80)",
@@ -202,6 +214,7 @@ bool AskedRun::read(const Call& call) {
   run.may_miss = call.values("--may-miss");
   run.svg = call.value("--svg");
   run.csv = call.value("--csv");
+  run.digest = call.value("--digest");
   run.settings = settings_of(call);
   for (const std::string& text : call.values("--cpu")) {
     const std::size_t equals = std::min(text.find('='), text.size());
@@ -215,6 +228,9 @@ bool AskedRun::read(const Call& call) {
     wrong = "--svg and --csv need --virtual and --watch; `chimera scope` records what runs in real time";
   if (!run.virtual_time && (run.preemptive || run.seed || !call.value("--quantum").empty()))
     wrong = "--preemptive, --seed and --quantum belong to --virtual";
+  if (!run.digest.empty() && !run.virtual_time) wrong = "--digest needs --virtual";
+  if (!run.digest.empty() && run.seed)
+    wrong = "--digest and --seed exclude each other: with --digest no job takes time";
   if (run.virtual_time && run.duration == kNever) wrong = "--virtual needs --for: virtual time has no end of its own";
   if (!call.value("--start-limit").empty() && (run.virtual_time || run.one_process))
     wrong = "--start-limit belongs to real time with a process for each rtpu";
@@ -273,7 +289,9 @@ int run(const Call& call, const Workplace& workplace) {
       !read_group(call, "--operate-group", kept.operate_group) ||
       !read_group(call, "--configure-group", kept.configure_group))
     return kUsage;
-  if (!may_save(asked.run.profile) || !may_save(asked.run.svg) || !may_save(asked.run.csv)) return kRefused;
+  if (!may_save(asked.run.profile) || !may_save(asked.run.svg) || !may_save(asked.run.csv) ||
+      !may_save(asked.run.digest))
+    return kRefused;
   if (const auto log = log_of(asked.run); !log) return print_refusal(log.error());
   if (!asked.run.virtual_time && !asked.run.one_process) {
     kept.run = asked.run;
@@ -368,7 +386,8 @@ FileCommand run_row() {
                  "variable, a constant of the file, or TASK.CONSTANT for a constant that one task has for "
                  "itself. May be repeated."));
   options.insert(options.end(), printing_options().begin(), printing_options().end());
-  options.insert(options.end(), own_options().begin(), own_options().end());
+  options.insert(options.end(), virtual_options().begin(), virtual_options().end());
+  options.insert(options.end(), real_time_options().begin(), real_time_options().end());
   return row;
 }
 

@@ -64,7 +64,7 @@ struct Ctraj {
     *xd = *centre;
     const double left = fade_.left();
     for (std::size_t i = 0; i < 3; ++i) {
-      xd->position[i] += amplitude[i] * std::sin(2 * std::numbers::pi * frequency[i] * t + phase[i]);
+      xd->position[i] += amplitude[i] * math::sin(2 * std::numbers::pi * frequency[i] * t + phase[i]);
       if (left > 0) xd->position[i] += left * away_[i];
     }
     const double turn = library::angle_between(first_, centre->orientation);

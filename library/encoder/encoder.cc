@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Position and velocity of an encoder, from two tracks or a count. README.md is the data sheet.
-#include <cstdio>
 #include <cstring>
 
+#include "chimera/base/message.h"
+#include "chimera/base/number_text.h"
 #include "chimera/task/component.h"
 #include "chimera/task/number_at.h"
 #include "library/encoder/wheel.h"
@@ -113,11 +114,9 @@ struct Encoder {
         continue;
       }
       const double number = number_at(type, at);
-      if (!(math::fabs(number) <= kMostCount)) {
-        char text[80];
-        std::snprintf(text, sizeof text, "in[0][%zu] is %.9g: a count is finite and at most 2^53", i, number);
-        return fault(text);
-      }
+      if (!(math::fabs(number) <= kMostCount))
+        return fault((Message("in[0][") << i << "] is " << number_text(number, 9).view()
+                                        << ": a count is finite and at most 2^53").view());
       axis_[i].found = static_cast<std::int64_t>(math::floor(number + 0.5));
     }
     return ok();

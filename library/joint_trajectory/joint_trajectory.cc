@@ -3,10 +3,12 @@
 // rest; then it holds. README.md is the data sheet.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
+#include "chimera/base/fixed.h"
+#include "chimera/base/message.h"
+#include "chimera/base/number_text.h"
 #include "chimera/task/component.h"
 #include "library/joint_trajectory/braking.h"
 #include "library/joint_trajectory/quintic.h"
@@ -125,11 +127,11 @@ struct JointTrajectory {
   static void tell_if_beyond(Cycle c, std::size_t i, const Motion& from, const library::MotionLimits& limits) {
     const double speed = std::abs(from.velocity), acceleration = std::abs(from.acceleration);
     if (speed <= limits.velocity && acceleration <= limits.acceleration) return;
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "joint %zu starts at %.3g rad/s, %.3g rad/s2, beyond its limits %.3g and %.3g: brakes first, may "
-                  "pass the goal", i + 1, speed, acceleration, limits.velocity, limits.acceleration);
-    c.note(text);
+    Message text("joint ");
+    text << i + 1 << " starts at " << number_text(speed, 3).view() << " rad/s, " << number_text(acceleration, 3).view()
+         << " rad/s2, beyond its limits " << number_text(limits.velocity, 3).view() << " and "
+         << number_text(limits.acceleration, 3).view() << ": brakes first, may pass the goal";
+    c.note(FixedString<159>(text.view()).c_str());
   }
   void stretch() {
     double longest = *duration, last_stop = 0;

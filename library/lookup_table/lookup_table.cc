@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A curve through given points, straight between them. README.md is the data sheet.
 #include <algorithm>
-#include <cstdio>
 
+#include "chimera/base/message.h"
+#include "chimera/base/number_text.h"
 #include "chimera/task/component.h"
 #include "library/signals/input.h"
 
@@ -30,10 +31,9 @@ struct LookupTable {
     if (!library::all_finite(at) || !library::all_finite(value)) return fault("at and value must be finite");
     for (std::size_t k = 1; k < at.size(); ++k) {
       if (at[k] > at[k - 1]) continue;
-      char text[120];
-      std::snprintf(text, sizeof text, "at[%zu] is %.9g, after %.9g: each point of at must be above the one before", k,
-                    at[k], at[k - 1]);
-      return fault(text);
+      return fault((Message("at[") << k << "] is " << number_text(at[k], 9).view() << ", after "
+                                   << number_text(at[k - 1], 9).view()
+                                   << ": each point of at must be above the one before").view());
     }
     return ok();
   }
@@ -44,12 +44,10 @@ struct LookupTable {
   Outcome cycle() {
     const Outcome input = library::judge(x, "x");
     if (!library::is_ok(input)) return input;
-    if (const double* beyond = first_outside()) {
-      char text[120];
-      std::snprintf(text, sizeof text, "x is %.9g, and the table goes from %.9g to %.9g", *beyond, at[0],
-                    at[at.size() - 1]);
-      return fault(text);
-    }
+    if (const double* beyond = first_outside())
+      return fault((Message("x is ") << number_text(*beyond, 9).view() << ", and the table goes from "
+                                     << number_text(at[0], 9).view() << " to "
+                                     << number_text(at[at.size() - 1], 9).view()).view());
     look_up();
     return ok();
   }

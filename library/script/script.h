@@ -3,12 +3,11 @@
 // foot, a button or a road in a simulation.
 #pragma once
 
-#include <charconv>
-#include <cmath>
 #include <cstddef>
 #include <string_view>
 
 #include "chimera/base/fixed.h"
+#include "chimera/base/number_text.h"
 
 namespace chimera::library {
 
@@ -57,9 +56,10 @@ class Script {
   };
 
   static bool take_number(std::string_view& text, double& number) noexcept {
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (read.ec != std::errc{} || !std::isfinite(number)) return false;
-    text.remove_prefix(static_cast<std::size_t>(read.ptr - text.data()));
+    const ReadNumber read = read_number(text);
+    if (read.length == 0 || !read.in_range) return false;
+    number = read.value;
+    text.remove_prefix(read.length);
     return true;
   }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Passes on the input with a given number. README.md is the data sheet.
 #include <algorithm>
-#include <cstdio>
 
+#include "chimera/base/message.h"
 #include "chimera/task/component.h"
 #include "library/signals/input.h"
 
@@ -21,11 +21,8 @@ struct Select {
   }
   Outcome cycle() {
     if (!which.valid()) return aborted();
-    if (!is_named()) {
-      char text[80];
-      std::snprintf(text, sizeof text, "which is %d, and there are %zu inputs", *which, in.size());
-      return fault(text);
-    }
+    if (!is_named())
+      return fault((Message("which is ") << *which << ", and there are " << in.size() << " inputs").view());
     char name[16];
     const Outcome input = library::judge(in[number()], name_of(name));
     if (library::is_ok(input)) hand_on();

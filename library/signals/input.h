@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdio>
 
 #include "chimera/base/math.h"
+#include "chimera/base/message.h"
 #include "chimera/task/component.h"
 
 namespace chimera::library {
@@ -25,6 +25,13 @@ bool all_finite(const P& port) noexcept {
   return true;
 }
 
+/// A fault that names element `i` of `size`. Apart from the loops that cycles run.
+[[gnu::cold, gnu::noinline]] inline Outcome not_finite(const char* name, std::size_t i, std::size_t size) noexcept {
+  Message text(name);
+  if (size != 1) text << "[" << i << "]";
+  return fault((text << " is not a finite number").view());
+}
+
 /// Returns ok() if every element is finite, aborted() if the input was never written, otherwise a fault that names the
 /// first element that is NaN or infinite. Unless ok() is returned, nothing is published, so the caller must not have
 /// changed its state. Context: cycle; wait-free.
@@ -32,11 +39,7 @@ template <class P>
 Outcome judge(const P& port, const char* name) noexcept {
   for (std::size_t i = 0; i < port.size(); ++i) {
     if (math::is_finite(port.begin()[i])) continue;
-    if (!port.valid()) return aborted();
-    char text[80];
-    std::snprintf(text, sizeof text, port.size() == 1 ? "%s is not a finite number" : "%s[%zu] is not a finite number",
-                  name, i);
-    return fault(text);
+    return port.valid() ? not_finite(name, i, port.size()) : aborted();
   }
   return ok();
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The weighted sum of several signals. README.md is the data sheet.
 #include <algorithm>
-#include <cstdio>
 
+#include "chimera/base/fixed.h"
+#include "chimera/base/message.h"
 #include "chimera/task/component.h"
 #include "library/signals/input.h"
 
@@ -38,9 +39,7 @@ struct Sum {
  private:
   // Formats a name, but only for a fault.
   Outcome judge(std::size_t i) const {
-    char name[16];
-    std::snprintf(name, sizeof name, "in[%zu]", i);
-    return library::judge(in[i], name);
+    return library::judge(in[i], FixedString<8>((Message("in[") << i << "]").view()).c_str());
   }
   void add() {
     std::copy(bias.begin(), bias.end(), out.begin());

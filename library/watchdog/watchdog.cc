@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Detects values that are no longer renewed, and acts. README.md is the data sheet.
 #include <algorithm>
-#include <cstdio>
 
+#include "chimera/base/message.h"
+#include "chimera/base/number_text.h"
 #include "chimera/task/component.h"
 
 using namespace chimera;
@@ -56,9 +57,8 @@ struct Watchdog {
     if (action_ == Action::kOff && !c.signal(Signal::kOff, target->c_str()))
       return fault("the target is no task of this application");
     if (action_ != Action::kFault) return ok();
-    char text[80];
-    std::snprintf(text, sizeof text, "in[%zu] has not been renewed for %.3g s", worst, *oldest);
-    return fault(text);
+    return fault(
+        (Message("in[") << worst << "] has not been renewed for " << number_text(*oldest, 3).view() << " s").view());
   }
   // Always succeeds, because a person turns the task on again after removing the cause.
   bool clear() { return true; }

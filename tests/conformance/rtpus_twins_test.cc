@@ -86,7 +86,7 @@ TEST(RtpusTwins, AnRtpuWithoutInputsFromOthersRunsAsAlone) {
     for (const bool preemptive : {false, true}) {
       SCOPED_TRACE("seed " + std::to_string(seed) + (preemptive ? " preemptive" : ""));
       VirtualOptions how;
-      if (seed % 3 == 0) how.seed = seed;
+      if (seed % 3 == 0) how.times = seed;
       const Outcome first = alone(seed, preemptive, how);
       const Outcome second = in_company(seed, preemptive, seed % 3, how);
       ASSERT_EQ(first.records, second.records);

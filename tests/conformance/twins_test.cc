@@ -63,7 +63,7 @@ std::vector<std::string> with_seed(std::uint64_t seed, Kind kind) {
     spec.budget = milliseconds(4);
   }
   VirtualOptions how;
-  how.seed = seed;
+  how.times = seed;
   Runner runner(app.build(), kind, Policy::kEdf, {}, how);
   EXPECT_TRUE(runner.start());
   runner.run(milliseconds(100));

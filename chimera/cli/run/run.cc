@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "chimera/base/hosted/wording.h"
+#include "chimera/cli/run/digest_text.h"
 #include "chimera/cli/run/profile_report.h"
 #include "chimera/cli/run/progress.h"
 #include "chimera/cli/run/run_loop.h"
@@ -24,6 +25,7 @@
 #include "chimera/control/receipt/receipt_text.h"
 #include "chimera/platform/realtime.h"
 #include "chimera/platform/standard_streams.h"
+#include "chimera/runtime/hosted/heap_memory.h"
 #include "chimera/runtime/record/tap_ring.h"
 
 namespace chimera::cli {
@@ -110,6 +112,9 @@ class LocalTarget final : public RunTarget {
   std::unique_ptr<TapRing> ring_;
   std::optional<Tap> tap_;
   TapReader reader_;
+  HeapMemory memory_;
+  DigestText digest_text_;
+  std::optional<Digest> digest_;
   AskedSets asked_{application_.spec(), request_.one_process && !request_.virtual_time};
   std::unique_ptr<RunLoop> loop_;
   Nanoseconds at_;  // to which it has come, since the start
@@ -131,6 +136,8 @@ Result<void> LocalTarget::start() {
     options.tap = &tap_.emplace(*ring_);
     reader_ = TapReader(*ring_);
   }
+  if (!request_.digest.empty())
+    options.digest = &digest_.emplace(application_.spec().tasks.size(), digest_text_, memory_);
   loop_ = request_.virtual_time ? make_virtual_loop(application_, request_, options)
                                 : make_real_time_loop(application_, request_, options);
   if (auto started = loop_->start(); !started) return started;
@@ -231,6 +238,7 @@ void LocalTarget::finish(RunReport& report) {
   const Nanoseconds now = loop_->now();
   std::vector<std::uint64_t> faults_before;
   for (const Task* task : tasks) faults_before.push_back(task->faults.count);
+  if (digest_) digest_->end();  // without `off` and `kill` at the end
   under_way().running = 0;  // of the run, which is over
   under_way().is_ending = true;
   loop_->shut_down();
@@ -264,7 +272,8 @@ bool LocalTarget::is_output_complete(const RunReport& report) {
     return false;
   };
   const bool is_drawn = is_written(request_.svg, [&] { return draw::svg(plot_.plot(report.subsystem)); });
-  return is_written(request_.csv, [&] { return plot_.csv(); }) && is_drawn;
+  const bool is_listed = is_written(request_.csv, [&] { return plot_.csv(); });
+  return is_written(request_.digest, [&] { return digest_text_.text(application_.spec()); }) && is_drawn && is_listed;
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ struct RunRequest {
   Nanoseconds every;                  ///< how often; 0: every second, into a picture at the shortest period
   std::string svg;                    ///< draw them to this file instead; virtual time only
   std::string csv;                    ///< write them as a table to this file instead; virtual time only
+  std::string digest;                 ///< write digest.h to this file; virtual time only, and jobs take no time
   std::string profile;                ///< save the profile into this file at the end; "": not
   std::string log;                    ///< add the events to this file as they come; "": not
   bool json = false;

@@ -87,7 +87,13 @@ std::string virtual_time_text(Application& application, const RunRequest& reques
   for (std::size_t r = 0; peers != nullptr && r < peers->spec().rtpus.size(); ++r)
     if (const RtpuSpec& rtpu = peers->spec().rtpus[r]; peers->tasks(RtpuId(r)) != nullptr)
       text += ", " + std::string(rtpu.name) + ": " + how(rtpu);
+  if (!request.digest.empty()) text += ", jobs take no time";
   return request.seed ? text + ", seed " + std::to_string(*request.seed) : text;
+}
+
+VirtualOptions virtual_options(const RunRequest& request, bool is_preemptive) {
+  if (!request.digest.empty()) return {is_preemptive, JobTimes::none(), request.quantum};
+  return {is_preemptive, request.seed, request.quantum};
 }
 
 /// `Executor` runs one context, or a context for each rtpu.
@@ -99,7 +105,7 @@ class VirtualLoop final : public RunLoop {
               const RunOptions& options)
       : duration_(request.duration),
         description_(virtual_time_text(application, request)),
-        executor_(tasks, options, {is_preemptive, request.seed, request.quantum}) {}
+        executor_(tasks, options, virtual_options(request, is_preemptive)) {}
 
   Result<void> start() override { return executor_.start(); }
   std::optional<RunEnd> advance(Nanoseconds until) override {

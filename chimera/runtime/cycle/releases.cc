@@ -43,13 +43,15 @@ std::size_t kept_of_unscripted(const ApplicationSpec& spec) noexcept {
 Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
     : set_(set), guest_(options.guest), stop_(options.stop != nullptr ? options.stop : &kNoStop),
       records_(set.setup_memory().take<JobRecord>(set.tasks().size())),
-      tap_(set.tasks(), options.tap, options.rtpu, options.threads != nullptr, set.setup_memory()),
-      in_loop_(set.tasks(), &queue_, options.preemptive),
+      tap_(set.tasks(), options.tap, options.rtpu, options.threads != nullptr, set.setup_memory(),
+           options.digest),
+      digest_(options.digest), in_loop_(set.tasks(), &queue_, options.preemptive),
       threads_(options.threads != nullptr ? *options.threads : in_loop_),
       queue_(options.policy, set.spec().tasks, storage_for(records_.size(), set.setup_memory())),
       misses_(set.tasks(), records_, tap_,
               guest_ != nullptr ? &cause_.emplace(set.tasks(), threads_, set.setup_memory()) : nullptr, clock),
-      jobs_(records_, tap_, misses_, cause_ ? &*cause_ : nullptr, clock, tap_.is_on() || guest_ != nullptr),
+      jobs_(records_, tap_, misses_, cause_ ? &*cause_ : nullptr, clock,
+            tap_.is_on() || digest_ != nullptr || guest_ != nullptr),
       members_(set.tasks(), records_, queue_, tap_, guest_),
       settlement_({set, records_, tap_, members_, misses_, cause_ ? &*cause_ : nullptr, guest_}),
       switching_({set, queue_, threads_, members_, settlement_, tap_, misses_, clock}),
@@ -80,6 +82,7 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
     CHIMERA_ASSERT(switches || spec.on_fault_set == UINT16_MAX);
     JobRecord& record = records_[task.id.index];
     record.task = &task;
+    if (digest_ != nullptr && set.is_mine(task.id)) task.is_tapped = true;
     record.start_margin = start_margin(spec);
     record.is_plain = spec.tolerated_of == 0;
     record.budget = spec.budget > Nanoseconds{} ? spec.budget : kNever;
@@ -89,6 +92,7 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
 
 void Releases::begin(Nanoseconds origin) noexcept {
   origin_ = origin;
+  if (digest_ != nullptr) digest_->begin(origin);
   queue_.set_origin(origin);
   if (switches_) switches_->begin(origin);
   switching_.begin(origin);

@@ -144,6 +144,7 @@ class Releases {
   Nanoseconds calm_until_ = kAtOnce;
   std::span<JobRecord> records_;
   ContextTap tap_;
+  Digest* digest_;  // null: none
   JobsInLoop in_loop_;
   JobThreads& threads_;
   std::optional<MissCause> cause_;  // only with a listener, which reports it

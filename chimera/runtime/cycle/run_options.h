@@ -10,6 +10,7 @@
 #include "chimera/runtime/job/job_threads.h"
 #include "chimera/runtime/life/boundary_listener.h"
 #include "chimera/runtime/plan/switch_request.h"
+#include "chimera/runtime/record/digest.h"
 #include "chimera/runtime/record/tap_ring.h"
 #include "chimera/runtime/switch/switch_peers.h"
 #include "chimera/schedule/policy.h"
@@ -21,6 +22,7 @@ struct RunOptions {
   Policy policy = Policy::kEdf;
   Script script;
   Tap* tap = nullptr;                        ///< null: nothing is recorded
+  Digest* digest = nullptr;                  ///< null: none
   std::uint8_t rtpu = 0;                     ///< for the records
   BoundaryListener* guest = nullptr;         ///< null: cycle boundaries have no listener
   const std::atomic<bool>* stop = nullptr;   ///< checked before every job; may be set by a signal handler

@@ -2,9 +2,12 @@
 // Checks each element of a safety port for being finite and within its range.
 #include "chimera/runtime/job/safety.h"
 
-#include <cmath>
-#include <cstdio>
+#include <algorithm>
 #include <cstring>
+
+#include "chimera/base/math.h"
+#include "chimera/base/message.h"
+#include "chimera/base/number_text.h"
 
 namespace chimera {
 namespace {
@@ -18,15 +21,17 @@ double element(const chimera_port& port, std::uint32_t type, std::uint32_t i) no
 
 // Cycle path: this text is made only when a value is refused, which ends the cycle in a fault anyway.
 bool refuse(const Task& task, const Output& output, std::uint32_t i, double value, char* text) noexcept {
-  const char* port = task.component->ports[output.spec->declared].name;
-  if (!std::isfinite(value)) {
-    std::snprintf(text, CHIMERA_FAULT_TEXT, "safety port %s: element %u is %s; the last good value stands", port, i,
-                  std::isnan(value) ? "NaN" : "infinite");
-  } else {
-    std::snprintf(text, CHIMERA_FAULT_TEXT,
-                  "safety port %s: element %u is %g, outside %g to %g; the last good value stands", port, i, value,
-                  output.spec->min, output.spec->max);
-  }
+  Message said("safety port ");
+  said << task.component->ports[output.spec->declared].name << ": element " << i << " is ";
+  if (math::is_nan(value)) said << "NaN";
+  else if (!math::is_finite(value)) said << "infinite";
+  else
+    said << number_text(value).view() << ", outside " << number_text(output.spec->min).view() << " to "
+         << number_text(output.spec->max).view();
+  said << "; the last good value stands";
+  const std::size_t size = std::min<std::size_t>(said.view().size(), CHIMERA_FAULT_TEXT - 1);
+  std::memcpy(text, said.view().data(), size);
+  text[size] = '\0';
   return false;
 }
 
@@ -35,7 +40,7 @@ bool is_safe(const Task& task, const Output& output, char* text) noexcept {
   for (std::uint32_t i = 0; i < output.port->count; ++i) {
     const double value = element(*output.port, spec.type, i);
     const bool in_range = !spec.has_range || (value >= spec.min && value <= spec.max);
-    if (!std::isfinite(value) || !in_range) return refuse(task, output, i, value, text);
+    if (!math::is_finite(value) || !in_range) return refuse(task, output, i, value, text);
   }
   return true;
 }

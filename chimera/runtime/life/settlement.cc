@@ -50,7 +50,7 @@ void Settlement::record_faults(Task& task) noexcept {
   parts_.set.changes().add_fault(task.id);
   if (task.faults.count == record.faults_seen) return;
   record.faults_seen = task.faults.count;
-  parts_.tap.record(TapKind::kFault, task.faults.at, task.id, static_cast<std::uint64_t>(task.faults.method));
+  parts_.tap.record_fault(task);
 }
 
 void Settlement::follow_error(Task& task, Nanoseconds now) noexcept {

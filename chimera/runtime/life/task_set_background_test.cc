@@ -145,7 +145,7 @@ TEST_F(TaskSetBackground, InVirtualTimeItRunsAfterEachCycle) {
     app = {};
     told.backgrounds = 0;
     make();
-    VirtualExecutor executor(*set, {}, {.preemptive = preemptive, .seed = {}});
+    VirtualExecutor executor(*set, {}, {.preemptive = preemptive, .times = {}});
     ASSERT_TRUE(executor.start());
     executor.run(milliseconds(5));
     EXPECT_EQ(told.letters, "iccccc");

@@ -5,8 +5,8 @@
 namespace chimera {
 
 ContextTap::ContextTap(std::span<const Task> tasks, Tap* tap, std::uint8_t rtpu, bool keeps,
-                       SetupMemory& memory)
-    : tasks_(tasks), tap_(tap), rtpu_(rtpu), rows_(memory.take<Rows>(tasks.size())),
+                       SetupMemory& memory, Digest* digest)
+    : tasks_(tasks), tap_(tap), digest_(digest), rtpu_(rtpu), rows_(memory.take<Rows>(tasks.size())),
       kept_(memory.take<Kept>(keeps ? tasks.size() : 0)) {}
 
 void ContextTap::append(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept {
@@ -32,7 +32,7 @@ TapRecord ContextTap::record_of(TapKind kind, Nanoseconds at, TaskId task, std::
 }
 
 void ContextTap::flush(TaskId id) noexcept {
-  if (tap_ == nullptr) return;
+  if (tap_ == nullptr && digest_ == nullptr) return;
   for (const TapRecord& record : kept_[id.index]) tap_->append(record);
   kept_[id.index].clear();
   if (tasks_[id.index].is_tapped) append_row(tasks_[id.index]);
@@ -41,8 +41,10 @@ void ContextTap::flush(TaskId id) noexcept {
 void ContextTap::append_row(const Task& task) noexcept {
   Rows& rows = rows_[task.id.index];
   if (task.standing == Standing::kWarm) return;  // its publications are no values of variables
-  if (tap_ == nullptr || task.group.sequence() == rows.last || task.group.sequence() == 0) return;
+  if (task.group.sequence() == rows.last || task.group.sequence() == 0) return;
   rows.last = task.group.sequence();
+  if (digest_ != nullptr) return digest_->add_publication(task);
+  if (tap_ == nullptr) return;
   tap_->append_row(*task.group.published(), task.group.payload_bytes(), task.id, rtpu_, rows.count++);
 }
 

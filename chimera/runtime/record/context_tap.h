@@ -7,6 +7,7 @@
 
 #include "chimera/base/fixed.h"
 #include "chimera/base/setup_memory.h"
+#include "chimera/runtime/record/digest.h"
 #include "chimera/runtime/record/tap_ring.h"
 #include "chimera/schedule/ready_queue.h"
 #include "chimera/task/task.h"
@@ -17,8 +18,10 @@ namespace chimera {
 class ContextTap {
  public:
   /// `tap` null: nothing is recorded. With `keeps`, records of a task with a job under way stay with the thread of the
-  /// task until flush(). The tasks and the tap outlive this. Context: setup.
-  ContextTap(std::span<const Task> tasks, Tap* tap, std::uint8_t rtpu, bool keeps, SetupMemory& memory);
+  /// task until flush(). With `digest` it gets the faults, and the publications in place of the tap. The tasks, the tap
+  /// and the digest outlive this. Context: setup.
+  ContextTap(std::span<const Task> tasks, Tap* tap, std::uint8_t rtpu, bool keeps, SetupMemory& memory,
+             Digest* digest = nullptr);
 
   bool is_on() const noexcept { return tap_ != nullptr; }
   /// Writes one record if there is a tap. An invalid task: of the context. Where records are kept, the thread of a task
@@ -28,6 +31,11 @@ class ContextTap {
   }
   /// Writes one record at once, before those that are kept for the task's thread.
   void record_now(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept;
+  /// The last fault of the task, which is new.
+  void record_fault(const Task& task) noexcept {
+    record(TapKind::kFault, task.faults.at, task.id, static_cast<std::uint64_t>(task.faults.method));
+    if (digest_ != nullptr) digest_->add_faults(task);
+  }
   /// The release of a job, when the job is about to begin or will not run.
   void record_release(const Job& job) noexcept {
     const std::int64_t left = job.deadline == kNever ? 0 : (job.deadline - job.release).count;
@@ -55,6 +63,7 @@ class ContextTap {
 
   std::span<const Task> tasks_;
   Tap* tap_;
+  Digest* digest_;
   std::uint8_t rtpu_;
   // By task.
   std::span<Rows> rows_;

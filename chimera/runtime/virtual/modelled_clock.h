@@ -34,7 +34,11 @@ constexpr Nanoseconds between(Nanoseconds low, Nanoseconds high, std::uint64_t r
 class ModelledClock final : public JobClock {
  public:
   Nanoseconds now() noexcept override { return now_ + spent_; }
-  void spend(Nanoseconds time) noexcept override { spent_ += time; }
+  void spend(Nanoseconds time) noexcept override {
+    if (!stands_still_) spent_ += time;
+  }
+  /// From now on methods spend no time. Context: setup.
+  void stand_still() noexcept { stands_still_ = true; }
 
   /// Context: cycle; the executor only.
   void set(Nanoseconds now) noexcept {
@@ -45,18 +49,32 @@ class ModelledClock final : public JobClock {
 
  private:
   Nanoseconds now_, spent_;
+  bool stands_still_ = false;
 };
 
-/// Execution time of a job whose body has run. It is the time that the body spent, if any. Otherwise with a seed (null:
-/// none) it is uniform in [min, budget], without one the budget, or 0. A poll that found no event costs only what it
-/// spent.
+/// Execution times of jobs that differ from their budgets. Plain value.
+struct JobTimes {
+  JobTimes(std::uint64_t drawn_with) noexcept : seed(drawn_with) {}  // NOLINT: a seed stands for its times
+  static JobTimes none() noexcept {
+    JobTimes times(0);
+    times.are_zero = true;
+    return times;
+  }
+
+  std::uint64_t seed;     ///< they are drawn from [min, budget]
+  bool are_zero = false;  ///< they are 0, whatever the methods spend
+};
+
+/// Execution time of a job whose body has run. It is the time that the body spent, if any. Otherwise `times`
+/// (null: none) give it; without them it is the budget, or 0. A poll that found no event costs only what it spent.
 /// Context: any; wait-free.
 inline Nanoseconds modelled_time(const TaskSpec& spec, TaskId task, Nanoseconds release, Nanoseconds spent,
-                                 bool had_event, const std::uint64_t* seed) noexcept {
+                                 bool had_event, const JobTimes* times) noexcept {
   if (spent > Nanoseconds{} || !had_event) return spent;
-  if (seed == nullptr) return spec.budget;
+  if (times == nullptr) return spec.budget;
+  if (times->are_zero) return {};
   const auto number = static_cast<std::uint64_t>(release.count);
-  return between(spec.min_time, spec.budget, mixed(*seed, task.index, number));
+  return between(spec.min_time, spec.budget, mixed(times->seed, task.index, number));
 }
 
 }  // namespace chimera

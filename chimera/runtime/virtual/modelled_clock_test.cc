@@ -22,7 +22,7 @@ TEST(ModelledClock, AdvancesBySpentTimeOnly) {
   EXPECT_EQ(clock.spent(), Nanoseconds{});
 }
 
-constexpr std::uint64_t kSeven = 7;
+const JobTimes kSeven(7);
 
 TEST(ModelledTime, IsTheSpentTimeOrTheBudget) {
   EXPECT_EQ(modelled_time(spec(), TaskId(0u), {}, microseconds(5), true, nullptr), microseconds(5));
@@ -30,6 +30,8 @@ TEST(ModelledTime, IsTheSpentTimeOrTheBudget) {
   EXPECT_EQ(modelled_time(spec(), TaskId(0u), {}, {}, true, nullptr), microseconds(40));
   EXPECT_EQ(modelled_time(TaskSpec{}, TaskId(0u), {}, {}, true, nullptr), Nanoseconds{});
   EXPECT_EQ(modelled_time(spec(), TaskId(0u), {}, {}, false, nullptr), Nanoseconds{});
+  const JobTimes none = JobTimes::none();
+  EXPECT_EQ(modelled_time(spec(), TaskId(0u), {}, {}, true, &none), Nanoseconds{});
 }
 
 TEST(ModelledTime, FillsMinToBudgetEvenlyWithASeed) {
@@ -49,7 +51,7 @@ TEST(ModelledTime, FillsMinToBudgetEvenlyWithASeed) {
 }
 
 TEST(ModelledTime, DependsOnSeedTaskAndReleaseAlone) {
-  const auto time = [](std::uint64_t seed, std::uint32_t task, std::int64_t ms) {
+  const auto time = [](JobTimes seed, std::uint32_t task, std::int64_t ms) {
     return modelled_time(spec(), TaskId(task), milliseconds(ms), {}, true, &seed);
   };
   EXPECT_EQ(time(1, 2, 3), time(1, 2, 3));

@@ -258,7 +258,7 @@ bool Preemptive::run_job(const Job& job, Nanoseconds now) noexcept {
     Task& task = releases_.task(job.task);
     if (task.background != nullptr && had_event) run_background(task, Method::kCycle, now);
     a.remaining = modelled_time(tasks_[job.task.index], job.task, job.release - releases_.origin(), clock_.spent(),
-                                had_event, options_.seed ? &*options_.seed : nullptr);
+                                had_event, options_.times ? &*options_.times : nullptr);
     a.has_begun = true;
     releases_.queue().occupy(job.task);
   }

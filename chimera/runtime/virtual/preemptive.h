@@ -23,7 +23,7 @@ namespace chimera {
 
 /// How the processor is shared. Context: setup.
 struct PreemptiveOptions {
-  std::optional<std::uint64_t> seed;
+  std::optional<JobTimes> times;
   Nanoseconds quantum = milliseconds(1);  ///< laxity policies compare the running job again at every multiple of it
 };
 

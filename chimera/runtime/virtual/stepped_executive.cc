@@ -39,7 +39,7 @@ bool SteppedExecutive::begin_job(Nanoseconds now) noexcept {
   if (task.background != nullptr && had_event) run_background(task, Method::kCycle, now);
   start_ = now;
   end_ = now + modelled_time(*task.spec, job_.task, job_.release - releases_.origin(), clock_.spent(), had_event,
-                             seed_ ? &*seed_ : nullptr);
+                             times_ ? &*times_ : nullptr);
   has_job_ = true;
   return end_ == now;
 }

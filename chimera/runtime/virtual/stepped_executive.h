@@ -13,8 +13,8 @@ namespace chimera {
 class SteppedExecutive final : public SteppedProcessor {
  public:
   /// All arguments outlive this. Context: setup.
-  SteppedExecutive(Releases& releases, ModelledClock& clock, std::optional<std::uint64_t> seed) noexcept
-      : SteppedProcessor(releases, clock), seed_(seed) {}
+  SteppedExecutive(Releases& releases, ModelledClock& clock, std::optional<JobTimes> times) noexcept
+      : SteppedProcessor(releases, clock), times_(times) {}
 
   bool is_idle() const noexcept override { return !has_job_ && releases_.queue().is_empty(); }
   Nanoseconds finish(Nanoseconds now) noexcept override;
@@ -28,7 +28,7 @@ class SteppedExecutive final : public SteppedProcessor {
   Nanoseconds next_own(Nanoseconds now) noexcept override;
   void stand_at(Nanoseconds now) noexcept;
 
-  std::optional<std::uint64_t> seed_;
+  std::optional<JobTimes> times_;
   bool has_job_ = false;  // the members below are of a job that has begun and not ended
   Job job_;
   CycleTime time_;

@@ -15,7 +15,7 @@ namespace {
 struct ModelledTime {
   Releases& releases;
   ModelledClock& clock;
-  const std::uint64_t* seed;  // null: none
+  const JobTimes* times;  // null: none
   Nanoseconds origin;
   Nanoseconds& now_;
 
@@ -28,7 +28,7 @@ struct ModelledTime {
     const bool had_event = body.answer != Answer::kNoEvent;
     Task& task = releases.task(job.task);
     if (task.background != nullptr && had_event) run_background(task, Method::kCycle, start);
-    set(start + modelled_time(*task.spec, job.task, job.release - origin, clock.spent(), had_event, seed));
+    set(start + modelled_time(*task.spec, job.task, job.release - origin, clock.spent(), had_event, times));
     return now_;
   }
   Nanoseconds after(Nanoseconds end) noexcept {
@@ -52,7 +52,8 @@ RunOptions with_preemption(RunOptions options, bool preemptive) noexcept {
 
 VirtualExecutor::VirtualExecutor(TaskSet& set, const RunOptions& options, const VirtualOptions& how)
     : set_(set), how_(how), releases_(set, clock_, with_preemption(options, how.preemptive)),
-      preemptive_(releases_, set.spec().tasks, clock_, {how.seed, how.quantum}) {
+      preemptive_(releases_, set.spec().tasks, clock_, {how.times, how.quantum}) {
+  if (how.times && how.times->are_zero) clock_.stand_still();
   CHIMERA_ASSERT(how.quantum > Nanoseconds{});
   for (const TaskSpec& task : set.spec().tasks) CHIMERA_ASSERT(how.preemptive || !task.server);
 }
@@ -73,7 +74,7 @@ RunEnd VirtualExecutor::run(Nanoseconds duration) noexcept {
   const Nanoseconds until = duration == kNever ? kNever : origin() + duration;
   clock_.set(now_);
   if (how_.preemptive) return preemptive_.run(now_, until);
-  ModelledTime time{releases_, clock_, how_.seed ? &*how_.seed : nullptr, origin(), now_};
+  ModelledTime time{releases_, clock_, how_.times ? &*how_.times : nullptr, origin(), now_};
   return run_cycles(releases_, time, until);
 }
 

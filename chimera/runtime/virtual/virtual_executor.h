@@ -12,7 +12,7 @@ namespace chimera {
 /// Options of virtual time. Context: setup.
 struct VirtualOptions {
   bool preemptive = false;
-  std::optional<std::uint64_t> seed;      ///< execution times drawn from [min, budget] instead of the budget
+  std::optional<JobTimes> times;          ///< execution times in place of the budgets
   Nanoseconds quantum = milliseconds(1);  ///< of the laxity policies, preemptive only; > 0
 };
 

@@ -37,9 +37,11 @@ struct VirtualRtpus::Rtpu {
         releases(tasks, clock, options(run, switches, how)) {
     const std::span<const TaskSpec> specs = tasks.spec().tasks;
     if (is_preemptive(how))
-      processor = std::make_unique<SteppedPreemptive>(releases, specs, clock, PreemptiveOptions{how.seed, how.quantum});
+      processor = 
+          std::make_unique<SteppedPreemptive>(releases, specs, clock, PreemptiveOptions{how.times, how.quantum});
     else
-      processor = std::make_unique<SteppedExecutive>(releases, clock, how.seed);
+      processor = std::make_unique<SteppedExecutive>(releases, clock, how.times);
+    if (how.times && how.times->are_zero) clock.stand_still();
     for (const Task& task : tasks.tasks())
       CHIMERA_ASSERT(!tasks.is_mine(task.id) || is_preemptive(how) || !task.spec->server);
   }
