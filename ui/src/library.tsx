@@ -2,8 +2,9 @@
 // The library as hypertext: search, the page of each component, and all documents.
 import { DragEvent, KeyboardEvent, ReactNode, useEffect, useMemo, useRef, useState } from "react";
 import { Button } from "./controls";
-import { Around, markdown, Picture, PlaceLink } from "./document";
+import { Around, markdown, Picture } from "./document";
 import type { Place } from "./place";
+import { PlaceLink } from "./place_link";
 import { Found, Library, LibraryComponent, search } from "./search";
 
 /** Type of what is dragged from the list: the name of a component. */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page: one connection to chimera-web, one to the chosen subsystem, and what they show.
-import { ReactNode, useEffect, useMemo, useState } from "react";
+import { lazy, ReactNode, Suspense, useEffect, useMemo, useState } from "react";
 import { createRoot } from "react-dom/client";
 import { AssemblePage, markDraft } from "./assemble";
 import { nameOfFile } from "./assembly_form";
@@ -13,7 +13,6 @@ import { Finder, Help, Names } from "./finder";
 import { CpuBars, Header } from "./header";
 import { Inspector } from "./inspector";
 import { lookKeys, takeKey } from "./keys";
-import { LibraryPage } from "./library";
 import { addedTask } from "./library_acts";
 import { Lamps, runsFile, useRunningText, whyNot } from "./lamps";
 import { meanAndLongest } from "./load";
@@ -110,6 +109,10 @@ function measuredHere(state: MachineState | null, component: string): string {
     : `measured here: ${tasks.map((task) => `${task.task} ${meanAndLongest(task)}`).join("; ")}`;
 }
 
+/** Loaded when it is opened: the first picture does not wait for it. */
+const LibraryPage = lazy(() => import("./library").then(({ LibraryPage: page }) => ({ default: page }),
+  () => ({ default: () => <p className="fault">The library could not be loaded: reload the page.</p> })));
+
 /** The library and its documents, beside the canvas of the draft if there is one. */
 function Reading({ at, machine, state, canvas, why, isOpen }: {
   at: Place; machine: Machine | null; state: MachineState | null; canvas: ReactNode; why: string; isOpen: boolean;
@@ -130,9 +133,12 @@ function Reading({ at, machine, state, canvas, why, isOpen }: {
     go({ doc: "library", at: "" });
   };
   if (!isOpen) return <main><p className="hint">Connecting…</p></main>;
-  return <LibraryPage call={callBench} place={at} go={go} close={() => go({ doc: "", at: "" })}
-                      measured={(component) => measuredHere(state, component)}
-                      {...(isAssembling ? { add, canvas } : {})} />;
+  return (
+    <Suspense fallback={<main><p className="hint">Loading…</p></main>}>
+      <LibraryPage call={callBench} place={at} go={go} close={() => go({ doc: "", at: "" })}
+                   measured={(component) => measuredHere(state, component)}
+                   {...(isAssembling ? { add, canvas } : {})} />
+    </Suspense>);
 }
 
 function Modes({ machine, name }: { machine: Machine | null; name: string }) {

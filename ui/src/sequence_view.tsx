@@ -4,7 +4,7 @@ import { ReactNode, useEffect } from "react";
 import { Banners, machineBanners, MessageBox } from "./banners";
 import { bench } from "./bench";
 import { Button } from "./controls";
-import { PlaceLink } from "./document";
+import { PlaceLink } from "./place_link";
 import { Flag, stateWord } from "./header";
 import { takeKey } from "./keys";
 import { forbidden, Machine, MachineState } from "./machine";
