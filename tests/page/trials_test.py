@@ -145,8 +145,8 @@ class Trials(unittest.TestCase):
             drafted = page.call("replace", version=version, text=text)["analysis"]
             self.assertEqual(drafted["text"], text)
             page.call("write", version=version + 1)
-            checked = subprocess.run([CHIMERA, "check", "--json", self.file], capture_output=True, text=True, check=False,
-                                     env=dict(os.environ, ASAN_OPTIONS="detect_leaks=0"))
+            checked = subprocess.run([CHIMERA, "check", "--json", self.file], capture_output=True, text=True,
+                                     check=False, env=dict(os.environ, ASAN_OPTIONS="detect_leaks=0"))
             faults = json.loads(checked.stdout)["faults"]
             self.assertEqual(checked.returncode, 1)
             self.assertEqual([(fault["rule"], fault["line"], fault["column"]) for fault in faults],
