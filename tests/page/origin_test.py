@@ -256,7 +256,7 @@ class ForwardTest(PageTest):
             before = len(door.asked("set"))
             self.page.type_over("#set-wish", "2.5", Keys.ENTER)
             door.await_asked("set", before + 1)
-            self.assertEqual(door.asked("set")[-1], {"values": {"wish": 2.5}})
+            self.assertEqual(door.asked("set")[-1], {"values": {"wish": "2.5"}})
         self.assertGreater(forward.taken, 2)
         self.assertNotRegex(server.said(), REFUSED)
 

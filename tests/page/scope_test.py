@@ -93,8 +93,7 @@ class ScopeTest(PageTest):
         """The file that the button saves."""
         self.page.click(self.page.button(f"Save {name}"))
         file = self.place / "saved" / name
-        await_that(file.exists, name)
-        return file.read_bytes()
+        return await_that(lambda: file.exists() and file.read_bytes(), name)  # it is empty at first
 
     def test_saved_files_are_those_of_the_command(self):
         """Both wait for the same instant of a ramp: 1 m/s more each second."""

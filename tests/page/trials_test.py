@@ -152,7 +152,8 @@ class Trials(unittest.TestCase):
             self.assertEqual([(fault["rule"], fault["line"], fault["column"]) for fault in faults],
                              [(rule, first + line, column)], steps)
             self.assertIn(remedy, faults[0]["remedy"])
-            self.assertEqual([{**fault, "offers": []} for fault in faults], drafted["report"]["faults"])
+            faults = [{**fault, "offers": []} for fault in faults]
+            self.assertEqual(drafted["report"]["faults"], faults)
             tried = self.ended(page, self.begin(page, watch=["speed"]))
             self.assertEqual((tried["ended"], tried["output"]["faults"]), ({"code": 1}, faults))
 
