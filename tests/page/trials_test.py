@@ -35,7 +35,7 @@ SEQUENCES = [
     (["{switch: work, until: sequence_go > 16, within: 1 s}"], "sequence-condition", 1, 27, "write >= for >"),
     (["{switch: work}", "{switch: rest}"], "sequence-wait", 1, 5, "only the last step may stay"),
     (["{name: a, switch: work, until: speed > 1 m/s, within: 1 s, else: b}",
-      "{name: b, switch: rest, until: speed > 1 m/s, within: 0 s, else: a}"], "sequence-wait", 2, 55,
+      "{name: b, switch: rest, until: speed > 1 m/s, within: 0 s, else: a}"], "sequence-wait", 2, 59,
      "no circle of steps runs without it")]
 
 
