@@ -163,8 +163,8 @@ class Plant:
         self.case, self.on = case, {"clock", "watch", "sequence", SETS["near"][0]}
         self.flag, self.in_force, self.on_at = False, "near", None
         self.go, self.wish = case.initial_go if case.initial_go is not None else 1, (0, 1)
-        done = [(each[time], kind, each["to"]) for each in receipts if each["end"] == "done"
-                for time, kind in (("armed_ns", "armed"), ("at_ns", "done"))]
+        done = [(each[time], kind, each["tasks"]) for each in receipts if each["end"] == "done"
+                for time, kind in (("armed_ns", "armed"), ("at_ns", "done")) if each[time] is not None]
         self.events = sorted(case.acts + done, key=lambda event: event[0])
 
     def until(self, now):
@@ -185,11 +185,13 @@ class Plant:
     def do_flag(self, _, word):
         self.flag = word == "up"
 
-    def do_armed(self, at, _):
-        self.on_at = self.on_at if "sequence" in self.on else at
+    def do_armed(self, at, tasks):
+        if ("sequence", "arrives") in [(one["task"], one["move"]) for one in tasks]:
+            self.on_at = at
 
-    def do_done(self, _, name):
-        self.on = {"clock", "watch", "sequence", SETS[name][0]}
+    def do_done(self, _, tasks):
+        self.on |= {one["task"] for one in tasks if one["move"] == "arrives"}
+        self.on -= {one["task"] for one in tasks if one["move"] == "leaves"}
         self.name()
 
     def do_off(self, _, task):
@@ -206,8 +208,8 @@ class Plant:
         return next((level for task, level, _ in SETS.values() if task in self.on), None)
 
     def name(self):
-        whole = "sequence" in self.on
-        self.in_force = next((name for name, (task, *_) in SETS.items() if whole and task in self.on), "")
+        present = [name for name, (task, *_) in SETS.items() if task in self.on]
+        self.in_force = present[0] if len(present) == 1 and "sequence" in self.on else ""
 
     def see(self, now):
         go, self.go = self.go, None
