@@ -32,22 +32,27 @@ Result<Process> shell(const std::string& script, std::span<const int> descriptor
   return Process::start("/bin/sh", words, descriptors);
 }
 
-// Returns the output of the script on its descriptor 3; expects exit status 0.
-std::string output_of(const std::string& script, std::vector<int> more = {}) {
-  int ends[2];
-  EXPECT_EQ(::pipe2(ends, O_CLOEXEC), 0);
-  more.insert(more.begin(), ends[1]);
-  auto child = shell(script, more);
-  EXPECT_TRUE(child.has_value()) << child.error().message.view();
+// Returns what the child writes until its end; expects exit status 0. `ends`: of a pipe, the second one the child's.
+std::string text_of(Process& child, const int (&ends)[2]) {
   ::close(ends[1]);
   std::string text;
   char bytes[512];
   for (ssize_t n; (n = ::read(ends[0], bytes, sizeof bytes)) > 0;) text.append(bytes, static_cast<std::size_t>(n));
   ::close(ends[0]);
   ProcessEnd end;
-  EXPECT_TRUE(child->wait(end, kLimit));
+  EXPECT_TRUE(child.wait(end, kLimit));
   EXPECT_EQ(end.code, 0);
   return text;
+}
+
+// Returns the output of the script on its descriptor 3.
+std::string output_of(const std::string& script, std::vector<int> more = {}) {
+  int ends[2];
+  EXPECT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+  more.insert(more.begin(), ends[1]);
+  auto child = shell(script, more);
+  EXPECT_TRUE(child.has_value()) << child.error().message.view();
+  return text_of(*child, ends);
 }
 
 TEST(Process, StartsApartWithoutStreamsAndDescriptorsOfItsParent) {
@@ -58,14 +63,7 @@ TEST(Process, StartsApartWithoutStreamsAndDescriptorsOfItsParent) {
   auto child = Process::start_apart("/bin/sh", words, {.output = ends[1], .error = ends[1]});
   ASSERT_TRUE(child) << child.error().message.c_str();
   const std::string own = std::to_string(child->pid());
-  ::close(ends[1]);
-  std::string text;
-  char bytes[512];
-  for (ssize_t n; (n = ::read(ends[0], bytes, sizeof bytes)) > 0;) text.append(bytes, static_cast<std::size_t>(n));
-  ::close(ends[0]);
-  ProcessEnd end;
-  EXPECT_TRUE(child->wait(end, kLimit));
-  EXPECT_EQ(text, own + "\n" + own + "\n0 1 2 error\n");
+  EXPECT_EQ(text_of(*child, ends), own + "\n" + own + "\n0 1 2 error\n");
 }
 
 TEST(Process, BoundsTheFilesOfAChildInItsPlace) {
@@ -74,13 +72,7 @@ TEST(Process, BoundsTheFilesOfAChildInItsPlace) {
   const std::array<const char*, 3> words = {"sh", "-c", "ulimit -f"};  // in 512 bytes
   auto child = Process::start_apart("/bin/sh", words, {.output = ends[1], .error = ends[1], .file = 1 << 20});
   ASSERT_TRUE(child) << child.error().message.c_str();
-  ::close(ends[1]);
-  char bytes[64] = {};
-  EXPECT_GT(::read(ends[0], bytes, sizeof bytes - 1), 0);
-  ::close(ends[0]);
-  EXPECT_STREQ(bytes, "2048\n");
-  ProcessEnd end;
-  EXPECT_TRUE(child->wait(end, kLimit));
+  EXPECT_EQ(text_of(*child, ends), "2048\n");
 }
 
 TEST(Process, EndsABoundChildWithItsParent) {

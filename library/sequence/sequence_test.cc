@@ -67,6 +67,20 @@ TEST(SequenceSteps, GoesFromStepToStep) {
   EXPECT_EQ(s.machine.step(), 3);
 }
 
+TEST(SequenceSteps, BeginsInAnyConfiguration) {
+  Steps s({until("grip")});
+  EXPECT_EQ(s.cycle("near", 1), State::kSwitches);
+  EXPECT_EQ(s.machine.request(), 0);
+  EXPECT_EQ(s.cycle("grip"), State::kRuns);
+}
+
+TEST(SequenceSteps, GoesWhereAPersonSaysAfterSwitching) {
+  Steps s({until("near"), until("grip")});
+  s.cycle("near", 1);
+  EXPECT_EQ(s.cycle("park", 2), State::kSwitches) << "switch and Go within one cycle";
+  EXPECT_EQ(s.machine.request(), 1);
+}
+
 TEST(SequenceSteps, RequestsEachSecondUntilTheTimeIsOver) {
   Steps s({until("near"), until("grip", 0)});
   s.cycle("near", 1);

@@ -146,6 +146,7 @@ class SequenceSteps {
     has_step_ = true;
     has_lost_ = is_disturbed_ = false;
     was_stable_ = is_stable(in);
+    if (was_stable_) last_in_force_ = in.in_force;  // the step goes on from there, also if a person switched there
     asked_since_ = in.now;
     asked_at_ = kNever;
     state_ = SequenceState::kSwitches;

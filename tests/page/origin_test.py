@@ -9,7 +9,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent / "harness"))
 
 from case import PageTest, main  # noqa: E402
 from door import Door  # noqa: E402
+from forward import Forward  # noqa: E402
 from hostile import Elsewhere  # noqa: E402
+from page import Keys  # noqa: E402
 
 OWN = "/page.css"  # a document of the origin of chimera-web that connects to nothing by itself
 REFUSED = r"(?m)^chimera-web: 4\d\d: "  # a line of standard error
@@ -239,6 +241,24 @@ class OriginTest(PageTest):
         self.page.await_that("document.title !== 'elsewhere'", "the answer")
         self.assertNotIn("id=\"page\"", self.browser.driver.page_source)
         self.assert_nothing_reached()
+
+
+class ForwardTest(PageTest):
+    """A person at another computer, whose `ssh -L` has another port there."""
+
+    def test_the_page_works_through_a_forwarded_port(self):
+        door, server = self.using(Door(self.runtime)), self.web()
+        forward = self.using(Forward(server.port))
+        for host in ("127.0.0.1", "localhost"):
+            self.page.open(f"http://{host}:{forward.port}/#{server.key}")
+            self.page.await_open()
+            self.assertEqual(self.page.states(), {"task0": "ON", "task1": "ON", "task2": "ON"})
+            before = len(door.asked("set"))
+            self.page.type_over("#set-wish", "2.5", Keys.ENTER)
+            door.await_asked("set", before + 1)
+            self.assertEqual(door.asked("set")[-1], {"values": {"wish": "2.5"}})
+        self.assertGreater(forward.taken, 2)
+        self.assertNotRegex(server.said(), REFUSED)
 
 
 if __name__ == "__main__":

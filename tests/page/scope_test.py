@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A person records a machine, tunes it, and looks who had the processor."""
 import pathlib
+import subprocess
 import sys
 import time
 
@@ -11,6 +12,7 @@ from case import PageTest, main  # noqa: E402
 from door import Door  # noqa: E402
 from machine import PLANT, Machine  # noqa: E402
 from page import Keys  # noqa: E402
+from system import CHIMERA, await_that  # noqa: E402
 
 MS = 1_000_000
 
@@ -28,10 +30,14 @@ class ScopeTest(PageTest):
             field.send_keys(words)
         self.page.click(self.page.button("Record"))
 
-    def results(self):
+    def answers(self, word):
+        """Results of trials that ended so far, whose output has this word."""
         self.read_logs()
         return [line["result"] for socket in self.frames.of("/bench") for line in socket.received
-                if (line.get("result") or {}).get("csv")]
+                if word in ((line.get("result") or {}).get("output") or {})]
+
+    def results(self):
+        return self.answers("rows")
 
     def recordings(self, least):
         self.page.await_that(f"Number(document.querySelector('[data-recordings]').dataset.recordings) >= {least}",
@@ -67,6 +73,46 @@ class ScopeTest(PageTest):
         self.recordings(2)
         self.page.click(self.page.button("Stop recording"))
         self.page.await_one("[data-scope=off]")
+
+    def test_normal_records_after_each_trigger_and_only_then(self):
+        machine = self.look_at(Machine(self.runtime))
+        machine.call("set", values={"bias": 0.5})
+        self.record("speed", mode="normal", trigger="bias > 1 m/s", wait="100 ms", **{"for": "100 ms"})
+        await_that(lambda: self.answers("error"), "a wait without a trigger")
+        self.assertEqual(self.page.attribute("[data-recordings]", "data-recordings"), "0")
+        self.page.await_one("[data-scope=on]")
+        values = [2, 0.5]
+        while int(self.page.attribute("[data-recordings]", "data-recordings")) < 2:
+            machine.call("set", values={"bias": values[0]})
+            values.reverse()
+        self.page.click(self.page.button("Stop recording"))
+        self.page.await_one("[data-scope=off]")
+        self.assertTrue(all(result["output"]["rows"] for result in self.results()))
+
+    def saved(self, name):
+        """The file that the button saves."""
+        self.page.click(self.page.button(f"Save {name}"))
+        file = self.place / "saved" / name
+        return await_that(lambda: file.exists() and file.read_bytes(), name)  # it is empty at first
+
+    def test_saved_files_are_those_of_the_command(self):
+        """Both wait for the same instant of a ramp: 1 m/s more each second."""
+        machine = self.look_at(Machine(self.runtime))
+        self.browser.command("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(self.place / "saved"))
+        for ahead in (4, 10, 30):  # s, until both are ready
+            words = {"trigger": f"speed > {machine.value('speed') + ahead:.2f} m/s", "pre": "150 ms",
+                     "for": "300 ms", "wait": f"{ahead + 2} s"}
+            options = [word for name, value in words.items() for word in (f"--{name}", value)]
+            with subprocess.Popen([CHIMERA, "scope", "torque", "speed", *options, "--subsystem", "plant",
+                                   "--csv", "command.csv", "--svg", "command.svg"], cwd=self.place,
+                                  env=machine.environment, stderr=subprocess.DEVNULL) as command:
+                self.record(*(() if self.page.all("[data-scope-message]") else ("torque", "speed")), **words)
+                self.page.await_one("[data-scope=on]")
+                await_that(lambda: self.page.all("[data-scope=off]"), "the end of the recording")
+            if command.returncode == 0 and not self.page.all("[data-scope-message]"):
+                break
+        self.assertEqual(self.saved("plant.csv"), (self.place / "command.csv").read_bytes())
+        self.assertEqual(self.saved("plant.svg"), (self.place / "command.svg").read_bytes())
 
     def test_tuned_values_go_into_the_draft(self):
         machine = self.using(Machine(self.runtime))

@@ -28,6 +28,15 @@ tasks:
   count: {component: t_counter, rate: 20 Hz}
   log: {component: csv_log, rate: 20 Hz, alias: {in: [count]}, resources: {file: "%s"}}
 """
+# Steps of a sequence of the plant: the rule that refuses them, line behind `sequence:`, column, what the user reads.
+SEQUENCES = [
+    (["{switch: work, for: 1 s, else: rset}", "{switch: rest}"], "sequence-step", 1, 36, "did you mean 'rest'?"),
+    (["{switch: wrok, for: 1 s}", "{switch: rest}"], "configuration-unknown", 1, 14, "did you mean 'work'?"),
+    (["{switch: work, until: sequence_go > 16, within: 1 s}"], "sequence-condition", 1, 27, "write >= for >"),
+    (["{switch: work}", "{switch: rest}"], "sequence-wait", 1, 5, "only the last step may stay"),
+    (["{name: a, switch: work, until: speed > 1 m/s, within: 1 s, else: b}",
+      "{name: b, switch: rest, until: speed > 1 m/s, within: 0 s, else: a}"], "sequence-wait", 2, 59,
+     "no circle of steps runs without it")]
 
 
 def children(pid):
@@ -69,7 +78,7 @@ class Trials(unittest.TestCase):
         return answer["result"]
 
     def ended(self, page, number):
-        await_that(lambda: self.result(page, number)["ended"] is not None, f"the end of trial {number}")
+        await_that(lambda: self.result(page, number)["ended"] is not None, f"the end of trial {number}", pause=0.02)
         return self.result(page, number)
 
     def run_command(self, *words):
@@ -126,6 +135,27 @@ class Trials(unittest.TestCase):
         page.call("replace", version=1, text=PLANT.read_text().replace("k: 2 N.s", "k: 2 m"))
         faulty = self.ended(page, self.begin(page, watch=["speed"]))
         self.assertFalse(faulty["output"]["legal"])
+
+    def test_a_faulty_sequence_is_refused_with_place_and_remedy_by_page_and_command(self):
+        page = self.page(PLANT.read_text())
+        first = len(PLANT.read_text().splitlines()) + 1
+        for steps, rule, line, column, remedy in SEQUENCES:
+            text = PLANT.read_text() + "sequence:\n" + "".join(f"  - {step}\n" for step in steps)
+            version = page.call("draft")["version"]
+            drafted = page.call("replace", version=version, text=text)["analysis"]
+            self.assertEqual(drafted["text"], text)
+            page.call("write", version=version + 1)
+            checked = subprocess.run([CHIMERA, "check", "--json", self.file], capture_output=True, text=True,
+                                     check=False, env=dict(os.environ, ASAN_OPTIONS="detect_leaks=0"))
+            faults = json.loads(checked.stdout)["faults"]
+            self.assertEqual(checked.returncode, 1)
+            self.assertEqual([(fault["rule"], fault["line"], fault["column"]) for fault in faults],
+                             [(rule, first + line, column)], steps)
+            self.assertIn(remedy, faults[0]["remedy"])
+            faults = [{**fault, "offers": []} for fault in faults]
+            self.assertEqual(drafted["report"]["faults"], faults)
+            tried = self.ended(page, self.begin(page, watch=["speed"]))
+            self.assertEqual((tried["ended"], tried["output"]["faults"]), ({"code": 1}, faults))
 
     def test_what_a_try_opens_is_asked_about_first(self):
         log = self.place / "log.csv"
@@ -193,6 +223,13 @@ class Trials(unittest.TestCase):
 
     # Words that are none
 
+    def assert_fail(self, page, numbers, word):
+        """The trials of these keys have failed with the word, side by side."""
+        for key, number in numbers.items():
+            done = self.ended(page, number)
+            self.assertNotEqual(done["ended"], {"code": 0}, (key, word))
+            self.assertIsNone(done["csv"], (key, word))
+
     def test_nonsense_is_refused_and_reaches_nothing(self):
         page = self.page(PLANT.read_text())
         before = sorted(path for path in self.place.rglob("*") if "state" not in path.parts)
@@ -202,18 +239,14 @@ class Trials(unittest.TestCase):
                  "%s%n", "q[99999999]", "a" * 400, "-", "NaN", "1e999 s", "-1 s"]
         with Machine(self.place):
             for word in words:
-                for key in ("watch", "at", "expect"):
-                    number = self.begin(page, **{"watch": ["speed"], key: [word]})
-                    done = self.ended(page, number)
-                    self.assertNotEqual(done["ended"], {"code": 0}, (key, word))
-                    self.assertIsNone(done["csv"], (key, word))
+                self.assert_fail(page, {key: self.begin(page, **{"watch": ["speed"], key: [word]})
+                                        for key in ("watch", "at", "expect")}, word)
                 good = {"machine": "plant", "channels": ["speed"], "for": "50 ms", "wait": "50 ms"}
-                for key in ("machine", "channels", "trigger", "pre", "for", "wait"):
-                    answer = page.ask("scope", **{**good, key: [word] if key == "channels" else word})
-                    if "result" in answer:
-                        done = self.ended(page, answer["result"]["number"])
-                        self.assertNotEqual(done["ended"], {"code": 0}, (key, word))
-                        self.assertIsNone(done["csv"], (key, word))
+                for keys in ("machine", "channels", "trigger"), ("pre", "for", "wait"):
+                    answers = {key: page.ask("scope", **{**good, key: [word] if key == "channels" else word})
+                               for key in keys}
+                    self.assert_fail(page, {key: answer["result"]["number"] for key, answer in answers.items()
+                                            if "result" in answer}, word)
             for word in ("", "a\0b", "a" * 401, "a" * 1_000_000):
                 for key in ("watch", "at", "expect", "duration", "every"):
                     bad = [word] if key in ("watch", "at", "expect") else word

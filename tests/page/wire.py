@@ -146,12 +146,13 @@ class WebSocket:
             size = struct.unpack(">H" if size == 126 else ">Q", self._take(2 if size == 126 else 8))[0]
         return first & 15, first >= 128, self._take(size)
 
-    def message(self):
-        """The next text; answers pings."""
+    def message(self, until=float("inf")):
+        """The next text; answers pings, but none later than `until`."""
         text = bytearray()
         while True:
             kind, last, data = self.frame()
             if kind == PING:
+                assert time.monotonic() < until, "the server sends pings and no answer"
                 self.send(data, PONG)
             elif kind == CLOSE:
                 raise Closed(data)
@@ -167,7 +168,8 @@ class WebSocket:
 
     def finish(self):
         """The answer to the last request: a result, or an error."""
-        while (answer := json.loads(self.message())).get("id") != self.number:
+        until = time.monotonic() + HANG
+        while (answer := json.loads(self.message(until))).get("id") != self.number:
             pass
         return answer
 

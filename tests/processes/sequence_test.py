@@ -54,10 +54,14 @@ class Sequence(unittest.TestCase):
     def go(self, system, *words):
         system.chimera("sequence", *words, "--subsystem", "subject")
 
-    def kill_and_await(self, system, rtpu):
-        before = system.rtpu(rtpu)
+    def kill(self, system, rtpu, step, state, note=""):
+        """Afterwards the sequence has this step and state, and has said the note."""
+        before, since = system.rtpu(rtpu), system.next_event()
         self.assertTrue(system.kill(before["pid"]))
         system.await_restart(rtpu, before)
+        if note:
+            system.await_event(since, "note", note, task="sequence")
+        self.await_step(system, step, state)
 
     def test_goes_through_its_steps(self):
         for form in (str, preemptive):
@@ -75,28 +79,19 @@ class Sequence(unittest.TestCase):
     def test_goes_on_after_a_death_only_where_reentry_is_allowed(self):
         with System(STAYS) as system:
             self.await_step(system, 1, RUNNING)
-            self.kill_and_await(system, "servo")
-            self.await_step(system, 1, PAUSED)
-            system.await_event(0, "note", "may go on with step 2", task="sequence")
+            self.kill(system, "servo", 1, PAUSED, "may go on with step 2")
             self.go(system, "go", "second")
             self.await_step(system, 2, RUNNING)
-            since = system.next_event()
-            self.kill_and_await(system, "servo")
-            system.await_event(since, "note", "goes on with step 2", task="sequence")
-            self.await_step(system, 2, RUNNING)
+            self.kill(system, "servo", 2, RUNNING, "goes on with step 2")
 
     def test_goes_on_after_the_death_of_its_own_rtpu_only_where_reentry_is_allowed(self):
         with System(STAYS) as system:
             self.go(system, "go", "2")
             self.await_step(system, 2, RUNNING)
-            since = system.next_event()
-            self.kill_and_await(system, "brain")
-            system.await_event(since, "note", "goes on with step 2", task="sequence")
-            self.await_step(system, 2, RUNNING)
+            self.kill(system, "brain", 2, RUNNING, "goes on with step 2")
             self.go(system, "go", "first")
             self.await_step(system, 1, RUNNING)
-            self.kill_and_await(system, "brain")
-            self.await_step(system, 0, PAUSED)
+            self.kill(system, "brain", 0, PAUSED)
 
     def test_a_pause_outlives_the_death_of_its_rtpu(self):
         with System(STAYS) as system:
@@ -104,8 +99,7 @@ class Sequence(unittest.TestCase):
             self.await_step(system, 2, RUNNING)
             self.go(system, "pause")
             self.await_step(system, 2, PAUSED)
-            self.kill_and_await(system, "brain")
-            self.await_step(system, 0, PAUSED)
+            self.kill(system, "brain", 0, PAUSED)
 
     def test_goes_on_without_its_manager(self):
         with System(STAYS) as system:

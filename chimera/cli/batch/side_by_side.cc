@@ -52,7 +52,7 @@ struct Child {
 [[noreturn]] void live(const SideBySide& plan, std::size_t piece, pid_t parent, int answer, int errors,
                        UnderWay* place) {
   if (place != nullptr) write_under_way_to(*place);
-  (void)follow_parent(parent, SIGKILL);
+  if (!follow_parent(parent, SIGKILL)) ::_exit(1);  // the parent was killed before
   std::signal(SIGINT, SIG_IGN);  // of a terminal: the parent ends all children
   std::signal(SIGTERM, SIG_DFL);
   const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);

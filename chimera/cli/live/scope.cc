@@ -32,6 +32,11 @@ std::vector<ChannelNumber> numbers_in_row(const Json& row, const std::vector<std
 
 bool is_row(const Json& row) { return row.is_array() && row.size() >= 2 && row[0].is_whole() && row[1].is_whole(); }
 
+/// False: a task that is OFF could produce the variable, and has not.
+bool is_drawn(const draw::Curve& curve) {
+  return std::ranges::any_of(curve.points, [](const draw::PlotPoint& point) { return !std::isnan(point.value); });
+}
+
 }  // namespace
 
 Scope::Stream& Scope::stream(const std::string& rtpu, const std::string& task) {
@@ -270,7 +275,9 @@ draw::Plot Scope::plot(const std::string& title, const std::string& note) const 
         draw::Curve curve{column_name(stream.columns[k]), request_.channels[c].unit, points_of(stream, k), 0, true};
         if (request_.trigger && request_.trigger->channel().variable == request_.channels[c].name.variable)
           plot.level = request_.trigger->level(), plot.level_unit = curve.unit;
-        plot.curves.push_back(std::move(curve));
+        const auto twin = std::ranges::find(plot.curves, curve.name, &draw::Curve::name);
+        if (twin != plot.curves.end() && !is_drawn(*twin)) *twin = std::move(curve);
+        else if (twin == plot.curves.end() || is_drawn(curve)) plot.curves.push_back(std::move(curve));
       }
   for (const Stream& stream : streams_) {
     std::optional<Nanoseconds> before;

@@ -168,6 +168,21 @@ TEST(Scope, ATaskThatWasMadeAnewBreaksTheLineButLosesNothing) {
   EXPECT_EQ(scope.plot("t", "").curves[0].points.size(), 3u);
 }
 
+TEST(Scope, ThePictureHasNoCurveOfATaskThatHasNotPublished) {
+  Json spare = pid(0, {{1, 1, 0}});
+  spare["task"] = "spare";
+  spare["rows"][0][2] = Json::array({Json()});
+  for (const bool is_first : {true, false}) {
+    Scope scope(request("error > 2 mrad", 0, 4));
+    if (is_first) scope.add(spare);
+    scope.add(pid(0, {{1, 1, 0}, {6, 2, 0.003}, {7, 3, 0.003}}));
+    if (!is_first) scope.add(spare);
+    const draw::Plot plot = scope.plot("t", "");
+    ASSERT_EQ(plot.curves.size(), 1u);
+    EXPECT_DOUBLE_EQ(plot.curves[0].points.back().value, 0.003);
+  }
+}
+
 TEST(Scope, ThePictureHasTheTriggerAndItsLevel) {
   ScopeRequest asked = request("error > 2 mrad", 1, 5);
   asked.channels.pop_back();

@@ -58,7 +58,7 @@ class HeldSignals {
 };
 
 [[noreturn]] void live(const std::function<int()>& work, pid_t parent, UnderWay& place, HeldSignals& held) {
-  (void)follow_parent(parent, SIGKILL);
+  if (!follow_parent(parent, SIGKILL)) ::_exit(1);  // the parent was killed before
   held.release();
   write_under_way_to(place);
   const int code = report_lost_output(work());

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chimera/cli/run/own_process.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -9,6 +13,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "chimera/base/testing/await.h"
 #include "chimera/cli/run/under_way.h"
 #include "chimera/runtime/making.h"
 #include "chimera/task/abi.h"
@@ -86,6 +91,22 @@ TEST(OwnProcess, EndsTheProcessesThatItsWorkLeftBehind) {
   ::close(ends[1]);
   char byte;
   EXPECT_EQ(::read(ends[0], &byte, 1), 0) << "no process has the other end any more";
+  ::close(ends[0]);
+}
+
+TEST(OwnProcess, EndsItsWorkIfItsParentWasKilledBeforeTheWorkBegan) {
+  int ends[2];
+  ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+  const pid_t outer = ::fork();
+  if (outer == 0) {
+    static const pid_t kParent = ::getpid();
+    ::pthread_atfork(nullptr, [] { ::raise(SIGKILL); }, [] { while (::getppid() == kParent) ::usleep(1000); });
+    ::_exit(in_own_process([] { return static_cast<int>(::sleep(600)); }, [](const BrokenRun&) { return 7; }));
+  }
+  ::close(ends[1]);
+  EXPECT_EQ(::waitpid(outer, nullptr, 0), outer);
+  pollfd closed{ends[0], POLLIN, 0};  // the last writer is the child of the killed process
+  EXPECT_EQ(::poll(&closed, 1, static_cast<int>(kHangLimit.count / 1'000'000)), 1);
   ::close(ends[0]);
 }
 

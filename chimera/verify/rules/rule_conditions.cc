@@ -23,8 +23,7 @@ class ConditionJudge {
   std::optional<JudgedCondition> judge() {
     const VariableModel* variable = find();
     if (variable == nullptr || !is_produced(*variable)) return std::nullopt;
-    const LinkedPort& port =
-        model_.port(variable->producers.empty() ? variable->consumers[0] : variable->producers[0]);
+    const LinkedPort& port = judged_port(*variable);
     if (!is_solved(port) || !is_number(port) || !is_one_element(port)) return std::nullopt;
     const SetModel* set = place_.is_until ? &nowhere_ : place_.set;
     const auto bytes = value_bytes(model_, draft_.value, {port, what_, false, set});
@@ -88,6 +87,17 @@ class ConditionJudge {
              variable.name, "a variable of another configuration", {},
              "name a variable that is produced where the switch begins");
     return is_elsewhere;
+  }
+
+  /// The producer, in the configuration of a step; of an operator variable, a reader with a range if there is one.
+  const LinkedPort& judged_port(const VariableModel& variable) const {
+    const auto& ports = variable.producers.empty() ? variable.consumers : variable.producers;
+    const auto is_best = [&](PortRef one) {
+      if (variable.producers.empty()) return model_.port(one).declared->has_range;
+      return place_.is_until && place_.set != nullptr && place_.set->has(one.task);
+    };
+    const auto best = std::ranges::find_if(ports, is_best);
+    return model_.port(best == ports.end() ? ports[0] : *best);
   }
 
   bool is_number(const LinkedPort& port) {

@@ -39,7 +39,7 @@ void check_reach(Model& model, const DraftCondition& draft, const JudgedConditio
   if (!port.has_range || (!is_below && !is_above)) return;
   model.error("sequence-condition", draft.variable.at,
               what + " can never hold: '" + draft.variable.text + "' is " + plain_number(port.min) + " to " +
-                  plain_number(port.max) + " " + judged.port->unit_text,
+                  plain_number(port.max) + (judged.port->unit_text == "1" ? "" : " " + judged.port->unit_text),
               draft.value.text, "a value that it can have", {}, is_below ? "write <= for <" : "write >= for >");
 }
 

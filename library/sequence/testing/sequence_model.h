@@ -87,7 +87,7 @@ class SequenceModel {
     return {};
   }
   bool is_foreign() const {
-    if (is_at(now_->step) || now_->in.in_force == stable_before()) return false;
+    if (now_->has_entered || is_at(now_->step) || now_->in.in_force == stable_before()) return false;
     for (std::size_t i = all_.size(); i-- > 0 && !all_[i].has_begun;)
       if (all_[i].request >= 0 && is_at(static_cast<std::size_t>(all_[i].request))) return false;
     return true;
