@@ -4,6 +4,7 @@
 #include <numbers>
 #include <utility>
 
+#include "chimera/base/math.h"
 #include "library/kinematics/dh_ports.h"
 #include "library/signals/fade.h"
 
