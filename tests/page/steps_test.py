@@ -197,15 +197,18 @@ class Wrong(StepsTest):
         self.steps(LESSON)
         self.type_into(of_step(1, "name"), "   ")
         self.fill(of_step(1, "name"), "9 lives")
-        self.page.await_text(f"{tile(1)} li[data-fault]", "the name is '9 lives'")
+        self.page.await_text(f"{tile(1)} li[data-fault]", "is '9 lives'; expected a letter")
         self.fill(of_step(1, "name"), " ")
         self.assertEqual(self.text(), LESSON)
 
     def test_a_refused_word_stays_in_its_field(self):
-        self.steps(LESSON)
-        self.type_into(of_step(1, "for"), '"2 s')
+        text = SETS + "sequence:\n  - one\n"
+        self.steps(text)
+        self.type_into(of_step(1, "for"), "2 s")
         self.page.await_one(f"{of_step(1, 'for')}[aria-invalid=true]")
-        self.assertEqual(self.text(), LESSON)
+        self.page.await_text(f"{tile(1)} [role=alert]", "has a value without parts")
+        self.assertEqual(self.page.attribute(of_step(1, "for"), "value"), "2 s")
+        self.assertEqual(self.text(), text)
 
     def test_a_seventeenth_step_is_refused(self):
         steps = ["  - {switch: one, for: 1 s}\n", "  - {switch: two, for: 1 s}\n"]
