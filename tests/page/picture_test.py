@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Takes pictures: for README.md the page on examples/01_puma_pid, with a chosen task and the cause of its output; for
-docs/howto/operate.md the large view of examples/21_sequence. They go to BUILD/page_pictures; with
+docs/howto/operate.md the large view of examples/21_sequence, slower. They go to BUILD/page_pictures; with
 CHIMERA_WRITE_PICTURES=1 to docs/pictures (from a release build, with real-time rights, so that no warning shows)."""
 import os
 import pathlib
@@ -17,8 +17,8 @@ IS_WRITTEN = os.environ.get("CHIMERA_WRITE_PICTURES") == "1"
 
 
 class Picture(PageTest):
-    def run_lesson(self, folder, name):
-        text = (SOURCE / "examples" / folder / f"{name}.yaml").read_text()
+    def run_lesson(self, folder, name, slower=lambda text: text):
+        text = slower((SOURCE / "examples" / folder / f"{name}.yaml").read_text())
         return Machine(self.runtime, text, name, ("--priority", "50") if IS_WRITTEN else ())
 
     def take(self, name):
@@ -27,10 +27,10 @@ class Picture(PageTest):
         self.assertTrue(self.browser.driver.save_screenshot(str(folder / name)))
 
     def test_the_large_view_of_a_sequence_is_in_the_picture_of_operating(self):
-        machine = self.using(self.run_lesson("21_sequence", "cell"))
-        machine.call("set", values={"sequence_go": 3})
+        self.using(self.run_lesson("21_sequence", "cell", lambda text: text.replace(
+            "duration: 1.8 s", "duration: 18 s").replace("within: 3 s", "within: 20 s")))
         self.page.open(self.web().link + "&doc=steps")
-        self.page.await_one("[data-present='3']")
+        self.page.await_one("[data-present='1']")
         self.page.await_one(".large progress")
         self.page.await_one(".large [data-condition-value]:not(:empty)")
         self.take("steps.png")
