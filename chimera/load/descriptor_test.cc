@@ -72,6 +72,8 @@ TEST(Describe, TakesADeclarationFromBeforeThereWasABackgroundAndNoOtherSize) {
   EXPECT_TRUE(sample.described()) << "built before there were safe frames";
   sample.component.host_size = offsetof(chimera_host, configuration);
   EXPECT_TRUE(sample.described()) << "built before a component could read the configuration in force";
+  sample.component.host_size = offsetof(chimera_host, incarnation);
+  EXPECT_TRUE(sample.described()) << "built before a component could read the incarnation of its process";
   sample.component.host_size = sizeof(chimera_host);
   EXPECT_TRUE(sample.described());
   sample.component.struct_size = size + 8;

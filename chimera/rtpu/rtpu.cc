@@ -185,6 +185,7 @@ Result<void> Rtpu::make_tasks() {
   place.preemptive = self().preemptive;
   place.at_edge = &head.at_edge;
   place.making = &making;
+  place.incarnation = start_.incarnation;
   auto tasks = HeapTaskSet::create(spec, components_, place);
   if (!tasks) return tasks.error();
   tasks_ = *std::move(tasks);

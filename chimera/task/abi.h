@@ -205,6 +205,8 @@ typedef struct chimera_host {
   /* The name of the configuration in force; "" if none is. A slow switch changes it at its end. Valid as long as the
    * task. */
   chimera_text (*configuration)(void* context);
+  /* Starts of the process that runs the task: 1, and one more after each of its deaths. In virtual time it is 1. */
+  uint32_t (*incarnation)(void* context);
 } chimera_host;
 
 /* The argument of every method. */

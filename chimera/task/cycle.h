@@ -70,6 +70,9 @@ class Cycle {
   /// The name of the configuration in force; empty if none is: a task is OFF or in ERROR, or stands in for no other.
   /// A slow switch changes it at its end. Valid as long as the task. Context: cycle; wait-free.
   std::string_view configuration() const noexcept { return view(call_->host->configuration(call_->context)); }
+  /// Starts of the process that runs the task: 1, and one more after each of its deaths. In virtual time and in one
+  /// process it is 1. Context: any; wait-free.
+  std::uint32_t incarnation() const noexcept { return call_->host->incarnation(call_->context); }
   /// The variable or constant that `port` is linked to; empty: none. Valid as long as the task. Context: any;
   /// wait-free.
   template <class Port>

@@ -143,7 +143,7 @@ class Rig : public RigPorts, public RigSafeFrames {
   }
   static constexpr chimera_host kHost{&host_expired, &host_signal,  &host_spend,           &host_note,
                                       &host_variable, &host_unit,    &host_request,         &host_safe_frame<Rig>,
-                                      &host_safe_bytes<Rig>, &host_configuration<Rig>};
+                                      &host_safe_bytes<Rig>, &host_configuration<Rig>, &host_incarnation<Rig>};
 
   chimera_call call_{};
   std::vector<std::string> signals_;

@@ -71,8 +71,9 @@ class RigPorts {
     cell_of(port, instance).joined = {variable, unit};
   }
 
-  /// Sets the answer of Cycle::configuration().
+  /// Sets the answers of Cycle::configuration() and incarnation(); by default none and 1.
   void configuration(const std::string& name) { configuration_ = name; }
+  void incarnation(std::uint32_t number) { incarnation_ = number; }
 
   /// Publishes a value to an in-var, or sets a constant: element `i` of instance `instance`.
   template <class T>
@@ -119,6 +120,10 @@ class RigPorts {
     const std::string& name = static_cast<Whole*>(rig)->configuration_;
     return {name.data(), static_cast<std::uint32_t>(name.size())};
   }
+  template <class Whole>
+  static std::uint32_t host_incarnation(void* rig) {
+    return static_cast<Whole*>(rig)->incarnation_;
+  }
   const chimera_component& component() const { return component_; }
   std::byte* state() const { return state_.get(); }
   struct Joined {
@@ -144,6 +149,7 @@ class RigPorts {
 
  private:
   std::string configuration_;  // the answer of Cycle::configuration()
+  std::uint32_t incarnation_ = 1;
   struct Cell {
     const chimera_port_decl* decl;
     chimera_port* live;

@@ -3,8 +3,6 @@
 // README.md is the data sheet, steps.h the decisions.
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 
 #include "chimera/task/component.h"
 #include "chimera/task/number_at.h"
@@ -26,13 +24,6 @@ bool holds(double value, std::int32_t relation, double level) {
 }
 
 Nanoseconds duration(double seconds) { return {static_cast<std::int64_t>(std::llround(seconds * 1e9))}; }
-
-// The incarnation of an rtpu is the last number of this variable (docs/formats/processes.md).
-bool is_after_death() {
-  const char* const origin = std::getenv("CHIMERA_ORIGIN");
-  const char* const last = origin == nullptr ? nullptr : std::strrchr(origin, '.');
-  return last != nullptr && std::atoi(last + 1) > 1;
-}
 
 struct Sequence {
   Many<In<Any[]>> value{"value*", "U", "[n...<=1024]", type = "T", intermittent,
@@ -57,18 +48,18 @@ struct Sequence {
     for (std::size_t i = 0; i < step.size(); ++i)
       if (const char* why = take(step[i], i)) return fault(why);
     machine_.prepare({steps_.data(), step.size()}, *repeat);
-    is_after_death_ = is_after_death();
+    is_first_on_ = true;
     seen_go_ = kNever;
     return ok();
   }
   void on(Cycle c) {
     if (machine_.state() == SequenceState::kBegins && sequence_step.inherited() != kNever)
       machine_.restore(*sequence_step, static_cast<SequenceState>(*sequence_state));
-    machine_.on(c.now(), is_after_death_);
+    machine_.on(c.now(), is_first_on_ && c.incarnation() > 1);
     // A Go from before this life of the task has had its effect; a pause still counts.
     if (seen_go_ == kNever && machine_.state() != SequenceState::kBegins && sequence_go.valid())
       seen_go_ = *sequence_go == 0 ? kNever : published(sequence_go, c);
-    is_after_death_ = false;
+    is_first_on_ = false;
     for (std::size_t i = 0; i < step.size(); ++i) sequence_steps[i] = step[i].name;
     show(c);
   }
@@ -132,7 +123,7 @@ struct Sequence {
   SequenceSteps machine_;
   std::array<SequenceStep, kMost> steps_;
   Nanoseconds seen_go_ = kNever;  // the publication of sequence_go that was obeyed last
-  bool is_after_death_ = false;
+  bool is_first_on_ = true;
 };
 
 CHIMERA_COMPONENT(Sequence, "sequence", "Goes through the configurations of an application, step by step.",

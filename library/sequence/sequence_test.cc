@@ -269,6 +269,17 @@ TEST_F(SequenceTest, GoesOnAfterOffAndOnWithANewWait) {
   EXPECT_EQ(cycle(), State::kFailed);
 }
 
+TEST_F(SequenceTest, GoesOnWithTheStepThatAllowsReentryAfterADeathOfItsProcess) {
+  rig.incarnation(2);
+  start();
+  EXPECT_EQ(cycle(), State::kRuns);
+  EXPECT_EQ(rig.notes(), std::vector<std::string>{"goes on with step 1 'near'"});
+  ASSERT_TRUE(rig.init());
+  rig.configuration("rest");
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(cycle(), State::kPaused) << "'rest' does not allow reentry";
+}
+
 TEST_F(SequenceTest, RefusesAStepThatNamesWhatIsNotThere) {
   const library::Step good{"near", 2, 0, 0, 0, 1, -1, false, true};
   const auto refusal = [&](auto change) {

@@ -19,6 +19,14 @@ tasks:
   source: {component: t_source, rate: 20 Hz, constants: {start: 1 m/s, slope: 1 m/s^2}}
   twice: {component: gain, rate: 20 Hz, constants: {k: 2}}
 """
+LATE = """subsystem: late
+tasks:
+  slowly: {component: t_source, rate: 10 Hz, budget: 60 ms, constants: {start: 1 m/s, slope: 1 m/s^2}}
+  often: {component: gain, rate: 100 Hz, budget: 6 ms, constants: {k: 2}, alias: {x: wish, y: z}}
+operator: {wish: 1 m/s}
+configurations: {one: [slowly], two: [often]}
+sequence: {repeat: true, steps: [{switch: one, for: 1 s}, {switch: two, for: 1 s}]}
+"""
 SETS = PAIR + "configurations:\n  one: [source]\n  two: [source, twice]\n"
 
 
@@ -121,10 +129,17 @@ class Building(StepsTest):
         self.press("Add step")
         self.fill(of_step(3, "name"), "again")
         self.fill(of_step(3, "for"), "3 s")
+        self.assertEqual(self.edges()[2], "no switch to step 1")
         self.check("repeat")
         self.assertEqual(self.text(), SETS + "sequence:\n  steps:\n" + steps +
                          "    - {name: again, switch: one, for: 3 s}\n")
         self.await_verdict("legal")
+
+    def test_a_switch_without_guarantee_is_open_and_one_for_deadlines_slow(self):
+        self.steps(LATE)
+        self.assertEqual(self.edges(), ["not schedulable to step 2", "slow to step 1"])
+        self.assertEqual([edge.get_attribute("title") for edge in self.page.all("li.between .edge")],
+                         ["slowly may miss its deadline on cpu0", "often may miss its deadline on cpu0"])
 
     def test_else_follows_a_renamed_step(self):
         self.steps(LESSON)
@@ -177,7 +192,9 @@ class Wrong(StepsTest):
         self.page.await_text(f"{tile(2)} li[data-fault]", "names the variable 'speed', which is not there")
         self.assertEqual(len(self.page.all("section[aria-label=Steps] li[data-fault]")), 1)
         self.page.await_text("li.between", "not judged")
+        self.page.script("document.activeElement.blur()")
         self.page.press(Keys.F8)
+        self.page.await_that(f"document.activeElement.closest({quoted(tile(2) + ' li[data-fault]')})", "the focus")
         self.page.click(self.page.button("Close"))
         self.page.click("li[data-fault] .link")
         self.page.await_one(tile(2))

@@ -111,12 +111,12 @@ export function edgeOf(modes: Modes | null, from: string | null, to: string | nu
   if (!modes) return { look: "none", word: "not judged", why: "switches are judged when the draft is legal" };
   const way = modes.transitions.find((one) => one.from === from && one.to === to);
   if (!way) return { look: "open", word: "refused", why: `no switch leads from ${from} to ${to}` };
-  const late = way.cpus.find((one) => one.schedulable === "no");
-  if (late) return { look: "open", word: "not schedulable",
-    why: `on cpu${late.cpu} ${late.task ?? "a task"} may miss deadlines during the switch` };
-  const open = way.cpus.find((one) => one.schedulable !== "yes");
-  const deadlines = !open ? "" : open.schedulable === "not-stated" ? `${open.task} has no budget: deadlines not judged`
-    : `deadlines on cpu${open.cpu} were not decided`;
+  const isLate = way.cpus.some((one) => one.schedulable === "no");
+  const deadlines = way.cpus.filter((one) => one.schedulable !== "yes").map(({ cpu, task, schedulable }) => (
+    schedulable === "no" ? `${task} may miss its deadline on cpu${cpu}`
+      : schedulable === "not-stated" ? `${task} has no budget: deadlines not judged`
+      : `deadlines on cpu${cpu} were not decided`)).join("; ");
+  if (way.way !== "slow" && isLate) return { look: "open", word: "not schedulable", why: deadlines };
   if (way.way === "fast") return { look: "fast", word: "fast", why: deadlines || "the tasks cycle on" };
   const why = [slow(way), deadlines].filter(Boolean).join("; ") || "tasks leave before others arrive, under the flag";
   return { look: "slow", why, word: way.way === "slow-unless-same" ? "slow unless the constants keep their values"

@@ -147,7 +147,8 @@ test("an edge says how the switch goes, and why", () => {
   assert.equal(look(way({}), "home"), "open: refused: no switch leads from run to home");
   assert.equal(look(way(cpu("yes", null))), "fast: fast: the tasks cycle on");
   assert.equal(look(way(cpu("not-stated", "arm"))), "fast: fast: arm has no budget: deadlines not judged");
-  assert.equal(look(way(cpu("no", "arm"))), "open: not schedulable: on cpu1 arm may miss deadlines during the switch");
+  assert.equal(look(way(cpu("no", "arm"))), "open: not schedulable: arm may miss its deadline on cpu1");
+  assert.equal(look(way({ way: "slow", ...cpu("no", "arm") })), "slow: slow: arm may miss its deadline on cpu1");
   assert.equal(look(way({ way: "slow", resources: [{ resource: "/dev/a", before: "x", after: "y" }] })),
     "slow: slow: resource /dev/a goes from x to y");
   assert.equal(look(way({ way: "slow" })), "slow: slow: tasks leave before others arrive, under the flag");

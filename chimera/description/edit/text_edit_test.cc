@@ -447,7 +447,7 @@ TEST(TextEdit, RefusesEachActOnTheTaskThatTheKeyOfASequenceMakes) {
                           rename("variables/q", "p", {{"sequence", "q"}})};
   for (const EditAct& act : acts)
     EXPECT_EQ(edited(text, {act}), "tasks/sequence: task 'sequence' comes from the key 'sequence': edit its steps");
-  EXPECT_EQ(edited(text, {set("tasks/sequences/rate", "1 Hz")}), "tasks/sequences: no task 'sequences'; there is: pid");
+  EXPECT_EQ(edited(text, {set("tasks/sequences/rate", "1 Hz")}), "tasks/sequences: no task 'sequences'");
   expect_edit("tasks: {sequence: {rate: 1 Hz}}\nsequence: []\n", {set("tasks/sequence/rate", "2 Hz")},
               "tasks: {sequence: {rate: 2 Hz}}\nsequence: []\n");
 }

@@ -110,7 +110,7 @@ chimera_text host_configuration(void* context) {
   return {name.data(), static_cast<std::uint32_t>(name.size())};
 }
 
-SafeFrames* frames_of(void* context) noexcept { return host_of(context).set->safe_frames(); }
+SafeFrames* frames_of(void* context) noexcept { return host_of(context).set->place().safe_frames; }
 
 std::int32_t host_safe_frame(void* context, std::uint32_t index, std::int32_t descriptor, std::int64_t pause_ns) {
   SafeFrames* frames = frames_of(context);
@@ -126,10 +126,12 @@ std::int32_t host_safe_bytes(void* context, std::uint32_t index, const void* byt
   return CHIMERA_OK;
 }
 
+std::uint32_t host_incarnation(void* context) { return host_of(context).set->place().incarnation; }
+
 }  // namespace
 
-const chimera_host TaskHost::kCalls = {&host_expired,  &host_signal,  &host_spend,      &host_note,
-                                       &host_variable, &host_unit,    &host_request,    &host_safe_frame,
-                                       &host_safe_bytes, &host_configuration};
+const chimera_host TaskHost::kCalls = {&host_expired,    &host_signal,        &host_spend,   &host_note,
+                                       &host_variable,   &host_unit,          &host_request, &host_safe_frame,
+                                       &host_safe_bytes, &host_configuration, &host_incarnation};
 
 }  // namespace chimera

@@ -57,6 +57,16 @@ struct TaskHostTest : ::testing::Test {
 };
 
 /// Records the arguments of keep().
+TEST_F(TaskHostTest, KnowsTheIncarnationOfItsProcess) {
+  EXPECT_EQ(host().incarnation(context()), 1u);
+  ContextPlace place;
+  place.incarnation = 3;
+  set = *HeapTaskSet::create(app.spec, app.components, place);
+  set->methods().run_by({&clock});
+  ASSERT_TRUE(set->life().start({}));
+  EXPECT_EQ(host().incarnation(context()), 3u);
+}
+
 struct KeptFrames final : SafeFrames {
   std::span<SafeFrame, kSafeFrames> of(TaskId task) noexcept override {
     return std::span<SafeFrame, kSafeFrames>(frames[task.index], kSafeFrames);

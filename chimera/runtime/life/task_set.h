@@ -82,8 +82,7 @@ class TaskSet {
   std::uint32_t context() const noexcept { return place_.rtpu.is_valid() ? place_.rtpu.index : 0; }
   /// View of other contexts; null: there is none.
   PeerView* others() const noexcept { return place_.others; }
-  /// Frames that the guard writes if this process dies; null: no process writes any.
-  SafeFrames* safe_frames() const noexcept { return place_.safe_frames; }
+  const ContextPlace& place() const noexcept { return place_; }
   const ApplicationSpec& spec() const noexcept { return spec_; }
   /// Where the set and its executors take their memory from. Context: setup.
   SetupMemory& setup_memory() noexcept { return memory_; }

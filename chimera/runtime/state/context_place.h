@@ -30,6 +30,7 @@ struct ContextPlace {
   std::atomic<std::uint32_t>* at_edge = &running_untold;
   /// Shows for which task a state is constructed, by show_making().
   std::atomic<std::uint32_t>* making = &running_untold;
+  std::uint32_t incarnation = 1;  ///< of its process: one more after each of its deaths
 };
 
 }  // namespace chimera
