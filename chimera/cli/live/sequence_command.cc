@@ -21,6 +21,8 @@ constexpr const char* kSequenceNames[] = {"sequence_steps", "sequence_step", "se
 constexpr const char* kSequenceStates[] = {"paused",      "switches", "runs", "waits for Go",
                                            "interrupted", "failed",   "done", "begins"};
 
+constexpr std::int64_t kDone = 6;
+
 std::vector<std::string> steps_of(const Json& answer) {
   std::vector<std::string> names;
   const Json& value = answer["values"]["sequence_steps"]["value"];
@@ -84,8 +86,11 @@ CommandResult sequence(Session& session, const Call& call, const Screen&) {
     return wrong_words("sequence: found '" + join(call.operands, " ") + "', expected go, go STEP or pause", call.json);
   const std::vector<std::string> steps = steps_of(*answer.result);
   std::size_t go = 0;
-  if (act == "go" && word.empty())
-    go = static_cast<std::size_t>(std::max<std::int64_t>(sequence_number(*answer.result, "sequence_step"), 1));
+  if (act == "go" && word.empty()) {
+    const bool is_done = sequence_number(*answer.result, "sequence_state") == kDone;
+    const std::int64_t present = is_done ? 1 : sequence_number(*answer.result, "sequence_step");
+    go = static_cast<std::size_t>(std::max<std::int64_t>(present, 1));
+  }
   if (act == "go" && !word.empty() && (go = step_named(steps, word)) == 0)
     return wrong_words("sequence: " + no_such("step", word, steps), call.json);
   const control::RpcResponse set = session.ask("set", {{"values", {{"sequence_go", static_cast<std::int64_t>(go)}}}});
