@@ -289,8 +289,8 @@ RunningCommand sequence_row() {
                     .operand_words = "go pause",
                     .example = "chimera sequence go 2",
                     .manual = "Prints the steps of the sequence and what the present one waits for. `go` begins the "
-                              "present step anew, or the first one after the end, `go STEP` a step by its name or number; both confirm a step that "
-                              "waits for Go. `pause` stays where it is.",
+                              "present step anew, or the first one after the end, `go STEP` a step by its name or "
+                              "number; both confirm a step that waits for Go. `pause` stays where it is.",
                     .is_act = true},
           .method = "set",
           .once = sequence};
