@@ -3,8 +3,8 @@
 """Row 22, the page on a subsystem of 100 tasks, with 200 values in its picture ten times a second, in Debian's Chromium
 without a GPU. Figures: time from the request to the first box; its files, compressed; mean time of a frame at rest and
 while the picture is panned, beside an empty page in the same browser, in turn; processor time of the manager and of
-chimera-web; time from the death of the manager to the page with the next one; time from Enter in a field of the draft
-of these tasks to the picture with its verdict."""
+chimera-web; response of the tasks with and without a page; time from the death of the manager to the page with the next
+one; time from Enter in a field of the draft of these tasks to the picture with its verdict."""
 import gzip
 import json
 import os
@@ -140,6 +140,34 @@ def edits(page, link, browser):
          p50=round(statistics.median(times), 3), worst=round(times[-1], 3))
 
 
+def response(machine):
+    """Mean time from release to end of all jobs of a window, in us."""
+    def sums():
+        spreads = [task["response_ns"] for task in machine.call("profile")["tasks"]]
+        return sum(one["count"] for one in spreads), sum(one["count"] * one["mean"] for one in spreads)
+    count, total = sums()
+    time.sleep(SECONDS)
+    later, end = sums()
+    return (end - total) / (later - count) / 1e3
+
+
+def jitter(machine, page, link, browser):
+    """Responses without a page twice, and with one, in turn: does a page delay the jobs more than chance does?"""
+    alone, again, watched = [], [], []
+    for _ in range(TURNS):
+        browser.driver.get("data:text/html,<p>empty")
+        alone.append(response(machine))
+        again.append(response(machine))
+        page.open(link)
+        page.await_open()
+        watched.append(response(machine))
+    spread = max(max(a, b) / min(a, b) for a, b in zip(alone, again))
+    ratio = statistics.median(w / min(a, b) for w, a, b in zip(watched, alone, again))
+    tell("mean response of 100 tasks under one page", statistics.median(watched), "us",
+         f"<= {spread:.3f}, the A/A spread, of none", ratio <= spread, TURNS,
+         baseline=round(statistics.median(alone), 3), baseline_name="no page", ratio=round(ratio, 3))
+
+
 def main():
     with tempfile.TemporaryDirectory() as home:
         runtime = pathlib.Path(home) / "run"
@@ -155,6 +183,7 @@ def main():
                 page.open(web.link)
                 page.await_open()
                 load_of({"manager": machine.call("hello")["manager"]["pid"], "chimera-web": web.process.pid})
+                jitter(machine, page, web.link, browser)
                 back(machine, page, browser)
                 with Web(runtime, [machine.file]) as bench:
                     edits(page, bench.link, browser)
