@@ -103,7 +103,8 @@ export function AssemblePage({ machine, machineState, bench, isOpen }: Props) {
   const [canvas, fit] = useFit(picture);
   const areStepsOpen = wantsSteps && !isTrying && outline !== null;
   const hasPicture = picture !== null && picture.boxes.length > 0;
-  useEffect(() => { if (hasPicture) fit(); }, [picture?.boxes.length, isTrying]);  // other acts leave the zoom as it is
+  // Other acts leave the zoom as it is.
+  useEffect(() => { if (hasPicture) fit(); }, [picture?.boxes.length, isTrying, areStepsOpen]);
   useEffect(() => {
     const take = (event: KeyboardEvent) => takeKey(event, machine, fit, assembleKeys);
     window.addEventListener("keydown", take);
