@@ -159,6 +159,18 @@ function(_chimera_test_binary target label sources libs depends)  # [compile opt
   endif()
 endfunction()
 
+# _chimera_linked_test(TARGET file library component...): a test that is linked with these components; debug tree only.
+function(_chimera_linked_test target file library)
+  if(NOT CHIMERA_TREE STREQUAL "debug" OR NOT CHIMERA_TESTS)
+    return()
+  endif()
+  set(sources ${file})
+  foreach(component ${ARGN})
+    list(APPEND sources $<TARGET_OBJECTS:component_${component}_objects>)
+  endforeach()
+  _chimera_test_binary(${target} unit "${sources}" "chimera_component_base;${library}" "" ${CHIMERA_FEWER_CHECKS})
+endfunction()
+
 function(chimera_tests name)
   cmake_parse_arguments(arg "MEMORY" "" "LIBS;DEPENDS" ${ARGN})
   if(NOT CHIMERA_TESTS)

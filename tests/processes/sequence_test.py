@@ -40,7 +40,7 @@ sequence:
   steps:
     - {name: first, switch: near_by, for: 1 h}
     - {name: second, switch: far_off, for: 1 h, reentry: true}
-    - {name: third, switch: near_by}
+    - {name: third, switch: near_by, for: 1 h}
 """
 PAUSED, RUNNING, DONE = 0, 2, 6
 
@@ -52,7 +52,7 @@ class Sequence(unittest.TestCase):
                            f"{system.value('sequence_state')} {system.told()}")
 
     def go(self, system, *words):
-        system.chimera("sequence", *words, "--subsystem", "subject")
+        return system.chimera("sequence", *words, "--subsystem", "subject").stdout
 
     def kill(self, system, rtpu, step, state, note=""):
         """Afterwards the sequence has this step and state, and has said the note."""
@@ -75,23 +75,24 @@ class Sequence(unittest.TestCase):
                                  ["level < 1500 mm", "level >= 2 m", "50 ms", None])
                 self.assertEqual(described["path"], "sequence/steps")
                 self.assertEqual(shown.replace("[subject] ", ""), "  1 first\n  2 second\n  3 third\n> 4 last  done\n")
+                self.assertIn("goes to step 1", self.go(system, "go"))
+                await_that(lambda: len(system.call("receipts")["receipts"]) == 7, lambda: f"a round: {system.told()}")
 
     def test_goes_on_after_a_death_only_where_reentry_is_allowed(self):
         with System(STAYS) as system:
-            self.await_step(system, 1, RUNNING)
-            self.kill(system, "servo", 1, PAUSED, "may go on with step 2")
-            self.go(system, "go", "second")
-            self.await_step(system, 2, RUNNING)
-            self.kill(system, "servo", 2, RUNNING, "goes on with step 2")
+            for step, state, note in ((1, PAUSED, "may go on with step 2"), (2, RUNNING, "goes on with step 2"),
+                                      (3, PAUSED, "may go on with step 2")):
+                self.go(system, "go", str(step))
+                self.await_step(system, step, RUNNING)
+                self.kill(system, "servo", step, state, note)
 
     def test_goes_on_after_the_death_of_its_own_rtpu_only_where_reentry_is_allowed(self):
         with System(STAYS) as system:
-            self.go(system, "go", "2")
-            self.await_step(system, 2, RUNNING)
-            self.kill(system, "brain", 2, RUNNING, "goes on with step 2")
-            self.go(system, "go", "first")
-            self.await_step(system, 1, RUNNING)
-            self.kill(system, "brain", 0, PAUSED)
+            for word, step, after in (("2", 2, (2, RUNNING, "goes on with step 2")), ("first", 1, (0, PAUSED)),
+                                      ("third", 3, (0, PAUSED))):
+                self.go(system, "go", word)
+                self.await_step(system, step, RUNNING)
+                self.kill(system, "brain", *after)
 
     def test_a_pause_outlives_the_death_of_its_rtpu(self):
         with System(STAYS) as system:
@@ -103,11 +104,11 @@ class Sequence(unittest.TestCase):
 
     def test_goes_on_without_its_manager(self):
         with System(STAYS) as system:
-            self.await_step(system, 1, RUNNING)
-            self.assertTrue(system.kill(system.call("hello")["manager"]["pid"]))
-            self.await_step(system, 1, RUNNING)
-            self.go(system, "go", "2")
-            self.await_step(system, 2, RUNNING)
+            for step in (1, 2, 3):
+                self.go(system, "go", str(step))
+                self.await_step(system, step, RUNNING)
+                self.assertTrue(system.kill(system.call("hello")["manager"]["pid"]))
+                self.await_step(system, step, RUNNING)
 
 
 if __name__ == "__main__":

@@ -37,7 +37,7 @@ struct VirtualRtpus::Rtpu {
         releases(tasks, clock, options(run, switches, how)) {
     const std::span<const TaskSpec> specs = tasks.spec().tasks;
     if (is_preemptive(how))
-      processor = 
+      processor =
           std::make_unique<SteppedPreemptive>(releases, specs, clock, PreemptiveOptions{how.times, how.quantum});
     else
       processor = std::make_unique<SteppedExecutive>(releases, clock, how.times);
