@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Row 19: one cycle of each component that speaks to a person, a disk or a camera, beside its law or a copy of what
 // crosses.
-// Components: csv_log display tball camera_targets visual_servo_interface
+// Components: button csv_log display tball camera_targets visual_servo_interface
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -19,7 +19,7 @@ namespace {
 using bench::ComponentCase;
 using library::ArmRig;
 
-constexpr char kRecording[] = "row_19_features.csv", kEvents[] = "row_19_ball.events";
+constexpr char kRecording[] = "row_19_features.csv", kEvents[] = "row_19_ball.events", kPin[] = "row_19.pin";
 
 /// A row of time and six numbers into the next place of a ring.
 void copy_rows(std::uint64_t n) {
@@ -56,7 +56,18 @@ std::vector<ComponentCase> to_people() {
   return {{"csv_log", "copy of a row of 7", [](ArmRig& rig) { give_six(rig), rig.resource("file", "/dev/null"); },
            copy_rows, write_what_waits, 9000},
           {"display", "copy of a row of 7", [](ArmRig& rig) { give_six(rig), rig.set("title", Text<32>("")); },
-           copy_rows, print_what_waits, 60}};
+           copy_rows, print_what_waits, 60},
+          {"button", "pread of a byte", [](ArmRig& rig) { rig.resource("pin", kPin); }, read_pin}};
+}
+
+/// Reads the level of a pin, as a loop without components does.
+void read_pin(std::uint64_t n) {
+  static const int pin = ::open(kPin, O_RDONLY | O_CLOEXEC);
+  char level = 0;
+  for (; n > 0; --n) {
+    if (::pread(pin, &level, 1, 0) != 1) throw std::runtime_error("the pin cannot be read");
+    bench::keep(level);
+  }
 }
 
 /// The law of a ball: six deflections, a step and a turn of the reference.
@@ -127,6 +138,7 @@ std::vector<ComponentCase> of_sight() {
 /// Writes two recordings of 400 s: features of a camera, and events of a ball whose six axes are pushed and held.
 void record() {
   std::ofstream features(kRecording), events(kEvents);
+  std::ofstream(kPin) << "0\n";
   features << "t,u,v,size\n";
   for (int i = 0; i < 8000; ++i) features << i * 0.05 << "," << 640 + i % 20 << ",480,28.5\n";
   for (int axis = 0; axis < 6; ++axis) events << "E: 0.000000 0003 000" << axis << " " << 50 * axis + 50 << "\n";
@@ -142,6 +154,6 @@ int main(int argc, char** argv) {
   record();
   bool is_well = true;
   for (const auto& cases : {to_people(), of_sight()}) is_well = bench::measure(19, cases, argc, argv) == 0 && is_well;
-  std::remove(kRecording), std::remove(kEvents);
+  std::remove(kRecording), std::remove(kEvents), std::remove(kPin);
   return is_well ? 0 : 1;
 }

@@ -59,6 +59,7 @@ SEES_THE_SYSTEM = {
     "chimera/cli/run/own_process.cc": "forks, waits and passes signals on: one piece of code with its limits of time",
     "chimera/cli/batch/side_by_side.cc": "the same of many children",
     "chimera/cli/run/under_way.cc": "memory shared with both of these",
+    "library/button/": "a digital input",
     "library/csv_log/": "writes a file, whose loss it must tell",
     "library/device/": "reasons why a device cannot be opened",
     "library/modbus_io/": "a serial line, a socket",

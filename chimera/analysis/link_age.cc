@@ -42,7 +42,7 @@ std::string late_text(const ApplicationSpec& spec, TaskId from, TaskId to) {
     return "; remedy: " + change + " of " + in_quotes(of.name);
   };
   if (a.rtpu != b.rtpu) return reader + " runs on another rtpu" + helps("rtpu: " + std::string(rtpu.name), b);
-  if (a.server || b.server) return "events release one of the two";
+  if (a.has_doorbell() || b.has_doorbell()) return "events release one of the two";
   const bool is_more_critical = has_criticalities(rtpu.policy) && a.criticality != b.criticality;
   const bool is_laxity = rtpu.policy == Policy::kLlf || rtpu.policy == Policy::kMufLaxity;
   if (is_laxity && rtpu.preemptive && !is_more_critical)

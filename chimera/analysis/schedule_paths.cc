@@ -71,7 +71,9 @@ class Walk {
     for (std::size_t k = 0; k < path_.size(); ++k) {
       const std::size_t i = path_[k];
       const Work& work = set_.works[i];
-      const bool is_promised = verdicts_[i].guarantee == Guarantee::kYes;
+      // No event, no job: the age of what it passes on has no bound.
+      const bool has_events = configuration_.spec().tasks[set_.tasks[i]].has_events;
+      const bool is_promised = verdicts_[i].guarantee == Guarantee::kYes && !has_events;
       ChainLink link{.work = work, .response = is_promised ? verdicts_[i].response : kNever};
       if (k + 1 < path_.size()) {
         const std::size_t to = path_[k + 1];

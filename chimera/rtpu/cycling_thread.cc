@@ -88,7 +88,9 @@ RunOptions CyclingThread::options() {
 void CyclingThread::make_loop() {
   clock_ = std::make_unique<BellClock>(Doorbell(place_.bell), head().running, place_.edge);
   job_clock_ = std::make_unique<ComputingClock>(*clock_);
-  executive_ = std::make_unique<Executive>(place_.tasks, *clock_, *job_clock_, options());
+  RunOptions how = options();
+  how.events = &events_;
+  executive_ = std::make_unique<Executive>(place_.tasks, *clock_, *job_clock_, how);
 }
 
 // The reaction `stop` of a task: all tasks of the rtpu go OFF, and the rtpu goes on.

@@ -14,6 +14,7 @@
 #include "chimera/rtpu/rtpu_control.h"
 #include "chimera/runtime/executive/executive.h"
 #include "chimera/runtime/hosted/background_writer.h"
+#include "chimera/runtime/hosted/descriptor_events.h"
 #include "chimera/runtime/preemptive/preemptive_executor.h"
 
 namespace chimera {
@@ -71,6 +72,7 @@ class CyclingThread {
   const CyclingPlace place_;
   Tap tap_;
   LinuxClock wall_;
+  DescriptorEvents events_;  // of the loop without preemption
   std::unique_ptr<BellClock> clock_;
   std::unique_ptr<ComputingClock> job_clock_;
   std::unique_ptr<Executive> executive_;

@@ -58,8 +58,8 @@ enum {
   CHIMERA_METHODS = 9
 };
 
-/* Signals. WAKEUP comes from the timer or the event source. A task can send it only to a task behind a server, for
- * which it is one event. */
+/* Signals. WAKEUP comes from the timer or the event source. Sent by a task, it is one event for its target, which must
+ * be behind a server or, in the executive, have an event source. */
 enum {
   CHIMERA_SIGNAL_SPAWN = 0,
   CHIMERA_SIGNAL_ON = 1,
@@ -231,8 +231,9 @@ typedef int32_t (*chimera_background)(void* state, chimera_fault* fault);
 
 /* The event source of an aperiodic component: returns a descriptor that is readable while an event waits; below 0:
  * none. Called after init; the descriptor stays valid until kill. Behind a server the framework waits for the
- * descriptor. It calls sync, which reads one event and does not block, as long as the descriptor is readable. Context:
- * setup. */
+ * descriptor, in the executive it looks every millisecond; there a component with an event source is not polled, and
+ * without descriptor its events are rings. It calls sync, which reads one event and does not block, as long as the
+ * descriptor is readable. Context: setup. */
 typedef int32_t (*chimera_event_source)(void* state);
 
 /* An order between two in-consts of one type, unit and shape: no element of `lower` is above that of `upper`. The

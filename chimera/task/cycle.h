@@ -35,8 +35,8 @@ class Cycle {
   /// state. Context: cycle; wait-free.
   bool illegal() const noexcept { return call_->illegal != 0; }
   /// Sends `signal` to the task of that name; without a name, to the own task. The signal acts at a cycle boundary,
-  /// after this method. Signal::kWakeup is an event for a task behind a server; one job answers each. False if the task
-  /// does not exist, if it has no server (kWakeup), or if the outbox is full. Context: cycle; wait-free.
+  /// after this method. Signal::kWakeup is an event for a task with a doorbell; one job answers each. False if the
+  /// task does not exist, if it has no doorbell (kWakeup), or if the outbox is full. Context: cycle; wait-free.
   bool signal(Signal signal, const char* task = nullptr) const noexcept {
     return call_->host->signal(call_->context, static_cast<std::uint32_t>(signal), task) == CHIMERA_OK;
   }

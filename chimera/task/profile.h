@@ -62,8 +62,8 @@ struct Profile {
   std::uint64_t rejected = 0;         ///< outputs that a safety port refused: NaN, infinite or out of range
   std::uint64_t preempted = 0;        ///< number of times that a more urgent job took the processor
   std::uint64_t demoted = 0;          ///< jobs that continued below all real-time threads
-  std::uint64_t events = 0;           ///< behind a server: events that came while the task was ON
-  std::uint64_t events_lost = 0;      ///< behind a server: events while it was not ON, or waiting when it went OFF;
+  std::uint64_t events = 0;           ///< that came while the task was ON
+  std::uint64_t events_lost = 0;      ///< events while it was not ON, or waiting when it went OFF;
                                       ///< any task: events it sent without room on the way to another rtpu
   std::uint64_t exhausted = 0;        ///< number of times that its server ran out of capacity during a job
   Nanoseconds on_since = kNever;      ///< kNever: not ON

@@ -9,7 +9,7 @@
 namespace chimera {
 
 /// The signals of a task. `kWakeup` comes from the timer or the event source. Sent by a task, it rings the doorbell of
-/// a task behind a server.
+/// a task that events release.
 enum class Signal : std::uint32_t {
   kSpawn = CHIMERA_SIGNAL_SPAWN,
   kOn = CHIMERA_SIGNAL_ON,

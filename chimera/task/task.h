@@ -70,6 +70,7 @@ struct alignas(64) Task {
   bool is_tapped = false;  ///< set at cycle boundaries: each publication goes to the tap as a row
   bool is_busy = false;    ///< a job of the task is running; written by the executor
   bool has_news = false;   ///< a fault was recorded or a signal sent that is not handled yet
+  bool by_events = false;  ///< without a server, a job for each event; written at cycle boundaries
   // Side by side from an even address: the compiler compares both with one load, which holds no byte that a job writes.
   alignas(2) State state = State::kNotCreated;
   Standing standing = Standing::kPlain;  ///< written at cycle boundaries only
@@ -92,7 +93,7 @@ struct alignas(64) Task {
   /// gives up late.
   std::atomic<bool> give_up{false};
   std::uint16_t requested_set = kNoRequest;  ///< by the present method, in ApplicationSpec::sets; or a constant above
-  std::uint32_t events = 0;  ///< behind a server: rings of its doorbell that no job has answered; by the executor
+  std::uint32_t events = 0;  ///< events that no job has answered or is released for; by the executor
   int descriptor = -1;   ///< readable while there is an event, from the end of init to kill; below 0: none
 
   // Written by the executor and the task set at cycle boundaries.

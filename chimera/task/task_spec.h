@@ -70,7 +70,7 @@ enum class OnFault : std::uint8_t {
 struct TaskSpec {
   std::string_view name;
   std::string_view component;
-  Nanoseconds period;    ///< between releases; an aperiodic task checks for an event at each
+  Nanoseconds period;    ///< between releases; an aperiodic task checks for an event at each, unless `has_events`
   Nanoseconds offset;    ///< of the grid of releases: start of the run + offset + k * period, whenever on comes
   Nanoseconds deadline;  ///< relative to the release, 0 < deadline <= period
   Nanoseconds budget;    ///< execution time a cycle may use; 0 = not stated
@@ -80,6 +80,9 @@ struct TaskSpec {
   OnMiss on_miss = OnMiss::kContinue;
   OnMiss on_overrun = OnMiss::kContinue;
   OnFault on_fault = OnFault::kError;
+  /// Without a server, events release the jobs of this aperiodic task, at least `period` apart. Only where jobs do not
+  /// preempt each other; a preemptive executor polls the task.
+  bool has_events = false;
   std::uint32_t max_consecutive = 0;  ///< misses in a row after which the task goes to ERROR; 0 = no limit
   std::uint16_t tolerated_misses = 0;  ///< of the last `tolerated_of` cycles, this number may miss without a reaction
   std::uint16_t tolerated_of = 0;      ///< 0: none; at most 64
@@ -96,6 +99,9 @@ struct TaskSpec {
   /// With a server the task is aperiodic, `period` and `deadline` are those of the server, and each event is one
   /// release.
   std::optional<ServerSpec> server;
+
+  /// A ring of the doorbell of the task (signal wakeup) is one event. Context: any; wait-free.
+  bool has_doorbell() const noexcept { return server.has_value() || has_events; }
 };
 
 }  // namespace chimera

@@ -187,6 +187,8 @@ TaskSpec task_spec(const Model& model, const TaskModel& task, const ConfiguredTa
   spec.place = task.place;
   if (draft.stack_bytes) spec.stack_bytes = static_cast<std::uint32_t>(draft.stack_bytes->value);
   spec.aperiodic = configured.is_aperiodic;
+  const bool is_preemptive = model.rtpus[task.rtpu].preemptive.value;
+  spec.has_events = configured.has_event_source && !draft.server && !is_preemptive;
   spec.is_hardware = configured.is_hardware;
   spec.rtpu = RtpuId(task.rtpu);
   spec.ports = ports;

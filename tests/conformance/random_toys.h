@@ -62,6 +62,23 @@ inline std::vector<ScriptAct> script(Dice& dice, std::uint32_t n) {
   return acts;
 }
 
+/// Gives some tasks events, and lets tasks and the script ring. After fill() and script(); n: number of tasks.
+inline void add_events(Application& app, std::vector<ScriptAct>& acts, Dice dice, std::uint32_t n) {
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::string name = "t" + std::to_string(i);
+    if (dice.below(2) == 0) app.spec(name).aperiodic = app.spec(name).has_events = true;
+    auto& sends = app.toy(name).sends;
+    for (std::uint32_t k = 0; k < 20; ++k)
+      sends.emplace(sends.begin() + dice.below(20), Signal::kWakeup, "t" + std::to_string(dice.below(n)));
+  }
+  Nanoseconds at;
+  for (std::uint32_t k = 0; k < 30; ++k) {
+    if (dice.below(3) > 0) at += microseconds(dice.below(3000));
+    acts.push_back({at, ScriptAct::Kind::kSignal, Signal::kWakeup, TaskId(dice.below(n))});
+  }
+  std::stable_sort(acts.begin(), acts.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
+}
+
 inline std::string text(const TapRecord& r) {
   return "kind " + std::to_string(static_cast<int>(r.kind)) + " task " + std::to_string(r.task.index) + " at " +
          std::to_string(r.at.count) + " a " + std::to_string(r.a) + " b " + std::to_string(r.b);

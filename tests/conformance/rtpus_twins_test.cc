@@ -6,7 +6,7 @@
 #include "tests/conformance/random_toys.h"
 #include "tests/conformance/rtpus_run.h"
 
-namespace chimera::toy {
+namespace chimera::toy::rtpus_twins_test {
 namespace {
 
 constexpr Policy kPolicies[] = {Policy::kEdf, Policy::kRm, Policy::kMuf, Policy::kMufLaxity, Policy::kLlf};
@@ -45,9 +45,11 @@ Outcome alone(std::uint32_t seed, bool preemptive, const VirtualOptions& how) {
   fill(app, dice);
   fill_edges(app, seed);
   const Policy policy = kPolicies[dice.below(5)];
+  std::uint32_t n = 0;
+  while (app.has("t" + std::to_string(n))) ++n;
+  auto acts = signals_of(script(dice, n));
+  if (seed % 4 < 2) add_events(app, acts, Dice(seed), n);
   TaskSet& set = app.build();
-  const auto n = static_cast<std::uint32_t>(set.tasks().size());
-  const auto acts = signals_of(script(dice, n));
   Runner runner(set, preemptive ? Kind::kPreemptive : Kind::kVirtual, policy, acts, how);
   EXPECT_TRUE(runner.start());
   runner.run(kRan);
@@ -63,7 +65,8 @@ Outcome in_company(std::uint32_t seed, bool preemptive, std::uint32_t me, const 
   const Policy policy = kPolicies[dice.below(5)];
   std::uint32_t n = 0;
   for (; app.has("t" + std::to_string(n)); ++n) app.spec("t" + std::to_string(n)).rtpu = RtpuId(me);
-  const auto acts = signals_of(script(dice, n));
+  auto acts = signals_of(script(dice, n));
+  if (seed % 4 < 2) add_events(app, acts, Dice(seed), n);
   for (std::uint32_t i = 0; i < 6; ++i) {
     const std::string reads = "other" + std::to_string((i + 5) % 6);
     TaskSpec& spec = app.add("other" + std::to_string(i), microseconds(700 + dice.below(3000)),
@@ -105,6 +108,7 @@ struct Entangled {
     std::uint32_t n = 0;
     for (; app.has("t" + std::to_string(n)); ++n) app.spec("t" + std::to_string(n)).rtpu = RtpuId(dice.below(3));
     acts = script(dice, n);
+    if (seed % 2 == 0) add_events(app, acts, Dice(seed), n);
     ScriptAct death;
     death.at = milliseconds(30);
     death.kind = ScriptAct::Kind::kDie;
@@ -155,4 +159,4 @@ TEST(RtpusTwins, ARunThatIsInterruptedIsTheSameRun) {
 }
 
 }  // namespace
-}  // namespace chimera::toy
+}  // namespace chimera::toy::rtpus_twins_test

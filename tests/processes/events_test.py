@@ -34,6 +34,11 @@ tasks:
     rtpu: served
     server: {kind: deferrable, capacity: 1 ms, period: 20 ms}
 """
+# The first two in one loop without preemption, where an event source takes the place of a server.
+IN_LOOP = (IN_C.replace("cpu: 0, policy: edf, executor: preemptive", "cpu: 0, policy: edf, executor: executive")
+           .replace("rtpu: served\n    resources", "rtpu: other\n    resources")
+           .replace("server: {kind: sporadic, capacity: 1 ms, period: 20 ms}", "rate: 100 Hz")
+           .replace("server: {kind: deferrable, capacity: 1 ms, period: 20 ms}", "rate: 50 Hz", 1))
 TASKS = ("first", "second", "third")
 
 
@@ -43,18 +48,33 @@ class Events(unittest.TestCase):
             pipe = pathlib.Path(place) / "pipe"
             os.mkfifo(pipe)
             with System(IN_C.replace("PIPE", str(pipe))) as system:
-                for task in TASKS:
-                    system.await_state(task, "ON")
-                with open(pipe, "wb", buffering=0) as end:
-                    for total, written in ((5, b"12345"), (8, b"678")):
-                        end.write(written)
-                        for task in TASKS:
-                            await_that(lambda: system.task(task)["cycles"] == total, f"{total} events of {task}")
-                for task in TASKS:
-                    seen = system.task(task)
-                    self.assertEqual((seen["events"], seen["events_lost"], seen["faults"]), (8, 0, 0), task)
+                self.assert_answered(system, pipe)
                 refused = system.chimera("run", system.file, "--virtual", "--for", "1 s", code=1).stderr
                 self.assertIn("from a descriptor, in virtual time: run cannot do this yet", refused)
+
+    def test_release_jobs_of_a_loop_without_preemption(self):
+        with tempfile.TemporaryDirectory(prefix="chimera-events-") as place:
+            pipe = pathlib.Path(place) / "pipe"
+            os.mkfifo(pipe)
+            with System(IN_LOOP.replace("PIPE", str(pipe))) as system:
+                self.assert_answered(system, pipe)
+                for _ in range(3):
+                    system.chimera("ring", "second")
+                for task in ("second", "third"):
+                    await_that(lambda: system.task(task)["events"] == 11, f"11 events of {task}")
+                self.assertEqual(system.task("first")["events"], 8)
+
+    def assert_answered(self, system, pipe):
+        for task in TASKS:
+            system.await_state(task, "ON")
+        with open(pipe, "wb", buffering=0) as end:
+            for total, written in ((5, b"12345"), (8, b"678")):
+                end.write(written)
+                for task in TASKS:
+                    await_that(lambda: system.task(task)["cycles"] == total, f"{total} events of {task}")
+        for task in TASKS:
+            seen = system.task(task)
+            self.assertEqual((seen["events"], seen["events_lost"], seen["faults"]), (8, 0, 0), task)
 
     def test_outlive_the_manager_and_the_subsystem(self):
         with System(CHAIN, ("--log", "run.log")) as system:

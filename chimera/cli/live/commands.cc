@@ -221,13 +221,13 @@ RunningCommand reinit_row() {
 
 RunningCommand ring_row() {
   return {.words = {.name = "ring",
-                    .help = "Ring the doorbell of tasks behind a server: one event for each",
+                    .help = "Ring the doorbell of tasks: one event for each",
                     .operands = "TASK...",
                     .least = 1,
                     .most = kAnyNumber,
                     .operand_kind = WordKind::kTask,
                     .example = "chimera ring lamp",
-                    .manual = "Rings the doorbell of tasks behind a server: one event for each time that one is named.",
+                    .manual = "Rings the doorbell of tasks: one event for each time that one is named.",
                     .is_act = true},
           .method = "ring",
           .parameters =

@@ -17,6 +17,7 @@
 #include "chimera/runtime/executive/executive.h"
 #include "chimera/runtime/hosted/asked_set.h"
 #include "chimera/runtime/hosted/background_writer.h"
+#include "chimera/runtime/hosted/descriptor_events.h"
 #include "chimera/runtime/hosted/refusal_text.h"
 #include "chimera/runtime/virtual/virtual_executor.h"
 #include "chimera/runtime/virtual/virtual_rtpus.h"
@@ -29,7 +30,7 @@ std::string signal_line(const RefusedSignal& refused, const Task& task, Nanoseco
   std::string why = task.faults.last.text;
   if (refused.why == Refusal::kState) why = std::string("not legal in state ") + state_name(refused.state);
   const bool is_ring = refused.signal == Signal::kWakeup;
-  if (is_ring && !task.spec->server) why = "it has no server";
+  if (is_ring && !task.spec->has_doorbell()) why = "it has no server";
   if (refused.why == Refusal::kIllegalSet) why = "the tasks that would be ON are not a legal set";
   if (refused.why == Refusal::kNotYet) why = "it is not ready yet; ask again";
   if (refused.why == Refusal::kRival) why = "another task that is created has its resource";
@@ -137,8 +138,9 @@ class VirtualLoop final : public RunLoop {
   std::vector<RefusedSignal> refused_;
 };
 
-RunOptions with_threads(RunOptions options, BackgroundWriter& writer) {
+RunOptions in_real_time(RunOptions options, BackgroundWriter& writer, DescriptorEvents& events) {
   options.writer = &writer;
+  options.events = &events;
   return options;
 }
 
@@ -148,7 +150,7 @@ class RealTimeLoop final : public RunLoop {
   RealTimeLoop(Application& application, const RunRequest& request, const RunOptions& options)
       : request_(request), cpu_(static_cast<int>(application.configuration().rtpus()[0].cpu)), job_clock_(clock_),
         set_(application.tasks()),
-        executive_(set_, clock_, job_clock_, with_threads(options, application.background_writer())) {
+        executive_(set_, clock_, job_clock_, in_real_time(options, application.background_writer(), events_)) {
     const auto rtpus = application.configuration().rtpus();
     if (rtpus.size() > 1)
       grant_ =
@@ -192,6 +194,7 @@ class RealTimeLoop final : public RunLoop {
   mutable LinuxClock looking_on_;  // of this side
   ComputingClock job_clock_;
   TaskSet& set_;
+  DescriptorEvents events_;
   Executive executive_;
   std::string grant_;
   std::promise<RunEnd> ended_;

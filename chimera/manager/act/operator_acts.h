@@ -21,7 +21,7 @@ std::variant<std::vector<VariableId>, control::RpcResponse> variables_named(cons
 /// The tasks with these names. Refuses an empty list; refuses an unknown name and suggests the nearest.
 std::variant<std::vector<TaskId>, control::RpcResponse> tasks_named(const ManagerState& state,
                                                                     const std::vector<std::string>& names);
-/// Reason why no task would answer a ring of the doorbell; good if the task is behind a server and ON.
+/// Reason why no task would answer a ring of the doorbell; good if the task has a doorbell and is ON.
 control::RpcResponse judge_ring(const ManagerState& state, TaskId task);
 /// {name: value}: sets operator variables, all or none. The answer contains their readings.
 control::RpcResponse set_values(ManagerState& state, const Json& values);

@@ -96,7 +96,7 @@ void add_producer(const ManagerState& state, TaskId task, VariableFacts& facts) 
     if (const auto why = not_real_time({grant, ::strnlen(grant, sizeof BlockHead::grant)});
         rtpu.is_alive && !facts.timing.empty() && !why.view().empty())
       append_joined(facts.timing, ", ", facts.rtpu + " is not real time: " + why.c_str());
-    facts.waits_for_events = spec.server && profile.events == 0;
+    facts.waits_for_events = spec.has_doorbell() && profile.events == 0;
   }
   for (const PortSpec& port : spec.ports)
     if (port.kind == CHIMERA_IN_VAR) facts.inputs.emplace_back(state.spec().link_name(port));

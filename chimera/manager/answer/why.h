@@ -36,7 +36,7 @@ struct VariableFacts {
   Nanoseconds age;
   bool is_written = false;           ///< published at least once, and valid
   bool is_finite = true;
-  bool waits_for_events = false;     ///< the producer is behind a server, and no event has come
+  bool waits_for_events = false;     ///< events release the producer, and none has come
   std::string timing;                ///< of the producer: "3 missed, 1 demoted"; "" if none was late
   std::string value;                 ///< for people
   std::vector<std::string> inputs;   ///< variables that the producer reads

@@ -16,9 +16,17 @@ void BoundarySignals::begin(Nanoseconds origin) noexcept {
 void BoundarySignals::look_ahead(Nanoseconds due, Nanoseconds wake) noexcept {
   const Nanoseconds at = script_.next_at();
   const Nanoseconds act = at == kNever ? kNever : origin_ + at;
-  next_act_ = std::min({act, due, switching_.due(), asks_again_});
-  next_act_in_row_ = std::min({act, due, switching_.due(true)});
-  next_wake_ = std::min({act, wake, switching_.wake(), asks_again_});
+  other_act_ = std::min({act, due, switching_.due(), asks_again_});
+  other_act_in_row_ = std::min({act, due, switching_.due(true)});
+  other_wake_ = std::min({act, wake, switching_.wake(), asks_again_});
+  look_ahead_to(events_);
+}
+
+void BoundarySignals::look_ahead_to(Nanoseconds events) noexcept {
+  events_ = events;
+  next_act_ = std::min(other_act_, events);
+  next_act_in_row_ = std::min(other_act_in_row_, events);
+  next_wake_ = std::min(other_wake_, events);
 }
 
 void BoundarySignals::act(Nanoseconds now) noexcept {

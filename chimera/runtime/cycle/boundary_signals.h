@@ -48,7 +48,7 @@ class BoundarySignals {
   /// The script counts from `origin`.
   void begin(Nanoseconds origin) noexcept;
   /// The first instant at which a cycle boundary has something to do: an act of the script, a step of a switch, a
-  /// standby that has not come. kNever: nothing is left. Context: cycle; wait-free.
+  /// standby that has not come, an event. kNever: nothing is left. Context: cycle; wait-free.
   Nanoseconds next_act() const noexcept { return next_act_; }
   /// As next_act(), while jobs wait of which none is under way at a cycle boundary. Context: cycle; wait-free.
   Nanoseconds next_act_in_row() const noexcept { return next_act_in_row_; }
@@ -56,6 +56,8 @@ class BoundarySignals {
   Nanoseconds next_wake() const noexcept { return next_wake_; }
   /// Ends a cycle boundary: computes next_act() and next_wake() anew. `due` and `wake` are those of Recovery.
   void look_ahead(Nanoseconds due, Nanoseconds wake) noexcept;
+  /// EventTasks is due at `events`: a cycle boundary has something to do then.
+  void look_ahead_to(Nanoseconds events) noexcept;
   /// Carries out the acts of the script that are due, and step().
   void act(Nanoseconds now) noexcept;
   /// Goes on with a switch that is under way, and begins the one that a task asked for last.
@@ -97,6 +99,8 @@ class BoundarySignals {
   Nanoseconds asked_at_, asks_again_ = kNever;  // instants at which asked_ was, and request_ is to be, passed on
   Nanoseconds origin_;
   Nanoseconds next_act_ = kNever, next_act_in_row_ = kNever, next_wake_ = kNever;
+  Nanoseconds other_act_ = kNever, other_act_in_row_ = kNever, other_wake_ = kNever;  // but for events
+  Nanoseconds events_ = kNever;
   FixedVector<RefusedSignal, kRefusedKept> refused_;
 };
 

@@ -25,6 +25,12 @@ QueueStorage storage_for(std::size_t n, SetupMemory& memory) {
           memory.take<std::uint32_t>(n)};
 }
 
+void follow(EventTasks& events, BoundarySignals& signals, Nanoseconds now) noexcept {
+  if (events.are_none()) return;
+  events.follow(now);
+  signals.look_ahead_to(events.due());
+}
+
 }  // namespace
 
 bool may_request(const ApplicationSpec& spec) noexcept {
@@ -52,7 +58,8 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
               guest_ != nullptr ? &cause_.emplace(set.tasks(), threads_, set.setup_memory()) : nullptr, clock),
       jobs_(records_, tap_, misses_, cause_ ? &*cause_ : nullptr, clock,
             tap_.is_on() || digest_ != nullptr || guest_ != nullptr),
-      members_(set.tasks(), records_, queue_, tap_, guest_),
+      events_({records_, queue_, set.sent(), options.events, options.tick}),
+      members_(set.tasks(), records_, queue_, events_, tap_, guest_),
       settlement_({set, records_, tap_, members_, misses_, cause_ ? &*cause_ : nullptr, guest_}),
       switching_({set, queue_, threads_, members_, settlement_, tap_, misses_, clock}),
       signals_(set, options, tap_, settlement_, threads_, switching_),
@@ -87,6 +94,13 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
     record.is_plain = spec.tolerated_of == 0;
     record.budget = spec.budget > Nanoseconds{} ? spec.budget : kNever;
   }
+  const auto has_events = [&](const Task& task) {
+    return task.spec->has_events && !options.preemptive && set.is_mine(task.id);
+  };
+  const auto n_events = std::count_if(set.tasks().begin(), set.tasks().end(), has_events);
+  events_.prepare(static_cast<std::size_t>(n_events), set.setup_memory());
+  for (Task& task : set.tasks())
+    if (has_events(task)) events_.add(task);
   set.methods().run_by({&clock, options.threads, options.writer});
 }
 
@@ -97,11 +111,15 @@ void Releases::begin(Nanoseconds origin) noexcept {
   if (switches_) switches_->begin(origin);
   switching_.begin(origin);
   signals_.begin(origin);
+  events_.begin(origin);
   members_.follow_all(origin);
+  follow(events_, signals_, origin);
 }
 
 void Releases::take_edge(Nanoseconds now, bool puts_off) noexcept {
   const bool is_in_row = puts_off && !queue_.is_empty() && queue_.next_release() > now;
+  follow(events_, signals_, now);
+  if (!events_.are_none() && !edge_is_due(now)) return;  // nothing else was due
   const bool is_for_others = signals_.next_act_in_row() <= now || set_.sent().has_pending() ||
                              (guest_ != nullptr && guest_->is_due(now));
   if (is_in_row && !is_for_others) return;
@@ -114,6 +132,7 @@ void Releases::take_edge(Nanoseconds now, bool puts_off) noexcept {
   recovery_.act(now);
   signals_.look_ahead(recovery_.due(), recovery_.wake());
   members_.follow_all(now);
+  follow(events_, signals_, now);
   settlement_.publish();
 }
 
@@ -126,6 +145,9 @@ bool Releases::decide_start(const Job& job, Nanoseconds now) noexcept {
 void Releases::settle_job(TaskId task, Nanoseconds now) noexcept {
   look_again();
   settlement_.settle_job(task, now);
+  if (events_.are_none()) return;
+  events_.finish(task);
+  signals_.look_ahead_to(events_.due());
 }
 
 }  // namespace chimera

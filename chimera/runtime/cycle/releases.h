@@ -23,6 +23,7 @@
 #include "chimera/runtime/job/job_cycle.h"
 #include "chimera/runtime/job/job_threads.h"
 #include "chimera/runtime/job/miss_policy.h"
+#include "chimera/runtime/life/event_tasks.h"
 #include "chimera/runtime/life/members.h"
 #include "chimera/runtime/life/settlement.h"
 #include "chimera/runtime/life/task_set.h"
@@ -151,6 +152,7 @@ class Releases {
   ReadyQueue queue_;
   MissPolicy misses_;
   JobCycle jobs_;
+  EventTasks events_;
   Members members_;
   Settlement settlement_;
   std::optional<LocalSwitches> switches_;  // of a context that is alone

@@ -9,6 +9,7 @@
 #include "chimera/runtime/cycle/script.h"
 #include "chimera/runtime/job/job_threads.h"
 #include "chimera/runtime/life/boundary_listener.h"
+#include "chimera/runtime/life/event_inputs.h"
 #include "chimera/runtime/plan/switch_request.h"
 #include "chimera/runtime/record/digest.h"
 #include "chimera/runtime/record/tap_ring.h"
@@ -25,6 +26,8 @@ struct RunOptions {
   Digest* digest = nullptr;                  ///< null: none
   std::uint8_t rtpu = 0;                     ///< for the records
   BoundaryListener* guest = nullptr;         ///< null: cycle boundaries have no listener
+  EventInputs* events = nullptr;              ///< events of tasks beside rings; null: none. Not with `preemptive`
+  Nanoseconds tick = milliseconds(1);        ///< between two looks at `events`, counted from the origin; > 0
   const std::atomic<bool>* stop = nullptr;   ///< checked before every job; may be set by a signal handler
   SwitchPeers* switch_peers = nullptr;       ///< null: switches are asked for by the script, or there are none
   /// Target sets of lists of tasks. Null: with `switch_peers` others know them, otherwise no task may ask for lists.

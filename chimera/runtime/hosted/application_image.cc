@@ -43,7 +43,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31474d49'4d494843;  // "CHIMIMG1" in memory
-constexpr std::uint32_t kVersion = 11;
+constexpr std::uint32_t kVersion = 12;
 
 struct Header {
   std::uint64_t magic = kMagic;
@@ -175,7 +175,10 @@ void task_fields(Archive& archive, Task& task, std::vector<PortSpec>& ports, std
   archive.number(task.stack_bytes);
   archive.choice(task.aperiodic, true);
   archive.choice(task.is_hardware, true);
+  archive.choice(task.has_events, true);
   server_fields(archive, task);
+  archive.require(!task.has_events || (task.aperiodic && !task.server),
+                  "events of a periodic task, or behind a server");
   archive.number(task.rtpu);
   archive.list(task.ports, ports, CHIMERA_MAX_PORTS, "too many ports",
                [&](auto& port) { port_fields(archive, port, counts); });

@@ -49,7 +49,8 @@ struct Sample {
                 .rtpu = RtpuId{1u}, .on_overrun_set = 1, .on_fault_set = 0, .ports = ports,
                 .server = ServerSpec{ServerKind::kSporadic, Nanoseconds{3}, Nanoseconds{10}}};
     tasks[1] = {.name = "plain", .component = "gain", .period = Nanoseconds{20}, .offset = {},
-                .deadline = Nanoseconds{20}, .budget = {}, .min_time = {}, .rtpu = RtpuId{0u}, .ports = more_ports,
+                .deadline = Nanoseconds{20}, .budget = {}, .min_time = {}, .has_events = true, .aperiodic = true,
+                .rtpu = RtpuId{0u}, .ports = more_ports,
                 .server = {}};
     tasks[2] = {.name = "spare", .component = "spare", .period = Nanoseconds{5}, .offset = {},
                 .deadline = Nanoseconds{5}, .budget = {}, .min_time = {}, .on_fault = OnFault::kRestart,
@@ -162,7 +163,7 @@ TEST(ApplicationImage, StrangersAreRefusedByName) {
   EXPECT_EQ(refusal(bytes), "not an application image");
   bytes = good;
   bytes[kVersionAt] = std::byte{12};
-  EXPECT_EQ(refusal(bytes), "image version 12, this program reads 11");
+  EXPECT_EQ(refusal(bytes), "image version 13, this program reads 12");
   bytes = good;
   bytes.pop_back();
   EXPECT_EQ(refusal(bytes), "the image says it has " + std::to_string(good.size()) + " bytes, here are " +
@@ -194,6 +195,7 @@ TEST(ApplicationImage, RefusesSpecificationsThatVerificationNeverMakes) {
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].server->capacity = Nanoseconds{11}; }), disordered));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].server->period = Nanoseconds{11}; }), disordered));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].aperiodic = false; }), disordered));
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[1].aperiodic = false; }), "events of a periodic task"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.ports[0].type = CHIMERA_ANY; }), "a type that does not exist"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.ports[0].kind = 99; }), "a port that cannot be declared"));
   const char* unfilled = "a value that does not fill its variable";

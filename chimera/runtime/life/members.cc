@@ -27,9 +27,14 @@ void Members::follow(Task& task, Nanoseconds now) noexcept {
 
 void Members::leave(Task& task) noexcept {
   --n_on_;
+  events_.leave(task);
+  lose_events(task);
+  queue_.leave(task.id);
+}
+
+void Members::lose_events(Task& task) noexcept {
   task.profile.events_lost += task.events;
   task.events = 0;
-  queue_.leave(task.id);
 }
 
 void Members::join(Task& task, Nanoseconds now) noexcept {
@@ -39,7 +44,8 @@ void Members::join(Task& task, Nanoseconds now) noexcept {
   record.skip_next = false;
   task.profile.missed_in_a_row = 0;
   task.last_release = now - task.spec->period;
-  if (task.spec->server) return;  // released by events
+  if (task.spec->server || (task.spec->has_events && events_.join(task, now))) return;  // released by events
+  lose_events(task);
   queue_.join(task.id, now);
   // dt of the first cycle is the period, whatever part of one passed since on.
   task.last_release = queue_.classes().first_release(task.id.index) - task.spec->period;

@@ -8,10 +8,15 @@ namespace chimera {
 
 bool SentSignals::ring(TaskId id) noexcept {
   Task& task = tasks_[id.index];
-  const bool counts = task.spec->server && task.state == State::kOn && task.events < UINT32_MAX;
+  if (!task.spec->has_doorbell()) return false;
+  const bool answers = task.spec->server || task.by_events;
+  const bool counts = answers && task.state == State::kOn && task.events < UINT32_MAX;
   if (counts) ++task.events;
-  if (task.spec->server) ++(counts ? task.profile.events : task.profile.events_lost);
-  return counts;
+  ++(counts ? task.profile.events : task.profile.events_lost);
+  if (!counts || !task.by_events) return counts;
+  if (!was_rung_) ++n_pending_;
+  was_rung_ = true;
+  return true;
 }
 
 void SentSignals::deliver(Task& task) noexcept {

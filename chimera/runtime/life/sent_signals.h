@@ -55,9 +55,14 @@ class SentSignals {
   void request(const SwitchRequest& request) noexcept;
   /// The request that waits, once; false as a bool if there is none.
   SwitchRequest take_request() noexcept;
-  /// Rings the doorbell of a task behind a server: one job for each ring, none is lost. False, with nothing done, when
-  /// the task is not ON or has no server.
+  /// Rings the doorbell of a task: one job for each ring, none is lost. False if the task is not ON (the event is
+  /// counted as lost) or has no doorbell.
   bool ring(TaskId task) noexcept;
+  /// EventTasks has seen all rings.
+  void had_rings() noexcept {
+    if (was_rung_) --n_pending_;
+    was_rung_ = false;
+  }
 
  private:
   bool is_mine(TaskId task) const noexcept { return memories_[task.index].is_planned(); }
@@ -67,8 +72,9 @@ class SentSignals {
   PeerView* others_ = nullptr;
   SwitchRequest request_;
   std::span<TaskLists> lists_;  // by task
-  std::uint32_t n_pending_ = 0;  // signals, the request, and the need for a cycle boundary
+  std::uint32_t n_pending_ = 0;  // signals, the request, rings, and the need for a cycle boundary
   bool wants_edge_ = false;
+  bool was_rung_ = false;
   bool takes_requests_ = false;
 };
 

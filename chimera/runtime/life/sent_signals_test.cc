@@ -77,6 +77,26 @@ TEST_F(SentSignalsTest, ASignalWaitsAtItsTargetInTheOrderOfSending) {
   EXPECT_FALSE(sent.take_pending(tasks[1], signal));
 }
 
+TEST_F(SentSignalsTest, ARingOfATaskWithEventsAsksForACycleBoundary) {
+  EXPECT_FALSE(sent.ring(TaskId(0u))) << "it has no doorbell";
+  EXPECT_EQ(tasks[0].profile.events_lost, 0u);
+  specs[0].has_events = true;
+  EXPECT_FALSE(sent.ring(TaskId(0u))) << "it polls";
+  tasks[0].by_events = true;
+  EXPECT_TRUE(sent.ring(TaskId(0u)));
+  EXPECT_TRUE(sent.ring(TaskId(0u)));
+  EXPECT_EQ(tasks[0].events, 2u);
+  EXPECT_TRUE(sent.has_pending());
+  sent.had_rings();
+  sent.had_rings();
+  EXPECT_FALSE(sent.has_pending());
+  tasks[0].state = State::kOff;
+  EXPECT_FALSE(sent.ring(TaskId(0u)));
+  EXPECT_EQ(tasks[0].profile.events_lost, 2u);
+  EXPECT_TRUE(sent.ring(kServed));
+  EXPECT_FALSE(sent.has_pending()) << "its server looks by itself";
+}
+
 TEST_F(SentSignalsTest, TheLastRequestForAConfigurationWaits) {
   EXPECT_FALSE(sent.take_request());
   tasks[0].requested_set = 2;

@@ -32,8 +32,7 @@ std::int32_t host_signal(void* context, std::uint32_t signal, const char* name) 
   const TaskHost& host = host_of(context);
   const TaskId target = name == nullptr ? host.task->id : task_named(name, host.set->spec().tasks);
   if (!target.is_valid() || signal > CHIMERA_SIGNAL_WAKEUP) return CHIMERA_FAULT;
-  // Only a task behind a server has a doorbell: others are woken by time.
-  if (signal == CHIMERA_SIGNAL_WAKEUP && !host.set->spec().tasks[target.index].server) return CHIMERA_FAULT;
+  if (signal == CHIMERA_SIGNAL_WAKEUP && !host.set->spec().tasks[target.index].has_doorbell()) return CHIMERA_FAULT;
   host.task->has_news = true;
   return host.task->outbox.try_push({static_cast<Signal>(signal), target}) ? CHIMERA_OK : CHIMERA_FAULT;
 }

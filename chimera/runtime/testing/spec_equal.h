@@ -91,6 +91,7 @@ inline void compare_tasks(SpecDifference& d, const TaskSpec& a, const TaskSpec& 
   d.compare(a.stack_bytes, b.stack_bytes, "stack_bytes");
   d.compare(a.aperiodic, b.aperiodic, "aperiodic");
   d.compare(a.is_hardware, b.is_hardware, "is_hardware");
+  d.compare(a.has_events, b.has_events, "has_events");
   d.compare(a.rtpu, b.rtpu, "rtpu");
   const ServerSpec one = a.server.value_or(ServerSpec{}), other = b.server.value_or(ServerSpec{});
   d.compare(a.server.has_value(), b.server.has_value(), "server");
