@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Floors 0, 2, 3 and 4, the runtime without its folders hosted, preemptive and virtual, shell and watch of
-firmware/, and components build freestanding for x86-64 and for a 32-bit microcontroller (ARM Cortex-M3), without
-exceptions or RTTI, and ask for no heap, stream, thread or file. Components in C need no C library either, and their tables are constant: no byte of RAM,
-no constructor. The hosted halves of these floors lie in subfolders (base/hosted, runtime/hosted),
-which a microcontroller replaces, and which the other half does not include."""
+"""Floors 0, 2, 3 and 4, the runtime without its folders hosted, preemptive and virtual, shell and watch of firmware/,
+and components build freestanding for x86-64 and for a 32-bit microcontroller (ARM Cortex-M3), without exceptions or
+RTTI, and ask for no heap, stream, thread or file. Components in C need no C library either, and their tables are
+constant: no byte of RAM, no constructor. The hosted halves of these floors lie in subfolders (base/hosted,
+runtime/hosted), which a microcontroller replaces, and which the other half does not include."""
 import concurrent.futures
 import itertools
 import os

@@ -28,7 +28,7 @@ namespace chimera::firmware {
 /// Everything that the shell shows and acts on; all of it outlives the shell.
 struct ShellParts {
   TaskSet& set;
-  Releases& releases;       ///< of the executor that runs with RunOptions::guest = `listener`
+  Releases& releases;       ///< of the executor that runs with `listener`
   ShellListener& listener;
   std::span<const Stack> stacks;
   const Watchdog* watchdog = nullptr;  ///< null: there is none

@@ -27,7 +27,7 @@ struct ShellAct {
   std::span<const std::byte> value;           ///< kSet: in memory that stays until is_done()
 };
 
-/// To be given as RunOptions::guest. One thread; context of everything not marked: cycle boundary,
+/// To be given to the executor in its RunOptions. One thread; context of everything not marked: cycle boundary,
 /// or between jobs; wait-free.
 class ShellListener final : public BoundaryListener {
  public:
@@ -35,7 +35,7 @@ class ShellListener final : public BoundaryListener {
   ShellListener(TaskSet& set, SetupMemory& memory);
   ShellListener(const ShellListener&) = delete;
   ShellListener& operator=(const ShellListener&) = delete;
-  /// The receipts of the executor that has this as RunOptions::guest; they outlive this. Context: setup.
+  /// The receipts of the executor that runs with this; they outlive this. Context: setup.
   void follow(const SwitchReceipts& receipts) noexcept { receipts_ = &receipts; }
 
   /// Asks for a cycle boundary that carries out the act, which outlives is_done(). Requires: is_done().
