@@ -107,7 +107,8 @@ void put_event(TextLine& line, const ShellEvent& event, const ApplicationSpec& s
   switch (event.kind) {
     case ShellEventKind::kState: line << state_name(event.before) << " -> " << state_name(event.after); break;
     case ShellEventKind::kMissed:
-      line << event.count << (event.count == 1 ? " deadline missed" : " deadlines missed");
+      if (event.count > 0) line << event.count << ' ';  // 0: known from its cause alone
+      line << (event.count == 1 ? "deadline missed" : "deadlines missed");
       if (event.other.is_valid()) line << ", time used by " << spec.tasks[event.other.index].name;
       break;
     default:

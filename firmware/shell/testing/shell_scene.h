@@ -35,6 +35,7 @@ struct Wave {
 /// Produces y too.
 struct Spare {
   Out<double> y{"y", "m/s", initial = 0.0};
+  Out<double> late{"late", "1"};
   Outcome on(Cycle) {
     if (orders.spare_is_slow) return not_yet();
     return orders.spare_refuses ? fault("no current") : ok();
@@ -47,9 +48,9 @@ struct Gain {
   In<double> k{"k", "N.s/m"};
   In<std::int64_t> n{"n", "1"};
   Out<double> u{"u", "N", initial = 0.0};
-  Out<double> list{"list", "rad", initial = 0.5};
+  Out<double[]> list{"list", "rad", "[3]", initial = 0.5};
   Outcome cycle(Cycle) {
-    if (orders.gain_faults) return fault(42, "the gain\nis broken");
+    if (orders.gain_faults) return fault("the gain\nis broken", 42);
     *u = *k * *y + static_cast<double>(*n);
     return ok();
   }
@@ -61,7 +62,7 @@ inline constexpr TaskId kWave{0u}, kSpare{1u}, kGain{2u};
 /// Two configurations: "normal" is wave and gain, "reserve" is spare and gain.
 class ShellScene : private Clock, private JobClock, private DigestLines {
  public:
-  explicit ShellScene(std::string_view starts_with = "") {
+  ShellScene() {
     orders = {};
     const auto* const wave = chimera::testing::component<Wave>("wave");
     app_.add("wave", wave);
@@ -70,9 +71,10 @@ class ShellScene : private Clock, private JobClock, private DigestLines {
     for (std::uint32_t t = 0; t < 3; ++t)
       for (std::uint32_t p = 0; p < app_.components[t]->n_ports; ++p)
         app_.port(t, p).unit = app_.components[t]->ports[p].unit;
+    app_.port(2, 4).extent[0].max = 3;
     app_.give(app_.operators, "k", CHIMERA_FLOAT64, chimera::testing::bytes_of(2.0));
     app_.give(app_.operators, "n", CHIMERA_INT64, chimera::testing::bytes_of(std::int64_t{0}));
-    app_.make(starts_with == "nothing" ? std::vector<TaskId>() : normal_, false);
+    app_.make(normal_, false);
     app_.spec.sets = sets_;
     app_.spec.on_order = normal_on_order_;
     set_ = *HeapTaskSet::create(app_.spec, app_.components);
@@ -146,6 +148,7 @@ class ShellScene : private Clock, private JobClock, private DigestLines {
     if (!shell_) use({});
     while (!listener_->is_due(now_)) {
       const bool has_input = receive();
+      send();
       if (shell_->has_work()) step();
       else if (!has_input) break;
     }
@@ -166,9 +169,12 @@ class ShellScene : private Clock, private JobClock, private DigestLines {
   void step() {
     shell_->step(now_);
     ++steps_;
+    most_sent_ = std::max(most_sent_, send());
+  }
+  std::size_t send() {
     std::size_t sent = 0;
     for (std::uint8_t byte = 0; sends && shell_->next_byte(byte); ++sent) output_ += static_cast<char>(byte);
-    most_sent_ = std::max(most_sent_, sent);
+    return sent;
   }
   void take(const DigestLine& line) noexcept override { lines_.push_back(line); }
 
