@@ -22,7 +22,7 @@ INSIDE = {"cli": {"": 0, "command": 0, "files": 1, "print": 1, "live": 2, "run":
           "description": {"": 0, "edit": 1}}
 COMPONENT_INTERFACE = ("chimera/task/abi.h", "chimera/task/component.h", "chimera/task/geometry.h",
                        "chimera/task/number_at.h", "chimera/task/pbo.h", "chimera/task/rig.h")
-ROOT_FOLDERS = ("chimera", "library", "apps", "executive", "examples", "tests", "bench", "tools")
+ROOT_FOLDERS = ("chimera", "library", "apps", "executive", "firmware", "examples", "tests", "bench", "tools")
 # Slow to compile: one .cc of an upper floor pays for each, never a header, never the real-time floors.
 HEAVY = re.compile(r"^(boost/|yaml-cpp/|nlohmann/|fmt/|mujoco/|gmock/)")
 SEES_BOOST = "chimera/web/web_server.cc"
@@ -130,6 +130,9 @@ def refusal(root, name, path, interface):
             return "library/ imports only the component interface and chimera/base"
     if folder[0] == "executive" and target[0] == "chimera" and (floor_of(path) is None or floor_of(path) > 5):
         return "executive/ imports only floors 0 to 5"
+    if folder[0] == "firmware" and not TESTS.search(name) and target[0] != "firmware":
+        if target[0] != "chimera" or floor_of(path) not in range(6) or "hosted" in target:
+            return "firmware/ imports only floors 0 to 5 without their hosted halves"
     return None
 
 
@@ -146,7 +149,7 @@ def heavy_refusal(name, path):
 
 
 def system_refusal(name, path):
-    if not name.startswith(("chimera/", "library/")) or TESTS.search(name):
+    if not name.startswith(("chimera/", "library/", "firmware/")) or TESTS.search(name):
         return None
     if name.startswith(tuple(SEES_THE_SYSTEM)):
         return None
@@ -238,6 +241,15 @@ PLANTED = (
       "chimera/task/component.h": '#include "chimera/table/slot.h"\n', "chimera/table/slot.h": "\n"}, None),
     (_tree("executive/main.cc", '"chimera/verify/verify.h"'),
      "executive/main.cc:1: includes chimera/verify/verify.h: executive/ imports only floors 0 to 5"),
+    (_tree("firmware/shell/x.cc", '"chimera/runtime/life/y.h"'), None),
+    (_tree("firmware/shell/x_test.cc", '"chimera/runtime/hosted/y.h"'), None),
+    (_tree("firmware/shell/x.cc", '"chimera/runtime/hosted/y.h"'),
+     "firmware/shell/x.cc:1: includes chimera/runtime/hosted/y.h: "
+     "firmware/ imports only floors 0 to 5 without their hosted halves"),
+    (_tree("firmware/x.cc", '"chimera/verify/y.h"'),
+     "firmware/x.cc:1: includes chimera/verify/y.h: firmware/ imports only floors 0 to 5 without their hosted halves"),
+    (_tree("firmware/x.cc", "<unistd.h>"),
+     "firmware/x.cc:1: includes unistd.h: only chimera/platform/ sees the operating system"),
     ({"chimera/base/x.cc": f'#include "{_SUPPORT}"\n', _SUPPORT: ""},
      f"chimera/base/x.cc:1: includes {_SUPPORT}: testing/ is for tests"),
     ({"chimera/base/x_test.cc": f'#include "{_SUPPORT}"\n', _SUPPORT: ""}, None),

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Floors 0, 2, 3 and 4, the runtime without its folders hosted, preemptive and virtual, and components build
-freestanding for x86-64 and for a 32-bit microcontroller (ARM Cortex-M3), without exceptions or RTTI, and ask for no
-heap, stream, thread or file. Components are one constant table, chimera_component_NAME: no byte of RAM, no constructor.
-Components in C need no C library either. The hosted halves of these floors lie in subfolders (base/hosted, runtime/hosted),
-which a microcontroller replaces, and which the other half does not include."""
+"""Floors 0, 2, 3 and 4, the runtime without its folders hosted, preemptive and virtual, shell and watch of firmware/,
+and components build freestanding for x86-64 and for a 32-bit microcontroller (ARM Cortex-M3), without exceptions or
+RTTI, and ask for no heap, stream, thread or file. Components are one constant table, chimera_component_NAME: no byte of
+RAM, no constructor. Components in C need no C library either. The hosted halves of these floors lie in subfolders
+(base/hosted, runtime/hosted), which a microcontroller replaces, and which the other half does not include."""
 import concurrent.futures
 import itertools
 import os
@@ -19,7 +19,8 @@ import sources  # noqa: E402
 
 FOLDERS = ("base", "table", "task", "schedule", "runtime", "runtime/record", "runtime/job", "runtime/plan",
            "runtime/state", "runtime/life", "runtime/switch", "runtime/cycle", "runtime/executive")
-FILE = re.compile(rf"chimera/({'|'.join(FOLDERS)})/[^/]+(?<!_test)(?<!_stress)(?<!_fuzz)\.(h|cc)$")
+FILE = re.compile(rf"(chimera/({'|'.join(FOLDERS)})|firmware/(shell|watch))/[^/]+"
+                  r"(?<!_test)(?<!_stress)(?<!_fuzz)\.(h|cc)$")
 HOSTED = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"(chimera/\w+/hosted/[^"]+)"', re.MULTILINE)
 # Components that a microcontroller may take; the first three are compiled for x86-64, too.
 TAKEN = ("gain pid_joint tderiv accel brake car ccui control dashboard deadband engine join_mean join_priority "
@@ -145,6 +146,7 @@ def planted(machine):
     yield {"chimera/table/x_test.cc": "int* p = new int;\n"}, None
     yield {"chimera/runtime/hosted/x.cc": _MUTEX[_NAME]}, None
     yield {"chimera/runtime/x.cc": _PRINTF}, asks("printf", "chimera/runtime/x.cc")
+    yield {"firmware/shell/x.cc": _PRINTF}, asks("printf", "firmware/shell/x.cc")
     yield ({"chimera/runtime/executive/x.h": f'#include "{_HOSTED}"\n', _HOSTED: ""},
            f"chimera/runtime/executive/x.h: includes {_HOSTED}, which a microcontroller does not have")
     yield {"chimera/runtime/x_test.cc": f'#include "{_HOSTED}"\n', _HOSTED: ""}, None

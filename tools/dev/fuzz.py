@@ -27,7 +27,7 @@ def parse_arguments():
 
 def sources():
     """Every x_fuzz.cc; its corpus is the folder x_corpus beside it."""
-    return sorted((common.ROOT / "chimera").rglob("*_fuzz.cc"))
+    return sorted(path for folder in ("chimera", "firmware") for path in (common.ROOT / folder).rglob("*_fuzz.cc"))
 
 
 def corpus_of(source):

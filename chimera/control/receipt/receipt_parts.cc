@@ -3,20 +3,13 @@
 #include "chimera/control/receipt/receipt_parts.h"
 
 #include "chimera/base/hosted/wording.h"
+#include "chimera/runtime/plan/switch_words.h"
 
 namespace chimera::control {
 
 std::string number_text(double value) { return formatted("%.6g", value); }
 
-const char* word(SwitchEnd end) {
-  switch (end) {
-    case SwitchEnd::kDone: return "done";
-    case SwitchEnd::kAborted: return "aborted";
-    case SwitchEnd::kRefused: return "refused";
-    case SwitchEnd::kNothingToDo: return "nothing-to-do";
-  }
-  return "?";
-}
+const char* word(SwitchEnd end) { return end_word(end); }
 
 const char* word(TaskMove move) {
   switch (move) {

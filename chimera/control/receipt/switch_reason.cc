@@ -123,36 +123,6 @@ std::string asked_by(const SwitchRequest& request, const ApplicationSpec& spec) 
   return "?";
 }
 
-const char* reason_word(NoSwitch why) noexcept {
-  switch (why) {
-    case NoSwitch::kNone: return "none";
-    case NoSwitch::kUnknownSet: return "unknown-configuration";
-    case NoSwitch::kNothingToDo: return "nothing-to-do";
-    case NoSwitch::kInError: return "in-error";
-    case NoSwitch::kNotCreated: return "not-created";
-    case NoSwitch::kKeptOff: return "turned-off";
-    case NoSwitch::kUnderWay: return "under-way";
-    case NoSwitch::kNotSchedulable: return "not-schedulable";
-    case NoSwitch::kOnFailed: return "on-failed";
-    case NoSwitch::kStepTooLarge: return "step-too-large";
-    case NoSwitch::kNoGap: return "no-gap";
-    case NoSwitch::kNoValue: return "no-value";
-    case NoSwitch::kNotSafe: return "not-safe";
-    case NoSwitch::kDisturbed: return "disturbed";
-    case NoSwitch::kFlagRaised: return "flag-raised";
-    case NoSwitch::kRunEnded: return "run-ended";
-    case NoSwitch::kLate: return "late";
-    case NoSwitch::kMemberDied: return "member-died";
-    case NoSwitch::kDamaged: return "damaged";
-    case NoSwitch::kCancelled: return "cancelled";
-    case NoSwitch::kBadConstant: return "bad-constant";
-    case NoSwitch::kStepFailed: return "step-failed";
-    case NoSwitch::kNotReady: return "not-ready";
-    case NoSwitch::kNoAnswer: return "no-answer";
-  }
-  return "?";
-}
-
 std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spec) {
   const std::string task = receipt.task.is_valid() ? in_quotes(spec.tasks[receipt.task.index].name) : "";
   const VariableId moved = receipt.variable;

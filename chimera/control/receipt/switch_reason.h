@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "chimera/runtime/plan/switch_receipt.h"
+#include "chimera/runtime/plan/switch_words.h"
 
 namespace chimera::control {
 
@@ -29,7 +30,7 @@ std::vector<std::string> slow_words(const SwitchWay& way);
 std::string slow_text(const SwitchReceipt& receipt, const ApplicationSpec& spec);
 
 /// Why a switch was refused or aborted: the word of the format, and a sentence.
-const char* reason_word(NoSwitch why) noexcept;
+using chimera::reason_word;
 std::string reason_text(const SwitchReceipt& receipt, const ApplicationSpec& spec);
 
 }  // namespace chimera::control

@@ -112,6 +112,12 @@ SignalReport BoundarySignals::signal(std::span<const TaskId> tasks, Signal signa
   return report;
 }
 
+SignalReport BoundarySignals::operate(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept {
+  if (orders_ != nullptr)
+    for (const TaskId id : tasks) orders_->note_word(id, signal);
+  return this->signal(tasks, signal, now);
+}
+
 void BoundarySignals::warm_up(TaskId task, Nanoseconds now) noexcept {
   const bool was_illegal = set_.flag().is_up();
   record(set_.life().warm_up(task, now), was_illegal, now);

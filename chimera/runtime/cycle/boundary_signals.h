@@ -71,6 +71,8 @@ class BoundarySignals {
   bool may_touch(TaskId task) noexcept { return threads_.claim(task); }
   /// Calls TaskLife::signal. Requires: may_touch() of all.
   SignalReport signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept;
+  /// Carries out a signal of an operator to these tasks, as signal(): `off` and `kill` keep them OFF until `on`.
+  SignalReport operate(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept;
   /// Calls TaskLife::warm_up. Requires: may_touch().
   void warm_up(TaskId task, Nanoseconds now) noexcept;
   /// Calls TaskLife::finish_slow.

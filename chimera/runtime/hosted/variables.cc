@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "chimera/base/hosted/wording.h"
+#include "chimera/runtime/set_words.h"
 
 namespace chimera {
 namespace {
@@ -37,18 +37,7 @@ std::string Variables::explain(const std::vector<bool>& on, std::span<const Task
 
 std::string Variables::fault(const std::vector<bool>& on, std::span<const TaskSpec> tasks) const {
   std::string text;
-  const auto add = [&text](const std::string& part) { append_joined(text, "; ", part); };
-  for (const Variable& variable : variables_) {
-    const SetFault fault = fault_of(variable, on);
-    if (fault == SetFault::kTwoProducers) {
-      std::string who;
-      for (const PortOf& p : variable.producers)
-        if (on[p.task.index]) append_joined(who, " and ", tasks[p.task.index].name);
-      add(std::string(variable.name) + " would have two producers: " + who);
-    } else if (fault == SetFault::kNoProducer) {
-      add(std::string(variable.name) + " would have no producer");
-    }
-  }
+  put_set_fault(variables_, on, tasks, [&text](std::string_view part) { text += part; });
   return text;
 }
 

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+// Takes lines apart, looks names up, and hands acts to the cycle boundary. One piece of work a step.
+#include "firmware/shell/shell.h"
+
+#include <algorithm>
+
+namespace chimera::firmware {
+namespace {
+
+constexpr int kBytesRead = 32, kBytesSent = 64;
+constexpr std::size_t kNamesLookedAt = 16;
+
+Signal signal_of(Verb verb) noexcept {
+  switch (verb) {
+    case Verb::kSpawn: return Signal::kSpawn;
+    case Verb::kOn: return Signal::kOn;
+    case Verb::kKill: return Signal::kKill;
+    case Verb::kClear: return Signal::kClear;
+    case Verb::kReinit: return Signal::kReinit;
+    default: return Signal::kOff;
+  }
+}
+
+}  // namespace
+
+void Shell::receive(std::uint8_t byte) noexcept {
+  const std::uint32_t needed = is_losing_ ? 2 : 1;
+  if (in_.free() < needed) {
+    is_losing_ = true;
+    lost_.store(lost_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+    return;
+  }
+  if (is_losing_) (void)in_.try_push(kLostMark);
+  is_losing_ = false;
+  (void)in_.try_push(byte);
+}
+
+bool Shell::has_work() const noexcept {
+  if (is_sending_) return out_.free() > 0;
+  switch (phase_) {
+    case Phase::kRead: return !in_.is_empty();
+    case Phase::kAct: return parts_.listener.is_done();
+    case Phase::kSwitch: return parts_.listener.is_switch_over();
+    default: return true;
+  }
+}
+
+void Shell::step(Nanoseconds now) noexcept {
+  if (is_sending_) return send();
+  switch (phase_) {
+    case Phase::kRead: return read();
+    case Phase::kFind: return find();
+    case Phase::kTyped: return read_typed();
+    case Phase::kAct:
+      if (parts_.listener.is_done()) end_act();
+      return;
+    case Phase::kSwitch:
+      if (parts_.listener.is_switch_over()) end_switch();
+      return;
+    case Phase::kRows:
+      if (!make_row(now)) phase_ = Phase::kAnswer;
+      return;
+    case Phase::kAnswer: return answer();
+  }
+}
+
+bool Shell::say(std::string_view line) noexcept {
+  const bool is_amid = is_sending_ && sent_ > 0;
+  if (is_amid || out_.free() < line.size() + 2) return false;
+  for (const char c : line) (void)out_.try_push(static_cast<std::uint8_t>(c));
+  (void)out_.try_push('\r');
+  (void)out_.try_push('\n');
+  return true;
+}
+
+void Shell::send() noexcept {
+  const std::size_t n = line_.size();
+  for (int i = 0; i < kBytesSent && sent_ < n + 2; ++i, ++sent_) {
+    const char c = sent_ < n ? line_.view()[sent_] : sent_ == n ? '\r' : '\n';
+    if (!out_.try_push(static_cast<std::uint8_t>(c))) return;
+  }
+  if (sent_ < n + 2) return;
+  is_sending_ = false;
+  line_.clear();
+  sent_ = 0;
+}
+
+void Shell::read() noexcept {
+  std::uint8_t byte = 0;
+  for (int i = 0; i < kBytesRead && in_.try_pop(byte); ++i)
+    if (reader_.add(byte)) return begin_line();
+}
+
+void Shell::begin_line() noexcept {
+  phase_ = Phase::kAnswer;
+  operand_ = at_ = 0;
+  act_ = {};
+  if (refuse_line()) return;
+  command_ = parse(reader_.line());
+  switch (command_.fault) {
+    case LineFault::kUnknown: why_ << "no command '" << command_.words[0] << "': try help"; return;
+    case LineFault::kTooManyWords: why_ << "a line has at most " << kMostWords << " words"; return;
+    case LineFault::kTooFew:
+    case LineFault::kTooMany:
+      why_ << command_.command->name << " takes "
+           << (command_.command->operands.empty() ? std::string_view("no operand") : command_.command->operands);
+      return;
+    case LineFault::kNone: break;
+  }
+  if (command_.command == nullptr) {  // a line of blanks
+    reader_.restart();
+    phase_ = Phase::kRead;
+    return;
+  }
+  phase_ = command_.command->operand == Operand::kNone ? Phase::kRows : Phase::kFind;
+}
+
+bool Shell::refuse_line() noexcept {
+  switch (reader_.fault()) {
+    case LineReader::Fault::kNone: return false;
+    case LineReader::Fault::kTooLong:
+      why_ << "a line has at most " << LineReader::kMost << " bytes, not " << reader_.length();
+      return true;
+    case LineReader::Fault::kBadByte:
+      why_ << "byte " << reader_.bad_byte() << " is no character of a command";
+      return true;
+    case LineReader::Fault::kLost: {
+      const std::uint32_t lost = lost_bytes();
+      if (lost == lost_told_) why_ << "byte 0 is no character of a command";
+      else why_ << lost - lost_told_ << " bytes of this line or before it were lost: wait for each answer";
+      lost_told_ = lost;
+      return true;
+    }
+  }
+  return false;
+}
+
+std::string_view Shell::name_at(std::size_t i) const noexcept {
+  const ApplicationSpec& spec = parts_.set.spec();
+  switch (command_.command->operand) {
+    case Operand::kTask: return spec.tasks[i].name;
+    case Operand::kConfiguration: return spec.sets[i].name;
+    default: return spec.variables[i].name;
+  }
+}
+
+std::size_t Shell::n_names() const noexcept {
+  const ApplicationSpec& spec = parts_.set.spec();
+  switch (command_.command->operand) {
+    case Operand::kTask: return spec.tasks.size();
+    case Operand::kConfiguration: return spec.sets.size();
+    default: return spec.variables.size();
+  }
+}
+
+void Shell::find() noexcept {
+  const std::string_view name = command_.operand(operand_);
+  const std::size_t n = n_names(), end = std::min(n, at_ + kNamesLookedAt);
+  for (; at_ < end; ++at_) {
+    if (name_at(at_) != name) continue;
+    if (!found(at_)) phase_ = Phase::kAnswer;
+    return;
+  }
+  if (at_ < n) return;
+  const Operand kind = command_.command->operand;
+  why_ << (kind == Operand::kTask ? "no task '" : kind == Operand::kVariable ? "no variable '" : "no configuration '")
+       << name << "'";
+  phase_ = Phase::kAnswer;
+}
+
+// False: the line is refused.
+bool Shell::found(std::size_t i) noexcept {
+  index_ = static_cast<std::uint32_t>(i);
+  at_ = 0;
+  if (command_.command->operand != Operand::kTask || command_.command->verb == Verb::kProfile) {
+    begin_command();
+    return true;
+  }
+  for (const TaskId id : act_.tasks) {
+    if (id.index != index_) continue;
+    why_ << "task '" << command_.operand(operand_) << "' is named twice";
+    return false;
+  }
+  (void)act_.tasks.try_push(TaskId(i));
+  if (++operand_ == command_.n_operands()) begin_command();
+  return true;
+}
+
+void Shell::begin_command() noexcept {
+  switch (command_.command->verb) {
+    case Verb::kSet: return begin_set();
+    case Verb::kGet:
+    case Verb::kProfile: phase_ = Phase::kRows; return;
+    case Verb::kSwitch:
+      act_.kind = ShellAct::Kind::kSwitch;
+      act_.index = index_;
+      break;
+    default:
+      act_.kind = ShellAct::Kind::kSignal;
+      act_.signal = signal_of(command_.command->verb);
+      break;
+  }
+  parts_.listener.ask(act_);
+  phase_ = Phase::kAct;
+}
+
+void Shell::begin_set() noexcept {
+  const ApplicationSpec& spec = parts_.set.spec();
+  const Variable& variable = spec.variables[index_];
+  phase_ = Phase::kAnswer;
+  if (!variable.is_given()) {
+    why_ << variable.name << " is no operator variable";
+    return;
+  }
+  const GivenSpec& given = spec.operators[variable.operator_index];
+  const PortSpec* const port =
+      variable.consumers.empty() ? nullptr : spec.port(CHIMERA_IN_VAR, variable.consumers[0]);
+  const ValueShape shape{variable.name, port == nullptr ? std::string_view("1") : port->unit, given.type,
+                         given.element_bytes, given.extent[0].max * given.extent[1].max};
+  const std::span<const std::string_view> words(command_.words.begin() + 2, command_.words.size() - 2);
+  typed_ = TypedValue(shape, words, command_.after_first, value_);
+  if (typed_.begin(why_)) phase_ = Phase::kTyped;
+}
+
+void Shell::read_typed() noexcept {
+  if (!typed_.is_complete()) {
+    if (!typed_.read_next(why_)) phase_ = Phase::kAnswer;
+    return;
+  }
+  act_.kind = ShellAct::Kind::kSet;
+  act_.index = parts_.set.spec().variables[index_].operator_index;
+  act_.value = typed_.bytes();
+  parts_.listener.ask(act_);
+  phase_ = Phase::kAct;
+}
+
+void Shell::end_act() noexcept {
+  why_ << parts_.listener.refusal().view();
+  const bool is_awaited = act_.kind == ShellAct::Kind::kSwitch && why_.size() == 0;
+  phase_ = is_awaited ? Phase::kSwitch : Phase::kAnswer;
+}
+
+void Shell::answer() noexcept {
+  if (why_.size() == 0) line_ << "ok";
+  else line_ << "no: " << why_.view();
+  is_sending_ = true;
+  why_.clear();
+  reader_.restart();
+  phase_ = Phase::kRead;
+}
+
+}  // namespace chimera::firmware
