@@ -29,7 +29,8 @@ class Line {
   }
   /// All 16 digits of `bits` in base 16.
   Line& hex(std::uint64_t bits) noexcept {
-    for (int shift = 60; shift >= 0; shift -= 4) *this << std::string_view(&"0123456789abcdef"[(bits >> shift) & 15], 1);
+    for (int shift = 60; shift >= 0; shift -= 4)
+      *this << std::string_view(&"0123456789abcdef"[(bits >> shift) & 15], 1);
     return *this;
   }
   /// The text with the end of the line.
@@ -43,7 +44,7 @@ class Line {
   std::size_t size_ = 0;
 };
 
-/// Sends the line, or counts it as lost: Uart::send. Context: cycle; wait-free.
+/// Sends the line, or counts it as lost: SerialLine::send. Context: cycle; wait-free.
 inline void send(Line& line) noexcept { uart().send(line.finish()); }
 
 }  // namespace chimera::firmware

@@ -11,7 +11,7 @@ namespace chimera::firmware {
 [[noreturn]] void end_image(int code) noexcept;
 /// Sends "stop WORDS" and ends with code 1. Context: any.
 [[noreturn]] void stop(std::string_view words) noexcept;
-/// The same for an exception of the processor, `number` as in ARMv7-M, at program address `pc`. Context: exception.
+/// Stops at an exception of the processor: `number` as in ARMv7-M, program address `pc`. Context: exception.
 [[noreturn]] void stop_at_exception(std::uint32_t number, std::uint32_t pc) noexcept;
 
 }  // namespace chimera::firmware
