@@ -37,7 +37,8 @@ void print_tasks(const TaskSet& set) {
   for (const Task& task : set.tasks()) {
     const Profile& profile = task.profile;
     send(Line() << "task " << task.spec->name << " cycles " << profile.cycles << " missed " << profile.missed
-                << " dropped " << profile.dropped << " faults " << task.faults.count);
+                << " dropped " << profile.dropped << " faults " << task.faults.count << " response "
+                << static_cast<std::uint64_t>(profile.cycles == 0 ? 0 : profile.response.max.count));
   }
 }
 

@@ -20,7 +20,7 @@ def complaints(built):
     if built.machine() is None:
         return
     lines = built.run()
-    yield from images.unpunctual(lines)
+    yield from images.unpunctual(lines, built.periods())
     difference = digest.difference(built.host_digest(), digest.of_image(lines))
     if difference:
         yield difference

@@ -56,7 +56,7 @@ def show(image, target, arguments):
     common.step(f"{image.name} for {target}: run for {image.duration} in QEMU and on this machine")
     lines = built.run()
     print("\n".join(f"   {line}" for line in lines if not line.startswith("digest ")))
-    print("".join(f"   {line}\n" for line in images.unpunctual(lines)), end="")
+    print("".join(f"   {line}\n" for line in images.unpunctual(lines, built.periods())), end="")
     found = digest.difference(built.host_digest(), digest.of_image(lines))
     common.step(f"{image.name} for {target}: " + (found or "its digest is equal to that of this machine"))
     return not found

@@ -11,12 +11,13 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDERS = ("base", "platform/bare", "table", "task", "schedule", "runtime", "runtime/record", "runtime/job",
            "runtime/plan", "runtime/state", "runtime/life", "runtime/switch", "runtime/cycle", "runtime/executive")
 FIRMWARE = ("firmware", "firmware/boot", "firmware/boards")
+TOGETHER = 8
 NO_PRODUCT = re.compile(r"_(test|stress|fuzz)\.cc$")
 # Analyses of the desk; an image carries their results.
 DESK = {"schedule/" + name for name in ("analysis.cc", "level.cc", "worst_window.cc", "response.cc", "data_age.cc",
                                         "transition.cc", "change_window.cc")}
 COMMON = ("-Os -ffreestanding -ffp-contract=off -fsigned-char -ffunction-sections -fdata-sections -g1 "
-          "-DCHIMERA_BARE -Wall -Wextra -Werror -Wno-psabi")
+          f"-ffile-prefix-map={ROOT}/= -DCHIMERA_BARE -Wall -Wextra -Werror -Wno-psabi")
 CXX = ("-std=c++20 -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-asynchronous-unwind-tables "
        "-fno-unwind-tables")
 # QEMU's machine of each board that it simulates.
@@ -29,13 +30,12 @@ class BuildError(Exception):
 
 
 def sources_of_kernel():
-    for folder in FOLDERS:
-        for path in sorted((ROOT / "chimera" / folder).glob("*.cc")):
-            name = f"{folder}/{path.name}"
-            if not NO_PRODUCT.search(path.name) and name not in DESK:
-                yield path
-    for folder in FIRMWARE:
-        yield from (path for path in sorted((ROOT / folder).glob("*.cc")) if not NO_PRODUCT.search(path.name))
+    """(name, files) of what is compiled as one: eight files of a folder at most, because headers take the time."""
+    for folder in (*(f"chimera/{each}" for each in FOLDERS), *FIRMWARE):
+        files = [path for path in sorted((ROOT / folder).glob("*.cc"))
+                 if not NO_PRODUCT.search(path.name) and f"{folder.removeprefix('chimera/')}/{path.name}" not in DESK]
+        for i in range(0, len(files), TOGETHER):
+            yield f"{folder.removeprefix('chimera/')}/{i // TOGETHER}", files[i:i + TOGETHER]
 
 
 def source_of_component(name, folders):
@@ -50,6 +50,11 @@ def source_of_component(name, folders):
 
 def word(path):
     return str(path).replace("$", "$$").replace(" ", "$ ").replace(":", "$:")
+
+
+def write_if_new(path, text):
+    if not path.exists() or path.read_text() != text:
+        path.write_text(text)
 
 
 def rules(baked, out, board, folders):
@@ -67,27 +72,24 @@ def rules(baked, out, board, folders):
             "  rspfile = $out.rsp\n  rspfile_content = $in_newline\n  description = link $out"]
     objects, missing = [], []
 
-    def compiled(path, folder):
-        target = f"{folder}/{path.relative_to(ROOT) if path.is_relative_to(ROOT) else path.name}.o"
+    def compiled(path, target):
         text.append(f"build {word(target)}: {'cc' if path.suffix == '.c' else 'cxx'} {word(path)}")
-        if path.name == "memory.cc" and "boot" in path.parts:  # else memcpy would become a call of itself
+        if target.startswith("kernel/firmware/boot/"):  # else memcpy would become a call of itself
             text.append("  more = -fno-tree-loop-distribute-patterns")
         objects.append(word(target))
 
-    for path in sources_of_kernel():
-        compiled(path, "kernel")
+    for name, files in sources_of_kernel():
+        together = out / "together" / f"{name}.cc"
+        together.parent.mkdir(parents=True, exist_ok=True)
+        write_if_new(together, "".join(f'#include "{path.relative_to(ROOT)}"\n' for path in files))
+        compiled(together, f"kernel/{name}.o")
     for name in (baked / "components.txt").read_text().split():
         path = source_of_component(name, folders)
-        compiled(path, "components") if path else missing.append(name)
+        compiled(path, f"components/{name}.o") if path else missing.append(name)
     text.append(f"build baked/tables.cc.o: cxx {word(baked / 'tables.cc')}")
     objects.append("baked/tables.cc.o")
     text.append(f"build image.elf: link {' '.join(objects)} | {ROOT}/firmware/boards/image.ld {baked}/memory.ld")
     return "\n".join(text) + "\n", missing
-
-
-def write_if_new(path, text):
-    if not path.exists() or path.read_text() != text:
-        path.write_text(text)
 
 
 def explained(log, missing):
@@ -109,6 +111,7 @@ def explained(log, missing):
 
 def build(baked, out, board, folders=()):
     """OUT/image.elf, up to date. Raises BuildError."""
+    out = out.resolve()
     out.mkdir(parents=True, exist_ok=True)
     text, missing = rules(baked.resolve(), out, board, folders)
     write_if_new(out / "build.ninja", text)

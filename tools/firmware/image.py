@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """An image of firmware/images: what it is made of, and how it is baked, linked, run and compared with the host."""
 import dataclasses
+import json
+import math
 import os
 import pathlib
 import re
@@ -89,6 +91,10 @@ class Built:
         """QEMU's machine for the target; None: QEMU has none."""
         return build.SIMULATED.get(self.board(), {}).get(self.cpu())
 
+    def periods(self):
+        """Of the tasks, in ns."""
+        return [task["period_ns"] for task in json.loads((self.out / "baked" / "dictionary.json").read_text())["tasks"]]
+
     def sizes(self):
         return sizes.table(pathlib.Path(f"{self.elf}.map"))
 
@@ -109,9 +115,13 @@ class Built:
         return lines
 
 
-def unpunctual(lines):
-    """Lines of tasks that missed a deadline or dropped a release: digests may then differ."""
+def unpunctual(lines, periods):
+    """Sentences about jobs that were not over at the next release of any task: the digest may then differ from that of
+    the host, whose jobs take no time. `periods`: of all tasks, in ns."""
+    grid = math.gcd(*periods)
     for line in lines:
-        found = re.match(r"task (\S+) cycles \d+ missed (\d+) dropped (\d+)", line)
+        found = re.match(r"task (\S+) cycles \d+ missed (\d+) dropped (\d+) faults \d+ response (\d+)", line)
         if found and (found[2] != "0" or found[3] != "0"):
             yield f"task {found[1]} missed {found[2]} deadlines and dropped {found[3]} releases"
+        elif found and int(found[4]) >= grid:
+            yield f"task {found[1]} ended {int(found[4])} ns after its release, and releases may be {grid} ns apart"

@@ -34,11 +34,11 @@ def part(name):
     if "libgcc" in name:
         return "libgcc", re.sub(r".*\((.*)\)", r"\1", name)
     if name.startswith("components/"):
-        return "component", pathlib.PurePath(name).name.split(".")[0]
+        return "component", pathlib.PurePath(name).stem
     if name.startswith("baked/"):
         return "tables", "tables"
-    path = re.sub(r"^kernel/(chimera/)?|\.cc\.o$", "", name)
-    return ("firmware" if path.startswith(("firmware/", "platform/")) else "kernel"), path
+    path = re.sub(r"^kernel/|/\d+\.o$", "", name)
+    return ("firmware" if path.startswith(("firmware", "platform/")) else "kernel"), path
 
 
 def table(map_path):
