@@ -13,7 +13,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent / "check"))
 import sources  # noqa: E402
 
 LICENCE = "SPDX-License-Identifier: Apache-2.0"
-LICENSED = (".h", ".cc", ".c", ".py", ".sh", ".cmake", ".js", ".ts", ".tsx", ".css", ".pml")
+LICENSED = (".h", ".cc", ".c", ".ld", ".py", ".sh", ".cmake", ".js", ".ts", ".tsx", ".css", ".pml")
 BINARY = (".png", ".jpg", ".gz", ".zip", ".woff2", ".ico", ".stl", ".dae")
 # What a program leaves behind in a folder has none of these endings, or a name that nobody would type.
 ENDINGS = LICENSED + BINARY + (

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// The application as an image gets it: the verified one with the resource texts of the target.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <vector>
+
+#include "chimera/bake/target.h"
+#include "chimera/runtime/application_spec.h"
+#include "chimera/verify/configuration.h"
+
+namespace chimera::bake {
+
+/// Context: setup. Its spec lives as long as it does.
+class BakedApplication {
+ public:
+  /// Budgets of the description belong to another machine. They stay only with `has_profile`, which is of the target.
+  BakedApplication(const Configuration& configuration, const Target& target, bool has_profile);
+  BakedApplication(const BakedApplication&) = delete;
+  BakedApplication& operator=(const BakedApplication&) = delete;
+
+  const ApplicationSpec& spec() const noexcept { return spec_; }
+  const Configuration& configuration() const noexcept { return configuration_; }
+
+ private:
+  Configuration configuration_;
+  std::deque<std::vector<std::byte>> texts_;
+  std::vector<std::vector<PortSpec>> ports_;
+  std::vector<TaskSpec> tasks_;
+  ApplicationSpec spec_;
+};
+
+/// "pedal" of "pedal[1]", an instance of a repeated port. Context: setup.
+std::string declared_name(const ConfiguredPort& port);
+
+}  // namespace chimera::bake

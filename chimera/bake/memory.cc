@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Adds up sizes of the tables and records of an image, by the sizes of a 32-bit machine.
+#include "chimera/bake/memory.h"
+
+#include "chimera/runtime/executive/baked_sizes.h"
+
+namespace chimera::bake {
+namespace {
+
+constexpr std::size_t kGroupHeaderBytes = 32;
+constexpr std::size_t kPayloads = 2;  // the published values and those under way
+
+std::size_t rounded_up(std::size_t bytes, std::size_t to) { return (bytes + to - 1) / to * to; }
+
+/// Numbers of type float64 in the port.
+std::size_t doubles_of(const PortSpec& port) { return port.type == CHIMERA_FLOAT64 ? port.max_count() : 0; }
+
+void add_port(TaskMemoryNeed& need, std::size_t& group_bytes, const PortSpec& port) {
+  need.flash_bytes += baked::kPortSpecBytes + rounded_up(port.value.size(), 8) + port.max_step.size() +
+                      port.unit.size() + 1;
+  need.ram_bytes += baked::kLivePortBytes;
+  if (port.kind == CHIMERA_OUT_VAR) group_bytes += rounded_up(port.max_bytes(), 8);
+  if (port.kind == CHIMERA_IN_CONST || port.kind == CHIMERA_OUT_CONST)
+    need.ram_bytes += rounded_up(port.max_bytes(), 8);
+  if (port.kind == CHIMERA_RESOURCE) need.ram_bytes += rounded_up(port.value.size() + 1, 4);
+  if (port.kind == CHIMERA_IN_VAR) need.float64_in += doubles_of(port);
+  if (port.kind == CHIMERA_OUT_VAR) need.float64_out += doubles_of(port);
+}
+
+TaskMemoryNeed need_of(const TaskSpec& task) {
+  TaskMemoryNeed need;
+  need.flash_bytes = baked::kTaskSpecBytes + task.name.size() + task.component.size() + 2;
+  need.ram_bytes = kTaskRecordBytes;
+  std::size_t group_bytes = 0;
+  for (const PortSpec& port : task.ports) add_port(need, group_bytes, port);
+  if (group_bytes > 0) need.ram_bytes += kGroupHeaderBytes + kPayloads * group_bytes;
+  return need;
+}
+
+}  // namespace
+
+std::size_t MemoryNeed::flash_bytes() const noexcept {
+  std::size_t bytes = shared_flash_bytes;
+  for (const TaskMemoryNeed& task : tasks) bytes += task.flash_bytes;
+  return bytes;
+}
+
+std::size_t MemoryNeed::ram_bytes() const noexcept {
+  std::size_t bytes = shared_ram_bytes + stack_bytes;
+  for (const TaskMemoryNeed& task : tasks) bytes += task.ram_bytes;
+  return bytes;
+}
+
+MemoryNeed memory_need(const ApplicationSpec& spec, std::size_t n_acts, const Target& target) {
+  MemoryNeed need;
+  for (const TaskSpec& task : spec.tasks) need.tasks.push_back(need_of(task));
+  std::size_t& flash = need.shared_flash_bytes;
+  flash = baked::kApplicationSpecBytes + n_acts * baked::kScriptActBytes;
+  flash += baked::kTaskIdBytes * (spec.init_order.size() + spec.start.size() + spec.on_order.size() +
+                                  spec.end_order.size());
+  for (const NamedSet& set : spec.sets)
+    flash += baked::kNamedSetBytes + baked::kTaskIdBytes * set.order.size() + set.name.size() + 1;
+  for (const Variable& variable : spec.variables)
+    flash += baked::kVariableBytes + baked::kPortOfBytes * (variable.producers.size() + variable.consumers.size()) +
+             variable.name.size() + 1;
+  for (const ConstantSpec& constant : spec.constants)
+    flash += baked::kConstantSpecBytes + baked::kPortOfBytes * constant.producers.size() + constant.value.size() +
+             constant.name.size() + 1;
+  for (const GivenSpec& given : spec.operators) {
+    flash += baked::kGivenSpecBytes + given.value.size();
+    need.shared_ram_bytes += kGroupHeaderBytes + kPayloads * rounded_up(given.value.size(), 8);
+  }
+  need.stack_bytes = std::size_t{target.stack_bytes} + target.handler_stack_bytes;
+  return need;
+}
+
+}  // namespace chimera::bake

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Memory that an image needs, as far as it is known before compiling: tables in flash; records, groups and constants in
+// RAM. Code and the other members of components are known behind the compiler of the target only.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "chimera/bake/target.h"
+#include "chimera/runtime/application_spec.h"
+
+namespace chimera::bake {
+
+/// One task. Bytes of a 32-bit machine.
+struct TaskMemoryNeed {
+  std::size_t flash_bytes = 0;  ///< its tables
+  std::size_t ram_bytes = 0;    ///< its record, live ports, out-vars and constants
+  std::size_t float64_in = 0;   ///< numbers of type float64 that it reads in each cycle
+  std::size_t float64_out = 0;  ///< that it writes
+};
+
+struct MemoryNeed {
+  std::vector<TaskMemoryNeed> tasks;
+  std::size_t shared_flash_bytes = 0;  ///< tables of no single task
+  std::size_t shared_ram_bytes = 0;    ///< operator variables and given constants
+  std::size_t stack_bytes = 0;         ///< both stacks
+
+  std::size_t flash_bytes() const noexcept;
+  std::size_t ram_bytes() const noexcept;  ///< with the stacks
+};
+
+inline constexpr std::size_t kTaskRecordBytes = 256;  ///< limit of the runtime for one task
+/// Instructions of the compiler's library on a core without double precision, as measured on a Cortex-M3.
+inline constexpr std::size_t kDoubleAdd = 75, kDoubleMultiply = 53, kDoubleDivide = 581, kDoubleCompare = 49;
+/// Longest slice of the shell, and cycles of the core for one instruction: an upper bound without wait states.
+inline constexpr std::size_t kShellInstructions = 2000, kCyclesPerInstruction = 2;
+
+/// Context: setup.
+MemoryNeed memory_need(const ApplicationSpec& spec, std::size_t n_acts, const Target& target);
+
+}  // namespace chimera::bake

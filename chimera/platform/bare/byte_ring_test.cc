@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/platform/bare/byte_ring.h"
+
+#include <gtest/gtest.h>
+
+namespace chimera::bare::byte_ring_test {
+
+TEST(ByteRing, GivesBytesInTheirOrderAlsoBeyondItsEnd) {
+  ByteRing<4> ring;
+  for (int i = 0; i < 100; i += 3) {
+    for (int k = 0; k < 3; ++k) ASSERT_TRUE(ring.add(static_cast<std::uint8_t>(i + k)));
+    for (int k = 0; k < 3; ++k) ASSERT_EQ(ring.take(), i + k);
+  }
+  EXPECT_EQ(ring.take(), -1);
+}
+
+TEST(ByteRing, RefusesAByteIfFull) {
+  ByteRing<4> ring;
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(ring.add(7));
+  EXPECT_EQ(ring.free(), 0u);
+  EXPECT_FALSE(ring.add(8));
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(ring.take(), 7);
+}
+
+}  // namespace chimera::bare::byte_ring_test

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An image of firmware/images: what it is made of, and how it is baked, linked, run and compared with the host."""
+import dataclasses
+import json
+import math
+import os
+import pathlib
+import re
+import subprocess
+
+import build
+import digest
+import qemu
+import sizes
+import yaml
+
+IMAGES = build.ROOT / "firmware" / "images"
+KEYS = {"application", "targets", "for", "at", "components"}
+
+
+class ImageError(Exception):
+    """What the user reads."""
+
+
+@dataclasses.dataclass
+class Image:
+    """firmware/images/NAME/image.yaml"""
+    name: str
+    application: pathlib.Path       # a description
+    targets: list                   # of firmware/targets
+    duration: str                   # "60 s"
+    acts: list                      # as of --at
+    folders: list                   # of components, beside library/
+
+    @staticmethod
+    def read(name):
+        path = IMAGES / name / "image.yaml"
+        if not path.is_file():
+            raise ImageError(f"no image {name}; there are: {', '.join(names())}")
+        keys = yaml.safe_load(path.read_text())
+        if not isinstance(keys, dict) or not {"application", "targets", "for"} <= set(keys) <= KEYS:
+            raise ImageError(f"{path}: has application, targets and for, and can have at and components")
+        return Image(name, (path.parent / keys["application"]).resolve(), keys["targets"], keys["for"],
+                     keys.get("at", []), [(path.parent / each).resolve() for each in keys.get("components", [])])
+
+    def components(self):
+        """The names of the components of the application."""
+        tasks = yaml.safe_load(self.application.read_text())["tasks"]
+        return sorted({(task or {}).get("component", name) for name, task in tasks.items()})
+
+
+def names():
+    return sorted(path.parent.name for path in IMAGES.glob("*/image.yaml"))
+
+
+def call(command, tree):
+    """Runs the program of the host. Raises ImageError with what it said."""
+    environment = dict(os.environ, ASAN_OPTIONS="detect_leaks=0", CHIMERA_PATH=str(tree / "components"))
+    done = subprocess.run(list(map(str, command)), stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                          env=environment)
+    if done.returncode != 0:
+        raise ImageError(f"{' '.join(map(str, command[1:]))}: exit {done.returncode}\n{done.stdout}{done.stderr}")
+
+
+class Built:
+    """An image for one target. `tree` is a build tree of the host with the program and the components."""
+
+    def __init__(self, image, target, tree, out):
+        self.image, self.target, self.tree = image, target, tree
+        self.out = out / f"{image.name}.{target}"
+        self.out.mkdir(parents=True, exist_ok=True)
+        self.elf = None
+
+    def _run(self, *words):
+        acts = [word for act in self.image.acts for word in ("--at", act)]
+        call([self.tree / "bin" / "chimera", *words, "--for", self.image.duration, *acts], self.tree)
+
+    def bake(self):
+        self._run("bake", self.image.application, "--target", self.target, "--out", self.out / "baked")
+
+    def link(self):
+        self.elf = build.build(self.out / "baked", self.out, self.board(), self.image.folders)
+
+    def board(self):
+        return re.search(r'\.board = "([\w-]+)"', (self.out / "baked" / "tables.cc").read_text())[1]
+
+    def cpu(self):
+        return re.search(r"-mcpu=([\w-]+)", (self.out / "baked" / "cpu.flags").read_text())[1]
+
+    def machine(self):
+        """QEMU's machine for the target; None: QEMU has none."""
+        return build.SIMULATED.get(self.board(), {}).get(self.cpu())
+
+    def periods(self):
+        """Of the tasks, in ns."""
+        return [task["period_ns"] for task in json.loads((self.out / "baked" / "dictionary.json").read_text())["tasks"]]
+
+    def sizes(self):
+        return sizes.table(pathlib.Path(f"{self.elf}.map"))
+
+    def complaints(self):
+        return list(sizes.complaints(self.elf))
+
+    def host_digest(self):
+        path = self.out / "host.digest"
+        self._run("run", self.image.application, "--virtual", "--digest", path)
+        return digest.of_host(path.read_text())
+
+    def run(self, limit_s=qemu.LIMIT_S):
+        """The lines of the image. Raises ImageError if it does not end by itself."""
+        lines, code = qemu.run(self.machine(), self.elf, limit_s)
+        (self.out / "output.txt").write_text("\n".join(lines) + "\n")
+        if code != 0 or not lines or lines[-1] != "end time":
+            raise ImageError(f"{self.elf}: exit {code}, its last lines:\n  " + "\n  ".join(lines[-5:]))
+        return lines
+
+
+def unpunctual(lines, periods):
+    """Sentences about jobs that were not over at the next release of any task: the digest may then differ from that of
+    the host, whose jobs take no time. `periods`: of all tasks, in ns."""
+    grid = math.gcd(*periods)
+    for line in lines:
+        found = re.match(r"task (\S+) cycles \d+ missed (\d+) dropped (\d+) faults \d+ response (\d+)", line)
+        if found and (found[2] != "0" or found[3] != "0"):
+            yield f"task {found[1]} missed {found[2]} deadlines and dropped {found[3]} releases"
+        elif found and int(found[4]) >= grid:
+            yield f"task {found[1]} ended {int(found[4])} ns after its release, and releases may be {grid} ns apart"

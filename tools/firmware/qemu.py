@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs an image in QEMU: one instruction takes 64 ns, so two runs are equal. Idle time takes no time of the host.
+usage: qemu.py MACHINE IMAGE [LIMIT_S]   prints the lines of the serial port"""
+import subprocess
+import sys
+
+LIMIT_S = 300
+
+
+class QemuError(Exception):
+    """What the user reads."""
+
+
+def command(machine, image):
+    return ["qemu-system-arm", "-M", machine, "-kernel", str(image), "-nographic", "-nodefaults", "-monitor", "none",
+            "-icount", "shift=6,sleep=off,align=off", "-semihosting-config", "enable=on,target=native",
+            "-serial", "stdio"]
+
+
+def run(machine, image, limit_s=LIMIT_S):
+    """(lines of the serial port, exit code). Raises QemuError if the image does not end within the limit."""
+    with subprocess.Popen(command(machine, image), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True, errors="replace") as process:
+        try:
+            out, err = process.communicate(timeout=limit_s)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            out, err = process.communicate()
+            raise QemuError(f"{image}: has not ended after {limit_s} s; its last line: "
+                            f"{(out.splitlines() or ['none'])[-1]}") from None
+    if not out and err:
+        raise QemuError(f"{image}: {err.strip()}")
+    return out.splitlines(), process.returncode
+
+
+def main():
+    lines, code = run(sys.argv[1], sys.argv[2], float(sys.argv[3]) if len(sys.argv) > 3 else LIMIT_S)
+    print("\n".join(lines))
+    sys.exit(code)
+
+
+if __name__ == "__main__":
+    main()
