@@ -126,7 +126,8 @@ TEST(Bake, RefusesWhatNeedsMoreThanOneLoop) {
 
 TEST(Bake, RefusesAServer) {
   EXPECT_EQ(refusal({.text = "rtpus: {a: {cpu: 0, executor: preemptive}}\n"
-                             "tasks: {w: {component: waiter, server: {kind: sporadic, capacity: 1 ms, period: 10 ms}}}\n",
+                             "tasks: {w: {component: waiter, "
+                             "server: {kind: sporadic, capacity: 1 ms, period: 10 ms}}}\n",
                      .target = "events: {w: timer0}\n"}),
             "s.yaml:3:31: error: an image cannot have the executor 'preemptive' of rtpu 'a' [not-built]\n"
             "  write 'executor: executive': one loop runs all jobs, each to its end\n"
