@@ -11,7 +11,7 @@ using Repeats = cli::Option::Repeats;
 
 namespace {
 
-int bake(const Call& call, const Workplace& workplace) {
+int bake_image(const Call& call, const Workplace& workplace) {
   cli::BakeRequest request{.file = call.operand(0),
                            .target = call.value("--target"),
                            .profile = call.value("--profile"),
@@ -70,5 +70,5 @@ FileCommand bake_row() {
                     .manual = "Writes the legal description FILE as constant tables for an image of a microcontroller "
                               "(docs/formats/baked.md), or prints every reason why the target cannot run it. Prints "
                               "flash, RAM and stack of each task, and what its numbers of double precision cost."},
-          .carry_out = bake};
+          .carry_out = bake_image};
 }
