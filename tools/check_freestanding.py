@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Floors 0, 2, 3 and 4, the runtime without its folders hosted, preemptive and virtual, and components build
 freestanding for x86-64 and for a 32-bit microcontroller (ARM Cortex-M3), without exceptions or RTTI, and ask for no
-heap, stream, thread or file. Components in C need no C library either, and their tables are constant: no byte of RAM,
-no constructor. The hosted halves of these floors lie in subfolders (base/hosted, runtime/hosted),
+heap, stream, thread or file. Components are one constant table, chimera_component_NAME: no byte of RAM, no constructor.
+Components in C need no C library either. The hosted halves of these floors lie in subfolders (base/hosted, runtime/hosted),
 which a microcontroller replaces, and which the other half does not include."""
 import concurrent.futures
 import itertools
@@ -21,9 +21,14 @@ FOLDERS = ("base", "table", "task", "schedule", "runtime", "runtime/record", "ru
            "runtime/state", "runtime/life", "runtime/switch", "runtime/cycle", "runtime/executive")
 FILE = re.compile(rf"chimera/({'|'.join(FOLDERS)})/[^/]+(?<!_test)(?<!_stress)(?<!_fuzz)\.(h|cc)$")
 HOSTED = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"(chimera/\w+/hosted/[^"]+)"', re.MULTILINE)
-COMPONENTS = ("library/gain/gain.cc", "library/pid_joint/pid_joint.cc", "library/tderiv/tderiv.cc")
+# Components that a microcontroller may take; the first three are compiled for x86-64, too.
+TAKEN = ("gain pid_joint tderiv accel brake car ccui control dashboard deadband engine join_mean join_priority "
+         "joint_trajectory limit lowpass motor notch position rate_limit select servo_axis signal_generator split_pm "
+         "split_pm_override unit_convert watchdog wheels")
+COMPONENTS = tuple(f"library/{name}/{name}.cc" for name in TAKEN.split())
 IN_C = ("tests/components/t_paper.c", "tests/components/t_parts.c", "tests/components/t_tderiv.c")
-FREESTANDING = ("-std=c++20", "-ffreestanding", "-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics")
+FREESTANDING = ("-std=c++20", "-ffreestanding", "-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics",
+                "-DCHIMERA_BARE")
 ARM = "arm-none-eabi-g++"
 MACHINES = {"x86-64": ("g++", "-O1", *FREESTANDING),
             "ARM": (ARM, "-Os", "-mcpu=cortex-m3", "-mthumb", *FREESTANDING)}
@@ -65,6 +70,26 @@ def sections_in_ram(source):
             if IN_RAM.match(name) and size != "0"]
 
 
+def tables(source):
+    """Of the object of `source`: the components that tables of an image can name."""
+    listing = subprocess.run(["nm", "-g", "--defined-only", "--format=posix", str(source.with_suffix(".o"))],
+                             capture_output=True, text=True, check=True)
+    return [line.split()[0] for line in listing.stdout.splitlines() if line.startswith("chimera_component_")]
+
+
+def is_component(name):
+    return name.endswith(".c") or name in COMPONENTS
+
+
+def complaints_about_table(name, source, machine):
+    """Of a component that was compiled."""
+    table = f"chimera_component_{pathlib.Path(name).stem}"
+    if tables(source) != [table]:
+        yield f"{name}: defines {' '.join(tables(source)) or 'no component'} on {machine}, but not {table} alone"
+    for section in sections_in_ram(source):
+        yield f"{name}: has {section} on {machine}, but its tables must be constant"
+
+
 def complaints_about(root, names, machine, folder):
     """Of files that are compiled together, which is faster. Should there be any, each alone says which it is."""
     name = names[0]
@@ -76,9 +101,8 @@ def complaints_about(root, names, machine, folder):
     if said:
         error = next((line for line in said.splitlines() if "error:" in line), said.splitlines()[0])
         return [f"{name}: does not compile freestanding for {machine}: {error.split('error: ', 1)[-1]}"]
-    in_ram = sections_in_ram(source) if source.suffix == ".c" else []
     return [*(f"{name}: asks for {symbol} on {machine}" for symbol in symbols if not is_known(symbol)),
-            *(f"{name}: has {section} on {machine}, but its tables must be constant" for section in in_ram)]
+            *(complaints_about_table(name, source, machine) if is_component(name) else ())]
 
 
 def check(root, machine):
@@ -86,18 +110,19 @@ def check(root, machine):
     for name in filter(FILE.match, there):
         yield from (f"{name}: includes {path}, which a microcontroller does not have"
                     for path in HOSTED.findall(sources.text(root, name)))
-    names = [name for name in there if (FILE.match(name) and name.endswith(".cc")) or name in (*COMPONENTS, *IN_C)]
+    components = (*(COMPONENTS if machine == "ARM" else COMPONENTS[:3]), *IN_C)
+    names = [name for name in there if (FILE.match(name) and name.endswith(".cc")) or name in components]
     if "CONTRIBUTING.md" in there:  # not of a planted tree
         yield from (f"{name}: is not there, but tools/check_freestanding.py lists it"
-                    for name in (*COMPONENTS, *IN_C) if name not in names)
+                    for name in components if name not in names)
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(2) as pool:
         for complaints in pool.map(lambda some: complaints_about(root, some, machine, folder), together(names)):
             yield from complaints
 
 
 def together(names):
-    """Lists of up to eight files of one folder. A file in C stands alone: it holds one module."""
-    for _, some in itertools.groupby(names, lambda name: name if name.endswith(".c") else os.path.dirname(name)):
+    """Lists of up to eight files of one folder. A component stands alone: its object holds one table."""
+    for _, some in itertools.groupby(names, lambda name: name if is_component(name) else os.path.dirname(name)):
         some = list(some)
         yield from (some[i:i + 8] for i in range(0, len(some), 8))
 
@@ -105,7 +130,8 @@ def together(names):
 _NAME = "chimera/table/x.cc"
 _HOSTED = "chimera/runtime/hosted/y.h"
 _PRINTF = "#include <cstdio>\nvoid f(int n) { std::printf(\"%d\", n); }\n"
-_C = "const int table[] = {1};\nint later(void) __attribute__((weak));\n"
+_C = "const int chimera_component_t_paper = 1;\nint later(void) __attribute__((weak));\n"
+_TABLE = 'extern "C" const int chimera_component_gain = 1;\n'
 _MUTEX = {_NAME: "#include <mutex>\nstd::mutex m;\n"}
 
 
@@ -123,9 +149,13 @@ def planted(machine):
            f"chimera/runtime/executive/x.h: includes {_HOSTED}, which a microcontroller does not have")
     yield {"chimera/runtime/x_test.cc": f'#include "{_HOSTED}"\n', _HOSTED: ""}, None
     new = "_Znwj" if machine == "ARM" else "_Znwm"
-    yield {COMPONENTS[0]: "int* f() { return new int; }\n"}, asks(new, COMPONENTS[0])
-    yield ({"CONTRIBUTING.md": "", **dict.fromkeys(COMPONENTS[1:], ""), **dict.fromkeys(IN_C, _C)},
-           f"{COMPONENTS[0]}: is not there, but tools/check_freestanding.py lists it")
+    yield {COMPONENTS[0]: _TABLE}, None
+    yield {COMPONENTS[0]: _TABLE + "int* f() { return new int; }\n"}, asks(new, COMPONENTS[0])
+    yield {COMPONENTS[0]: _TABLE + "int n;\n"}, f"{COMPONENTS[0]}: has .bss on {machine}, but its tables must be constant"
+    yield ({COMPONENTS[0]: _TABLE + "[[gnu::constructor]] static void f() {}\n"},
+           f"{COMPONENTS[0]}: has .init_array on {machine}, but its tables must be constant")
+    yield ({COMPONENTS[0]: _TABLE.replace("gain", "grain")},
+           f"{COMPONENTS[0]}: defines chimera_component_grain on {machine}, but not chimera_component_gain alone")
     yield {_NAME: "int* f() { return new int; }\n"}, asks(new)
     yield {_NAME: "#include <cstdlib>\nvoid* f() { return std::malloc(8); }\n"}, asks("malloc")
     yield {_NAME: _PRINTF}, asks("printf")
@@ -134,8 +164,12 @@ def planted(machine):
            f"{_NAME}: does not compile freestanding for {machine}: "
            "exception handling disabled, use '-fexceptions' to enable")
     yield {IN_C[0]: _C}, None
-    yield ({IN_C[0]: "int count = 1;\n"}, f"{IN_C[0]}: has .data on {machine}, but its tables must be constant")
+    yield ({IN_C[0]: _C + "int count = 1;\n"}, f"{IN_C[0]}: has .data on {machine}, but its tables must be constant")
     if machine == "x86-64":
+        others = {name: _TABLE.replace("gain", pathlib.Path(name).stem) for name in COMPONENTS[1:3]}
+        others |= {name: _C.replace("t_paper", pathlib.Path(name).stem) for name in IN_C}
+        yield ({"CONTRIBUTING.md": "", **others},
+               f"{COMPONENTS[0]}: is not there, but tools/check_freestanding.py lists it")
         yield ({_NAME: "#include <pthread.h>\nvoid f(pthread_mutex_t* m) { pthread_mutex_lock(m); }\n"},
                asks("pthread_mutex_lock"))
     if machine == "ARM":

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every tracked file: a name that says what it is. Every tracked text: the licence line, no path of one machine, no
 word about a workplace, nothing left to do. Every production source x.cc: a sentence that says what it does. Every
-component: sines and powers from chimera/base/math.h, so that all machines compute the same bits. Comments,
-messages, documents and names of tests: none of the words that a reader has to guess the meaning of."""
+component: sines and powers from chimera/base/math.h, so that all machines compute the same bits, and one text for
+hosts and microcontrollers. Comments, messages, documents and names of tests: none of the words that a reader has to guess the meaning of."""
 import io
 import pathlib
 import re
@@ -67,6 +67,18 @@ def inexact(name, content):
     for number, line in enumerate(code.splitlines(), 1):
         for match in INEXACT_CALL.finditer(line):
             yield f"{name}:{number}: '{match[0].rstrip(' (')}' depends on the C library: chimera/base/math.h has one"
+
+
+# A component is one text for every machine; only the headers that it includes may know where they are compiled.
+OF_A_MACHINE = re.compile(r"\bCHIMERA_BARE\b|\b__arm__\b|\b__thumb__\b|\b__STDC_HOSTED__\b")
+
+
+def of_a_machine(name, content):
+    """Places where a component asks on which machine it is."""
+    if re.match(r"library/.*\.(h|cc|c)$", name):
+        for number, line in enumerate(content.splitlines(), 1):
+            for match in OF_A_MACHINE.finditer(line):
+                yield f"{name}:{number}: '{match[0]}': a component has one text for hosts and microcontrollers"
 
 
 def needs_licence(name):
@@ -149,6 +161,7 @@ def check(root):
         if name != "tools/check_text.py":
             yield from guessed(name, content)
         yield from inexact(name, content)
+        yield from of_a_machine(name, content)
 
 
 _HEAD = f"// {LICENCE}\n"
@@ -194,6 +207,10 @@ PLANTED = (
      "library/a/a.h:3: 'std::atan2' depends on the C library: chimera/base/math.h has one"),
     ({"library/a/a.c": _HEAD + "double y = 2 * powf (x, 2);\n"},
      "library/a/a.c:2: 'powf' depends on the C library: chimera/base/math.h has one"),
+    ({"library/a/a.h": _HEAD + "#ifdef CHIMERA_BARE\n#endif\n"},
+     "library/a/a.h:2: 'CHIMERA_BARE': a component has one text for hosts and microcontrollers"),
+    ({"library/a/a.c": _HEAD + "#if defined(__arm__)\n#endif\n", "chimera/a.h": _HEAD + "#ifdef CHIMERA_BARE\n#endif\n"},
+     "library/a/a.c:2: '__arm__': a component has one text for hosts and microcontrollers"),
     ({"a.cc": _HEAD + "// TO" + "DO\n"}, "a.cc:2: something left to do: 'TO" + "DO'"),
 )
 

@@ -24,18 +24,19 @@
 // An exception that leaves a method is a fault with its text.
 #pragma once
 
-#include <cstddef>
-#include <cstring>
+#include <cstdint>
+#ifdef __cpp_exceptions
 #include <exception>
+#endif
 #include <new>
-#include <type_traits>
+
+#include "chimera/task/bounded_text.h"
 
 #include "chimera/task/cycle.h"
 #include "chimera/task/declare_port.h"
 #include "chimera/task/method_check.h"
 #include "chimera/task/options.h"
 #include "chimera/task/port.h"
-#include "chimera/task/registry.h"
 
 namespace chimera::component_api {
 
@@ -45,12 +46,14 @@ inline std::int32_t note_fault(chimera_fault* fault, std::int32_t code, const ch
   return CHIMERA_FAULT;
 }
 
-/// Runs `body`, which returns a CHIMERA_ status. An exception that leaves it becomes a fault with its text.
+/// Runs `body(state, argument)`, which returns a CHIMERA_ status. An exception that leaves it becomes a fault with its
+/// text. Without exceptions, an index beyond a port becomes the same fault (method_guard.h). `body` is a lambda without
+/// captures.
 template <class Body>
-std::int32_t guard(chimera_fault* fault, Body body) noexcept {
+std::int32_t guard(Body body, void* state, const void* argument, chimera_fault* fault) noexcept {
 #ifdef __cpp_exceptions
   try {
-    return body();
+    return body(state, argument);
   } catch (const std::exception& e) {
     return note_fault(fault, 0, e.what());
   } catch (const char* text) {
@@ -59,7 +62,7 @@ std::int32_t guard(chimera_fault* fault, Body body) noexcept {
     return note_fault(fault, 0, "an exception that is not a std::exception");
   }
 #else
-  return body();
+  return run_guarded(body, state, argument, fault);
 #endif
 }
 
@@ -86,16 +89,17 @@ inline std::int32_t judge(Method method, bool yes, chimera_fault* fault) noexcep
 }
 
 template <class T, class Name, Method kMethod>
-std::int32_t run_method(void* state, const chimera_call* call) noexcept {
-  return guard(call->fault, [&]() -> std::int32_t {
+std::int32_t run_method(void* instance, const chimera_call* present) noexcept {
+  return guard([](void* state, const void* argument) -> std::int32_t {
     T& component = *static_cast<T*>(state);
+    const auto& call = *static_cast<const chimera_call*>(argument);
     if constexpr (Name::kVoid) {
-      Name::call(component, Cycle(*call));
+      Name::call(component, Cycle(call));
       return CHIMERA_OK;
     } else {
-      return judge(kMethod, Name::call(component, Cycle(*call)), call->fault);
+      return judge(kMethod, Name::call(component, Cycle(call)), call.fault);
     }
-  });
+  }, instance, present, present->fault);
 }
 
 template <class T, class Name, Method kMethod>
@@ -105,11 +109,11 @@ constexpr chimera_method method_of() {
 }
 
 template <class T>
-std::int32_t run_background(void* state, chimera_fault* fault) noexcept {
-  return guard(fault, [&]() -> std::int32_t {
+std::int32_t run_background(void* instance, chimera_fault* fault) noexcept {
+  return guard([](void* state, const void*) -> std::int32_t {
     static_cast<T*>(state)->background();
     return CHIMERA_OK;
-  });
+  }, instance, nullptr, fault);
 }
 
 template <class T>
@@ -125,70 +129,23 @@ constexpr chimera_event_source event_source_of() {
   else return nullptr;
 }
 
-/// The declaration of T in this object.
 template <class T>
-inline Declaration declared;
-
-template <class T>
-std::int32_t construct(void* state, chimera_fault* fault) noexcept {
-  if (declared<T>.error[0] != '\0') return note_fault(fault, 0, declared<T>.error);
-  return guard(fault, [&] {
+std::int32_t construct(void* memory, chimera_fault* fault) noexcept {
+  return guard([](void* state, const void*) -> std::int32_t {
     ::new (state) T();
     return CHIMERA_OK;
-  });
+  }, memory, nullptr, fault);
 }
 
-/// Memory for a sample instance that is constructed once: from the heap, if the system has one.
+/// The part of the table of T that its type gives.
 template <class T>
-class SampleMemory {
- public:
-  SampleMemory() noexcept = default;
-  SampleMemory(const SampleMemory&) = delete;
-  SampleMemory& operator=(const SampleMemory&) = delete;
-#if __STDC_HOSTED__
-  ~SampleMemory() { ::operator delete(at_, std::align_val_t{alignof(T)}); }
-#endif
-  /// Null if there is no memory.
-  void* at() noexcept { return at_; }
-
- private:
-#if __STDC_HOSTED__
-  void* at_ = ::operator new(sizeof(T), std::align_val_t{alignof(T)}, std::nothrow);
-#else
-  alignas(T) static inline std::byte at_[sizeof(T)];
-#endif
-};
-
-/// Constructs one instance under a collector, so that its ports declare themselves.
-template <class T>
-void collect_ports(Declaration& to) noexcept {
-  SampleMemory<T> memory;
-  void* const sample = memory.at();
-  if (sample == nullptr) return put_text(to.error, sizeof(to.error), {"no memory for a sample instance"});
-  std::memset(sample, 0, sizeof(T));
-  chimera_fault fault{};
-  {
-    Collector collector(to, sample, sizeof(T));
-    if (construct<T>(sample, &fault) == CHIMERA_OK) static_cast<T*>(sample)->~T();
-  }
-  if (fault.text[0] != '\0' && to.error[0] == '\0')
-    put_text(to.error, sizeof(to.error), {"the constructor failed: ", std::string_view(fault.text).substr(0, 120)});
-}
-
-template <class T>
-const chimera_component* declare() noexcept {
-  Declaration& to = declared<T>;
-  chimera_component& made = to.component;
-  if (made.abi_version != 0) return &made;
+constexpr chimera_component table_of() noexcept {
+  chimera_component made{};
   made.abi_version = CHIMERA_ABI_VERSION;
   made.struct_size = sizeof(chimera_component);
   made.host_size = sizeof(chimera_host);
   made.state_size = sizeof(T);
   made.state_align = alignof(T);
-  collect_ports<T>(to);
-  made.ports = to.ports;
-  made.orders = to.orders;
-  made.choices = to.choices;
   made.construct = &construct<T>;
   made.destroy = [](void* state) { static_cast<T*>(state)->~T(); };
   made.methods[CHIMERA_INIT] = method_of<T, Name_init<T>, Method::kInit>();
@@ -202,35 +159,16 @@ const chimera_component* declare() noexcept {
   made.methods[CHIMERA_CLEAR] = method_of<T, Name_clear<T>, Method::kClear>();
   made.background = background_of<T>();
   made.event_source = event_source_of<T>();
-  return &made;
+  return made;
 }
 
-inline void apply_extra(chimera_component& to, RateIs rate) noexcept { to.default_rate_hz = rate.hertz; }
-inline void apply_extra(chimera_component& to, SourceIs source) noexcept { to.source = source.text; }
-
-/// CHIMERA_COMPONENT creates one of these objects; its constructor runs while the object is loaded.
-template <class T, class... Extras>
-bool offer(PortName name, Literal doc, Extras... extras) noexcept {
-  static_assert(check_component<T>());
-  chimera_component& made = declared<T>.component;
-  made.name = name.text;
-  made.doc = doc.text;
-  made.source = "";
-  (apply_extra(made, extras), ...);
-  return chimera_offer(&declare<T>) != 0;
-}
+constexpr void apply_extra(chimera_component& to, RateIs rate) noexcept { to.default_rate_hz = rate.hertz; }
+constexpr void apply_extra(chimera_component& to, SourceIs source) noexcept { to.source = source.text; }
 
 }  // namespace chimera::component_api
 
-#define CHIMERA_COMPONENT_JOIN_(a, b) a##b
-#define CHIMERA_COMPONENT_JOIN(a, b) CHIMERA_COMPONENT_JOIN_(a, b)
-
-/// Offers a class as a component: CHIMERA_COMPONENT(Class, "name", "One sentence."). Optional extras are `rate =
-/// 1000.0` (default rate, Hz) and `source = "paper or book"`. Use it at namespace scope, in the one source file of the
-/// component.
-#define CHIMERA_COMPONENT(Class, ...)                                                 \
-  namespace {                                                                         \
-  [[maybe_unused]] const bool CHIMERA_COMPONENT_JOIN(chimera_offered_, __COUNTER__) = \
-      ::chimera::component_api::offer<Class>(__VA_ARGS__);                            \
-  }                                                                                   \
-  static_assert(true)
+#ifdef CHIMERA_BARE
+#include "chimera/task/bare_component.h"
+#else
+#include "chimera/task/offered_component.h"
+#endif

@@ -1,121 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // Turns `{"x", "m", range(-1, 1)}` into the declaration of a port: which ports accept each option, and what it sets.
-// While one sample instance is constructed, each port adds its declaration, with its place in the object, to the
-// collector. Instances that are constructed to run find no collector and add nothing.
+// With CHIMERA_BARE no port has a declaration: it reports its form and place (wiring.h), and names and options leave
+// the program.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <initializer_list>
-#include <string_view>
 #include <type_traits>
 
 #include "chimera/task/abi.h"
 #include "chimera/task/fields.h"
 #include "chimera/task/options.h"
-
-namespace chimera::component_api {
-
-/// Writes the parts one after another into `size` bytes, cut so that the closing zero fits. Context: any; wait-free.
-inline void put_text(char* to, std::size_t size, std::initializer_list<std::string_view> parts) noexcept {
-  std::size_t n = 0;
-  for (const std::string_view part : parts)
-    for (const char c : part)
-      if (n + 1 < size) to[n++] = c;
-  to[n] = '\0';
-}
-
-/// The whole declaration of one component. Lives in the static storage of the object.
-struct Declaration {
-  chimera_component component{};
-  chimera_port_decl ports[CHIMERA_MAX_PORTS] = {};
-  chimera_order orders[CHIMERA_MAX_PORTS] = {};
-  chimera_choice choices[CHIMERA_MAX_PORTS] = {};
-  char error[CHIMERA_FAULT_TEXT] = {};  ///< the reason why the component is unusable; "" if it is usable
-  std::size_t kept = 0;
-  alignas(16) std::byte memory[8192] = {};  ///< initial values, and names without their '*'
-};
-
-class Collector;
-struct CollectorOfThread {
-  std::uint64_t mark;
-  Collector* current;
-};
-
-/// Collects ports during its lifetime. Context: setup.
-class Collector {
- public:
-  Collector(Declaration& to, const void* sample, std::size_t size) noexcept
-      : to_(to), sample_(static_cast<const std::byte*>(sample)), size_(size), outer_(slot()) { slot() = this; }
-  ~Collector() { slot() = outer_; }
-  Collector(const Collector&) = delete;
-  Collector& operator=(const Collector&) = delete;
-
-  static Collector* current() noexcept { return slot(); }
-
-  /// Adds a port whose live half lies at `live`; `instances` is null unless the port is repeated.
-  void add(chimera_port_decl port, const void* live, const void* instances) noexcept {
-    std::uint32_t& n = to_.component.n_ports;
-    if (n == CHIMERA_MAX_PORTS) return refuse(port.name, "is one too many: a component has at most 64 ports");
-    for (std::uint32_t i = 0; i < n; ++i)
-      if (std::strcmp(to_.ports[i].name, port.name) == 0) return refuse(port.name, "is declared twice");
-    if (!place(live, port.live_offset) || (instances != nullptr && !place(instances, port.instances_offset)))
-      return refuse(port.name, "must be a member of the component, not on the heap or static");
-    to_.ports[n++] = port;
-  }
-
-  /// Records that no element of the constant `lower` is above that of `upper`.
-  void add_order(const char* lower, const char* upper) noexcept {
-    std::uint32_t& n = to_.component.n_orders;
-    if (n == CHIMERA_MAX_PORTS) return refuse(upper, "is one too many with at_least");
-    to_.orders[n++] = {lower, upper};
-  }
-
-  /// Records the legal words of the constant `port`.
-  void add_choice(const char* port, const char* words) noexcept {
-    std::uint32_t& n = to_.component.n_choices;
-    if (n == CHIMERA_MAX_PORTS) return refuse(port, "is one too many with one_of");
-    to_.choices[n++] = {port, words};
-  }
-
-  /// A copy of `bytes` that lives as long as the declaration; null if no room is left.
-  std::byte* keep(const void* bytes, std::size_t size) noexcept {
-    const std::size_t at = (to_.kept + 15) / 16 * 16;
-    if (at + size > sizeof(to_.memory)) return nullptr;
-    std::memcpy(to_.memory + at, bytes, size);
-    to_.kept = at + size;
-    return to_.memory + at;
-  }
-
-  /// Records the first reason why the component is unusable.
-  void refuse(const char* port, const char* reason) noexcept {
-    if (to_.error[0] == '\0') put_text(to_.error, sizeof(to_.error), {"port ", port, " ", reason});
-  }
-
- private:
-  bool place(const void* at, std::uint32_t& offset) const noexcept {
-    const auto* byte = static_cast<const std::byte*>(at);
-    if (byte < sample_ || byte >= sample_ + size_) return false;
-    offset = static_cast<std::uint32_t>(byte - sample_);
-    return true;
-  }
-
-#if __STDC_HOSTED__
-  // One per thread, because another thread may construct an instance to run at the same time. The mark distinguishes it
-  // from variables of the component when an object is checked.
-  static inline thread_local CollectorOfThread of_thread_{CHIMERA_THREAD_MARK, nullptr};
-  static Collector*& slot() noexcept { return of_thread_.current; }
+#ifdef CHIMERA_BARE
+#include "chimera/task/wiring.h"
 #else
-  static inline Collector* current_ = nullptr;  // this system has one thread
-  static Collector*& slot() noexcept { return current_; }
+#include "chimera/task/collector.h"
 #endif
 
-  Declaration& to_;
-  const std::byte* sample_;
-  std::size_t size_;
-  Collector* outer_;
-};
+namespace chimera::component_api {
 
 template <class T>
 inline constexpr bool kIsInitial = false;
@@ -146,6 +49,25 @@ constexpr bool check_option() {
   static_assert(!std::is_same_v<Option, RangeIs> || Kind != CHIMERA_RESOURCE, "a resource has no range");
   return true;
 }
+
+/// The place of the live half of a port; `instances` is only for a repeated port.
+struct PortPlace {
+  const void* live;
+  const void* instances = nullptr;
+};
+
+#ifdef CHIMERA_BARE
+
+/// Reports a port to the wiring, if one is active. N: the most instances of a repeated port; 0 for any other port.
+/// Context: setup.
+template <class T, std::uint32_t Kind, std::uint32_t N, class... Options>
+void declare_port(const char*, const char*, const char*, PortPlace place, const Options&...) {
+  static_assert(check_element<typename PortType<T>::Element>());
+  static_assert((check_option<Kind, Options>() && ...));
+  Wiring::report(kPortForm<T, Kind, N>, place.live);
+}
+
+#else
 
 template <class E, class V>
 E convert_initial(const V& value) {
@@ -265,15 +187,9 @@ inline bool leaves_out_a_member(const chimera_port_decl& port, std::size_t align
   return port.element_size >= end + align;
 }
 
-/// The place of the live half of a port; `instances` and `max` are only for a repeated port.
-struct PortPlace {
-  const void* live;
-  const void* instances = nullptr;
-  std::uint32_t max = 1;
-};
-
-/// Declares a port to the collector, if one is active. Context: setup.
-template <class T, std::uint32_t Kind, class... Options>
+/// Declares a port to the collector, if one is active. N: the most instances of a repeated port; 0 for any other port.
+/// Context: setup.
+template <class T, std::uint32_t Kind, std::uint32_t N, class... Options>
 void declare_port(const char* name, const char* unit, const char* shape, PortPlace place, const Options&... options) {
   using E = typename PortType<T>::Element;
   static_assert(check_element<E>());
@@ -290,7 +206,7 @@ void declare_port(const char* name, const char* unit, const char* shape, PortPla
     kept[size - 1] = '\0';
     port.name = kept;
     port.flags |= CHIMERA_PORT_REPEATED;
-    port.max_instances = place.max;
+    port.max_instances = N;
   }
   if constexpr (std::is_same_v<E, Any>) {
     static_assert(!(kIsInitial<Options> || ...), "a port of any type has no initial value: none fits all types");
@@ -300,5 +216,7 @@ void declare_port(const char* name, const char* unit, const char* shape, PortPla
   }
   to->add(port, place.live, place.instances);
 }
+
+#endif
 
 }  // namespace chimera::component_api

@@ -25,12 +25,15 @@
 #include <stdexcept>
 #endif
 
-#include "chimera/base/assert.h"
 #include "chimera/base/time.h"
 #include "chimera/task/abi.h"
 #include "chimera/task/declare_port.h"
 #include "chimera/task/fields.h"
 #include "chimera/task/handover.h"
+#include "chimera/task/port_form.h"
+#ifndef __cpp_exceptions
+#include "chimera/task/method_guard.h"
+#endif
 
 namespace chimera {
 
@@ -39,15 +42,14 @@ class Many;
 
 namespace component_api {
 
-/// Ends the method with a fault that names the index. (Without exceptions, the process ends.)
+/// Ends the method with a fault that names the index.
 [[noreturn]] inline void index_beyond(std::size_t index, std::size_t size) {
 #ifdef __cpp_exceptions
   char text[80];
   std::snprintf(text, sizeof(text), "index %zu of a port that has %zu", index, size);
   throw std::out_of_range(text);
 #else
-  static_cast<void>(index), static_cast<void>(size);
-  assertion_failed("index < size", __FILE__, __LINE__);
+  leave_guarded(index, size);
 #endif
 }
 
@@ -152,12 +154,12 @@ class TypedPort : public View<T, Kind == CHIMERA_IN_VAR || Kind == CHIMERA_IN_CO
   template <Option... O>
   TypedPort(PortName name, Literal unit, const O&... options) {
     static_assert(!PortType<T>::kOpen, "this type leaves the shape open: give it after the unit, as \"[ndof<=10]\"");
-    declare_port<T, Kind>(name.text, unit.text, PortType<T>::kShape, {&this->live_}, options...);
+    declare_port<T, Kind, 0>(name.text, unit.text, PortType<T>::kShape, {&this->live_}, options...);
   }
   template <Option... O>
   TypedPort(PortName name, Literal unit, Literal shape, const O&... options) {
     static_assert(PortType<T>::kOpen, "the shape follows from the type: leave the text out, or use T[]");
-    declare_port<T, Kind>(name.text, unit.text, shape.text, {&this->live_}, options...);
+    declare_port<T, Kind, 0>(name.text, unit.text, shape.text, {&this->live_}, options...);
   }
 
  protected:
@@ -251,7 +253,7 @@ class Resource : public component_api::PortBase {
  public:
   template <component_api::Option... O>
   explicit Resource(component_api::PortName name, const O&... options) {
-    component_api::declare_port<Text<256>, CHIMERA_RESOURCE>(name.text, "1", "", {&live_}, options...);
+    component_api::declare_port<Text<256>, CHIMERA_RESOURCE, 0>(name.text, "1", "", {&live_}, options...);
   }
   /// Context: any; wait-free.
   std::string_view text() const noexcept { return {c_str()}; }
@@ -286,13 +288,14 @@ class Many {
 
  private:
   static_assert(sizeof(P) == sizeof(chimera_port), "the framework fills the instances as an array");
+  static_assert(alignof(P) == component_api::kCounterToArray, "the counter ends where the array begins");
   static_assert(N >= 1 && N <= CHIMERA_MAX_INSTANCES, "a repeated port has 1 to 16 instances");
 
   template <class... O>
   void declare(component_api::RepeatedName name, component_api::Literal unit, component_api::Literal shape,
                const O&... options) {
-    component_api::declare_port<typename P::Type, P::kKind>(name.text, unit.text, shape.text, {ports_, &instances_, N},
-                                                            options...);
+    component_api::declare_port<typename P::Type, P::kKind, N>(name.text, unit.text, shape.text, {ports_, &instances_},
+                                                               options...);
   }
 
   std::uint32_t instances_ = 0;

@@ -11,6 +11,7 @@
 #include "chimera/table/group.h"
 #include "chimera/table/transfer.h"
 #include "chimera/task/abi.h"
+#include "chimera/task/declared_port.h"
 #include "chimera/task/fault_record.h"
 #include "chimera/task/profile.h"
 #include "chimera/task/state_machine.h"
@@ -99,6 +100,7 @@ struct alignas(64) Task {
   bool is_error_told = false;  ///< its reaction on_fault has acted since it went to ERROR
   FixedVector<Signal, kOutboxSize> pending;  ///< signals that wait for the present method to end
   const chimera_component* component = nullptr;  ///< from the construction of the component on
+  DeclaredPorts ports;  ///< of the component
   chimera_inherited* inherited = nullptr;  ///< by output: the inherited value of its port at the last on
 
   /// The state that other tasks and users see.

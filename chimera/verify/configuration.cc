@@ -259,6 +259,7 @@ class SpecMaker {
     spec.declared = port.index;
     spec.kind = port.declared->kind;
     spec.instance = port.instance;
+    spec.name = std::string_view(configured.name).substr(0, configured.name.find('['));
     if (!port.is(CHIMERA_RESOURCE)) {
       spec.unit = configured.unit;
       spec.element_bytes = port.element_bytes;

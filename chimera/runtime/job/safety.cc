@@ -22,7 +22,7 @@ double element(const chimera_port& port, std::uint32_t type, std::uint32_t i) no
 // Cycle path: this text is made only when a value is refused, which ends the cycle in a fault anyway.
 bool refuse(const Task& task, const Output& output, std::uint32_t i, double value, char* text) noexcept {
   Message said("safety port ");
-  said << task.component->ports[output.spec->declared].name << ": element " << i << " is ";
+  said << name_of(*task.component, *output.spec) << ": element " << i << " is ";
   if (math::is_nan(value)) said << "NaN";
   else if (!math::is_finite(value)) said << "infinite";
   else

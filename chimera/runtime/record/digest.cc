@@ -43,12 +43,12 @@ class Fnv {
   std::uint64_t& hash_;
 };
 
-void add_output(Fnv& hash, const chimera_port_decl& declared, const Output& output, const std::byte* at) noexcept {
+void add_output(Fnv& hash, const DeclaredPort& declared, const Output& output, const std::byte* at) noexcept {
   const std::uint32_t size = output.spec->element_bytes;
   for (std::uint32_t i = 0; i < output.port->count; ++i, at += size) {
-    if (output.spec->type != CHIMERA_STRUCT || declared.n_fields == 0) hash.add_value(output.spec->type, at, size);
-    for (std::uint32_t f = 0; output.spec->type == CHIMERA_STRUCT && f < declared.n_fields; ++f) {
-      const chimera_field& field = declared.fields[f];
+    if (output.spec->type != CHIMERA_STRUCT || declared.n_fields() == 0) hash.add_value(output.spec->type, at, size);
+    for (std::uint32_t f = 0; output.spec->type == CHIMERA_STRUCT && f < declared.n_fields(); ++f) {
+      const FieldForm field = declared.field(f);
       for (std::uint32_t k = 0; k < field.count; ++k)
         hash.add_value(field.type, at + field.offset + k * field.size, field.size);
     }
@@ -90,7 +90,7 @@ void Digest::add_publication(const Task& task) noexcept {
   hash.add(slot.sequence, 8);
   hash.add(slot.valid, 8);
   for (const Output& output : task.outputs)
-    add_output(hash, task.component->ports[output.spec->declared], output, payload + output.offset);
+    add_output(hash, task.ports[output.spec->declared], output, payload + output.offset);
 }
 
 void Digest::add_faults(const Task& task) noexcept {

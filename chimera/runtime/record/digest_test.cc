@@ -32,7 +32,7 @@ class DigestTest : public ::testing::Test, public DigestLines {
     ports[2].type = CHIMERA_STRUCT;
     ports[2].fields = fields;
     ports[2].n_fields = 3;
-    component.ports = ports;
+    component.ports = ports, component.n_ports = 3;
     const std::uint32_t counts[3] = {2, 1, 1}, sizes[3] = {8, 4, sizeof(Sample)}, offsets[3] = {0, 16, 24};
     for (std::uint32_t i = 0; i < 3; ++i) {
       specs[i].declared = i, specs[i].type = ports[i].type, specs[i].element_bytes = sizes[i];
@@ -41,6 +41,7 @@ class DigestTest : public ::testing::Test, public DigestLines {
     }
     task.id = TaskId(0u);
     task.component = &component;
+    task.ports = DeclaredPorts(component);
     task.outputs = outputs;
     begin_again();
   }

@@ -22,9 +22,9 @@ bool is_variable(std::uint32_t kind) noexcept { return kind == CHIMERA_IN_VAR ||
 
 bool is_constant(std::uint32_t kind) noexcept { return kind == CHIMERA_IN_CONST || kind == CHIMERA_OUT_CONST; }
 
-Error misfit(const TaskSpec& spec, const char* what, const char* port) {
+Error misfit(const TaskSpec& spec, const char* what, std::string_view port = {}) {
   Message text;
-  text << "component " << spec.component << ": " << what << (*port ? " " : "") << port;
+  text << "component " << spec.component << ": " << what << (port.empty() ? "" : " ") << port;
   return (text << "; was it built from another source than its descriptor?").error(ErrorCode::kBadInput, spec.name);
 }
 
@@ -35,29 +35,31 @@ void never_written(std::byte* at, std::uint32_t type, std::uint32_t bytes) noexc
   fill_never_written({at, bytes}, kind);
 }
 
-void never_written(std::byte* at, const chimera_port_decl& decl, const PortSpec& spec) noexcept {
+void never_written(std::byte* at, const DeclaredPort& declared, const PortSpec& spec) noexcept {
   if (spec.type != CHIMERA_STRUCT) return never_written(at, spec.type, spec.max_bytes());
   std::memset(at, 0, spec.max_bytes());
   for (std::uint32_t e = 0; e < spec.max_count(); ++e)
-    for (std::uint32_t f = 0; f < decl.n_fields; ++f) {
-      const chimera_field& field = decl.fields[f];
+    for (std::uint32_t f = 0; f < declared.n_fields(); ++f) {
+      const FieldForm field = declared.field(f);
       never_written(at + e * spec.element_bytes + field.offset, field.type, field.size * field.count);
     }
 }
 
-Result<void> check_port(const TaskSpec& spec, const chimera_component& component, const PortSpec& port) {
-  const chimera_port_decl& decl = component.ports[port.declared];
-  if (decl.kind != port.kind) return misfit(spec, "another kind of port", decl.name);
-  if (port.instance >= decl.max_instances) return misfit(spec, "too many instances of port", decl.name);
-  if (decl.type != CHIMERA_ANY && decl.kind != CHIMERA_RESOURCE && decl.element_size != port.element_bytes)
-    return misfit(spec, "another element size at port", decl.name);
-  if (!is_variable(decl.kind) && !is_constant(decl.kind) && decl.kind != CHIMERA_RESOURCE)
-    return misfit(spec, "streams cannot be bound yet, port", decl.name);
+Result<void> check_port(const TaskSpec& spec, const chimera_component& component, const DeclaredPort& declared,
+                        const PortSpec& port) {
+  const std::uint32_t kind = declared.kind();
+  const std::string_view name = name_of(component, port);
+  if (kind != port.kind) return misfit(spec, "another kind of port", name);
+  if (port.instance >= declared.max_instances()) return misfit(spec, "too many instances of port", name);
+  if (declared.type() != CHIMERA_ANY && kind != CHIMERA_RESOURCE && declared.element_size() != port.element_bytes)
+    return misfit(spec, "another element size at port", name);
+  if (!is_variable(kind) && !is_constant(kind) && kind != CHIMERA_RESOURCE)
+    return misfit(spec, "streams cannot be bound yet, port", name);
   return {};
 }
 
 // `name`: of the port.
-bool is_in_range(const ExtentSpec& extent, const char* name, const ConstantStore& store, FixedString<160>& why) {
+bool is_in_range(const ExtentSpec& extent, std::string_view name, const ConstantStore& store, FixedString<160>& why) {
   const std::int64_t n = !extent.constant.is_valid() ? extent.max : store.integer(extent.constant, extent.max);
   if (n >= 1 && n <= extent.max) return true;
   const std::string_view constant = extent.constant.is_valid() ? store[extent.constant].spec->name : "";
@@ -74,9 +76,10 @@ Result<TaskMemory> TaskMemory::create(const TaskSpec& spec, const chimera_compon
   made.spec_ = &spec;
   made.component_ = &component;
   made.memory_ = &memory;
+  made.state_ = memory.take_bytes(component.state_size, component.state_align);
+  if (auto found = made.find_ports(); !found) return found.error();
   if (auto planned = made.plan(); !planned) return planned.error();
   made.take_lists(memory);
-  made.state_ = memory.take_bytes(component.state_size, component.state_align);
   made.constant_memory_ = memory.take_bytes(made.constant_bytes_, kCacheLine);
   return made;
 }
@@ -95,13 +98,29 @@ void TaskMemory::place(std::span<std::byte> first, std::span<std::byte> second, 
   }
 }
 
+Result<void> TaskMemory::find_ports() {
+  ports_ = DeclaredPorts(*component_);
+  std::size_t n = 0;
+  for (const PortSpec& port : spec_->ports) n = std::max<std::size_t>(n, port.declared + 1);
+  if (component_->ports != nullptr || n == 0) return {};
+  const std::span<WiredPort> wired = memory_->take<WiredPort>(n);
+  const Wiring wiring(wired, state_);
+  chimera_fault fault{};
+  if (component_->construct(state_.data(), &fault) != CHIMERA_OK)
+    return Error{ErrorCode::kRefused, {fault.text}, {spec_->name}};
+  component_->destroy(state_.data());
+  if (!wiring.is_inside()) return misfit(*spec_, "a port is no member of it");
+  ports_ = DeclaredPorts(wired.first(std::min(n, wiring.size())));
+  return {};
+}
+
 Result<void> TaskMemory::plan() {
   std::size_t outputs = 0;
   for (const PortSpec& port : spec_->ports) {
-    if (port.declared >= component_->n_ports) return misfit(*spec_, "it declares fewer ports", "");
-    if (auto checked = check_port(*spec_, *component_, port); !checked) return checked;
+    if (port.declared >= ports_.size()) return misfit(*spec_, "it declares fewer ports");
+    if (auto checked = check_port(*spec_, *component_, ports_[port.declared], port); !checked) return checked;
     if (port.kind != CHIMERA_OUT_VAR) continue;
-    if (outputs == 64) return misfit(*spec_, "more than 64 out-vars, at port", component_->ports[port.declared].name);
+    if (outputs == 64) return misfit(*spec_, "more than 64 out-vars, at port", name_of(*component_, port));
     if (!port.value.empty()) initial_valid_ |= std::uint64_t{1} << outputs;
     ++outputs;
   }
@@ -127,7 +146,7 @@ void TaskMemory::take_lists(SetupMemory& memory) {
     } else if (port.kind == CHIMERA_OUT_VAR) {
       outputs_[outputs++] = {nullptr, &port, 0, port.max_bytes()};
     } else if (is_constant(port.kind)) {
-      constants_[constants++] = {nullptr, &port, &component_->ports[port.declared], nullptr};
+      constants_[constants++] = {nullptr, &port, nullptr};
       constant_bytes_ += round_up(port.max_bytes());
     } else {
       const std::span<std::byte> text = memory.take_bytes(port.value.size() + 1, 1);  // a zero behind it
@@ -138,8 +157,7 @@ void TaskMemory::take_lists(SetupMemory& memory) {
 }
 
 chimera_port* TaskMemory::live(const PortSpec& port) const noexcept {
-  const chimera_port_decl& decl = component_->ports[port.declared];
-  return reinterpret_cast<chimera_port*>(state_.data() + decl.live_offset) + port.instance;
+  return reinterpret_cast<chimera_port*>(state_.data() + ports_[port.declared].live_offset()) + port.instance;
 }
 
 const PortSpec* TaskMemory::spec_of(const chimera_port* port) const noexcept {
@@ -153,7 +171,7 @@ void TaskMemory::make_fill() {
   for (const Output& output : outputs_) {
     const PortSpec& spec = *output.spec;
     std::byte* to = fill_.data() + output.offset;
-    if (spec.value.empty()) never_written(to, component_->ports[spec.declared], spec);
+    if (spec.value.empty()) never_written(to, ports_[spec.declared], spec);
     else std::memcpy(to, spec.value.data(), std::min<std::size_t>(spec.value.size(), output.bytes));
   }
 }
@@ -185,7 +203,7 @@ Result<void> TaskMemory::construct(Task& task, Nanoseconds now) {
 
 void TaskMemory::wire(Task& task) noexcept {
   for (const PortSpec& port : spec_->ports) {
-    const chimera_port_decl& decl = component_->ports[port.declared];
+    const DeclaredPort declared = ports_[port.declared];
     chimera_port& to = *live(port);
     to = {};
     to.now_ns = &task.call.now_ns;
@@ -194,8 +212,8 @@ void TaskMemory::wire(Task& task) noexcept {
     to.count = port.max_count();
     to.type = port.type;
     to.element_size = port.element_bytes;
-    if (decl.flags & CHIMERA_PORT_REPEATED) {
-      auto* instances = reinterpret_cast<std::uint32_t*>(state_.data() + decl.instances_offset);
+    if (declared.is_repeated()) {
+      auto* instances = reinterpret_cast<std::uint32_t*>(state_.data() + declared.instances_offset());
       *instances = std::max(*instances, port.instance + 1);
     }
   }
@@ -210,7 +228,7 @@ void TaskMemory::wire(Task& task) noexcept {
   for (ConstantPort& constant : constants_) {
     constant.port = live(*constant.spec);
     constant.local = next;
-    const bool can_be_given = constant.decl->kind == CHIMERA_OUT_CONST || constant.spec->constant.is_valid() ||
+    const bool can_be_given = constant.spec->kind == CHIMERA_OUT_CONST || constant.spec->constant.is_valid() ||
                               !constant.spec->value.empty();
     constant.port->value = can_be_given ? next : nullptr;
     next += round_up(constant.spec->max_bytes());
@@ -242,7 +260,7 @@ void TaskMemory::abandon(Task& task) {
 
 bool TaskMemory::read_constants(const ConstantStore& store, FixedString<160>& why) noexcept {
   for (ConstantPort& constant : constants_) {
-    if (constant.decl->kind != CHIMERA_IN_CONST || !constant.spec->constant.is_valid()) continue;
+    if (constant.spec->kind != CHIMERA_IN_CONST || !constant.spec->constant.is_valid()) continue;
     const Constant& found = store[constant.spec->constant];
     if (!found.is_known) continue;
     std::memcpy(constant.local, found.value.data(),
@@ -253,7 +271,7 @@ bool TaskMemory::read_constants(const ConstantStore& store, FixedString<160>& wh
 
 bool TaskMemory::would_take(const ConstantStore& store, FixedString<160>& why) const noexcept {
   for (const ConstantPort& constant : constants_) {
-    if (constant.decl->kind != CHIMERA_IN_CONST || !constant.spec->constant.is_valid()) continue;
+    if (constant.spec->kind != CHIMERA_IN_CONST || !constant.spec->constant.is_valid()) continue;
     const Constant& found = store[constant.spec->constant];
     if (found.is_known || !constant.spec->value.empty()) continue;
     const std::string_view name = found.spec->name;
@@ -262,13 +280,13 @@ bool TaskMemory::would_take(const ConstantStore& store, FixedString<160>& why) c
   }
   for (const PortSpec& port : spec_->ports)
     for (const ExtentSpec& extent : port.extent)
-      if (!is_in_range(extent, component_->ports[port.declared].name, store, why)) return false;
+      if (!is_in_range(extent, name_of(*component_, port), store, why)) return false;
   return true;
 }
 
 bool TaskMemory::uses_changed(const ConstantStore& store) const noexcept {
   for (const ConstantPort& constant : constants_) {
-    if (constant.decl->kind != CHIMERA_IN_CONST || !constant.spec->constant.is_valid()) continue;
+    if (constant.spec->kind != CHIMERA_IN_CONST || !constant.spec->constant.is_valid()) continue;
     const Constant& found = store[constant.spec->constant];
     if (!found.is_known) continue;
     const std::size_t bytes = std::min<std::size_t>(found.value.size(), constant.spec->max_bytes());
@@ -286,7 +304,7 @@ bool TaskMemory::uses_changed(const ConstantStore& store) const noexcept {
 int TaskMemory::write_constants(ConstantStore& store, TaskId task) noexcept {
   int changed = 0;
   for (const ConstantPort& constant : constants_) {
-    if (constant.decl->kind != CHIMERA_OUT_CONST) continue;
+    if (constant.spec->kind != CHIMERA_OUT_CONST) continue;
     changed += store.set_by(task, constant.spec->constant, {constant.local, constant.spec->max_bytes()}) ? 1 : 0;
   }
   return changed;
@@ -298,7 +316,7 @@ bool TaskMemory::fix_extents(const ConstantStore& store, FixedString<160>& why) 
     to.count = 1;
     for (std::size_t d = 0; d < CHIMERA_MAX_EXTENTS; ++d) {
       const ExtentSpec& extent = port.extent[d];
-      if (!is_in_range(extent, component_->ports[port.declared].name, store, why)) return false;
+      if (!is_in_range(extent, name_of(*component_, port), store, why)) return false;
       to.extent[d] = static_cast<std::uint32_t>(
           extent.constant.is_valid() ? store.integer(extent.constant, extent.max) : extent.max);
       to.count *= to.extent[d];

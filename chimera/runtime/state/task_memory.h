@@ -8,6 +8,7 @@
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/state/constant_store.h"
 #include "chimera/table/layout.h"
+#include "chimera/task/declared_port.h"
 #include "chimera/task/task.h"
 
 namespace chimera {
@@ -16,7 +17,6 @@ namespace chimera {
 struct ConstantPort {
   chimera_port* port = nullptr;
   const PortSpec* spec = nullptr;
-  const chimera_port_decl* decl = nullptr;
   std::byte* local = nullptr;
 };
 
@@ -24,8 +24,9 @@ struct ConstantPort {
 /// setup and cycle boundary.
 class TaskMemory {
  public:
-  /// Plans the memory for `spec`. Refuses a specification that does not fit the component's declaration
-  /// (a descriptor of another build): names task and port.
+  /// Plans the memory for `spec`. Refuses a specification that does not fit the ports of the component (a descriptor of
+  /// another build): names task and port. If the component does not declare its ports, constructs and destroys it once,
+  /// to find them.
   static Result<TaskMemory> create(const TaskSpec& spec, const chimera_component& component, SetupMemory& memory);
 
   /// Gives the task its places in the table: two groups, used in turn by its incarnations, with the never-written
@@ -56,6 +57,8 @@ class TaskMemory {
   std::uint32_t incarnation() const noexcept { return incarnation_; }
   /// False for the memory of a task of another context.
   bool is_planned() const noexcept { return component_ != nullptr; }
+  /// The ports of the component; empty for the memory of a task of another context.
+  const DeclaredPorts& ports() const noexcept { return ports_; }
   std::span<Input> inputs() noexcept { return inputs_; }
   std::span<const ConstantPort> constants() const noexcept { return constants_; }
   std::uint64_t initial_valid() const noexcept { return initial_valid_; }
@@ -73,6 +76,7 @@ class TaskMemory {
   bool is_unwritten(const Task& task, std::size_t i) const noexcept;
 
  private:
+  Result<void> find_ports();
   Result<void> plan();
   void take_lists(SetupMemory& memory);
   void wire(Task& task) noexcept;
@@ -88,6 +92,7 @@ class TaskMemory {
   const TaskSpec* spec_ = nullptr;
   const chimera_component* component_ = nullptr;
   SetupMemory* memory_ = nullptr;
+  DeclaredPorts ports_;
   std::span<std::byte> state_;
   std::span<std::byte> constant_memory_;
   std::span<std::byte> groups_[2];

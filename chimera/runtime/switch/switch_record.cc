@@ -47,7 +47,7 @@ void compare(ValueStep& found, std::uint32_t type, const Place3& at) noexcept {
 
 }  // namespace
 
-ValueStep step_between(const PortSpec& port, const chimera_port_decl& declared, std::uint32_t count,
+ValueStep step_between(const PortSpec& port, const DeclaredPort& declared, std::uint32_t count,
                        const std::byte* before, const std::byte* after) noexcept {
   ValueStep found;
   const Place3 begin{before, after, port.max_step.empty() ? nullptr : port.max_step.data()};
@@ -57,8 +57,8 @@ ValueStep step_between(const PortSpec& port, const chimera_port_decl& declared, 
       compare(found, port.type, element);
       continue;
     }
-    for (std::uint32_t f = 0; f < declared.n_fields; ++f) {
-      const chimera_field& field = declared.fields[f];
+    for (std::uint32_t f = 0; f < declared.n_fields(); ++f) {
+      const FieldForm field = declared.field(f);
       for (std::uint32_t i = 0; i < field.count; ++i)
         compare(found, field.type, element.behind(field.offset + std::size_t{i} * field.size));
     }
@@ -142,7 +142,7 @@ ValueStep HandoverSteps::step(const Handover& handover, const std::byte* from, c
   const chimera_port* const port = memory.output_port(handover.to.index);
   if (port == nullptr) return {};  // it is not created yet
   const PortSpec& spec = *memory.output_spec(handover.to.index);
-  return step_between(spec, producer.component->ports[spec.declared], port->count, from, to);
+  return step_between(spec, producer.ports[spec.declared], port->count, from, to);
 }
 
 ValueStep HandoverSteps::step_to(const Handover& handover) noexcept {

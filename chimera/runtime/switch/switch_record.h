@@ -31,7 +31,7 @@ inline std::uint64_t losses_of(Task& task) noexcept {
 /// Compares the first `count` elements of an out-var. A boolean counts as 0 or 1; of a struct every field counts.
 /// `declared` is the component's declaration of the port. Requires: max_bytes() of the port at both. Context: cycle
 /// boundary; wait-free; O(elements).
-ValueStep step_between(const PortSpec& port, const chimera_port_decl& declared, std::uint32_t count,
+ValueStep step_between(const PortSpec& port, const DeclaredPort& declared, std::uint32_t count,
                        const std::byte* before, const std::byte* after) noexcept;
 
 /// Measures the step of each variable that is handed over in a switch: from the last value of the old producer to the

@@ -43,6 +43,7 @@ class TestApplication {
       port.declared = p;
       port.kind = decl.kind;
       names.emplace_back(decl.name);
+      port.name = decl.name;
       port.element_bytes = decl.element_size;
       port.type = decl.type;
       port.safety = (decl.flags & CHIMERA_PORT_SAFETY) != 0;
@@ -63,6 +64,12 @@ class TestApplication {
     return task;
   }
   PortSpec& port(std::size_t task, std::size_t index) { return ports_[task][index]; }
+  /// The second instance of a repeated port, linked to `name`. Call it before extend().
+  void add_instance(std::size_t task, std::size_t index, std::string_view name) {
+    ports_[task].push_back(PortSpec(ports_[task][index]));
+    ports_[task].back().instance = 1;
+    names_[task].push_back(name);
+  }
   /// As an alias does: the port is linked to `name`, and to nothing when that is "". Takes effect with make().
   void link(std::size_t task, std::size_t index, std::string_view name) { names_[task][index] = name; }
   /// Up to `max` elements, as many as the constant of that name says. Takes effect with make().

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Leaves a method at an index beyond a port, with the jump that the compiler builds in: no C library has to do it.
+#include "chimera/task/method_guard.h"
+
+#include "chimera/base/assert.h"
+
+namespace chimera {
+namespace {
+
+/// A body that runs now.
+struct Guard {
+  void* place[5];  ///< as __builtin_setjmp wants it
+  chimera_fault* fault;
+  Guard* outer;
+};
+
+#if __STDC_HOSTED__
+thread_local Guard* innermost = nullptr;
+#else
+Guard* innermost = nullptr;  // this system has one thread
+#endif
+
+char* put(char* to, const char* text) noexcept {
+  while (*text != '\0') *to++ = *text++;
+  return to;
+}
+
+char* put(char* to, std::size_t number) noexcept {
+  char digits[20];
+  std::size_t n = 0;
+  do digits[n++] = static_cast<char>('0' + number % 10);
+  while ((number /= 10) != 0);
+  while (n > 0) *to++ = digits[--n];
+  return to;
+}
+
+}  // namespace
+
+// Not inlined: the jump must not come from the function that it leads to. Every register counts as overwritten there.
+[[gnu::noinline]] std::int32_t run_guarded(GuardedBody body, void* state, const void* argument,
+                                           chimera_fault* fault) noexcept {
+  Guard guard;
+  guard.fault = fault;
+  guard.outer = innermost;
+  if (__builtin_setjmp(guard.place) != 0) {
+    innermost = innermost->outer;
+    return CHIMERA_FAULT;
+  }
+  innermost = &guard;
+  const std::int32_t status = body(state, argument);
+  innermost = guard.outer;
+  return status;
+}
+
+[[gnu::noinline]] void leave_guarded(std::size_t index, std::size_t size) noexcept {
+  CHIMERA_ASSERT(innermost != nullptr);
+  innermost->fault->code = 0;
+  char* at = put(innermost->fault->text, "index ");
+  at = put(put(put(at, index), " of a port that has "), size);
+  *at = '\0';
+  __builtin_longjmp(innermost->place, 1);
+}
+
+}  // namespace chimera
