@@ -70,6 +70,7 @@ install(DIRECTORY docs/formats/ DESTINATION share/chimera/schema COMPONENT docum
 install(DIRECTORY examples docs DESTINATION share/chimera COMPONENT documents
   PATTERN CMakeLists.txt EXCLUDE PATTERN man EXCLUDE)
 install(FILES README.md CONTRIBUTING.md DESTINATION share/chimera COMPONENT documents)
+install(DIRECTORY firmware/targets DESTINATION share/chimera/firmware COMPONENT documents)  # chimera bake --target
 # The recordings and stores are those that lessons name as ../../library/...; the page shows pictures and code.
 file(GLOB sheets RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS library/README.md library/*/README.md
   library/*/*.events library/*/*.store library/*/*.svg library/*/*.cc library/*/*.h)

@@ -8,6 +8,7 @@
 #include "chimera/runtime/executive/baked.h"
 #include "chimera/runtime/executive/executive.h"
 #include "firmware/boards/board.h"
+#include "firmware/boot/stacks.h"
 #include "firmware/boot/stop.h"
 #include "firmware/digest_lines.h"
 #include "firmware/line.h"
@@ -40,6 +41,12 @@ void print_tasks(const TaskSet& set) {
                 << " dropped " << profile.dropped << " faults " << task.faults.count << " response "
                 << static_cast<std::uint64_t>(profile.cycles == 0 ? 0 : profile.response.max.count));
   }
+}
+
+void print_stacks() {
+  const StackUse program = program_stack(), handlers = handler_stack();
+  send(Line() << "stack " << program.used << " of " << program.size << " handlers " << handlers.used << " of "
+              << handlers.size);
 }
 
 int refused(const TaskSet& set, const SignalReport& report) {
@@ -75,6 +82,7 @@ int run_application() {
   const RunEnd end = executive.run(baked::kRun.duration);
   options.digest->end();
   print_tasks(set);
+  print_stacks();
   if (uart().lost_out() != 0) send(Line() << "lost " << uart().lost_out());
   send(Line() << "end " << end_word(end));
   return 0;

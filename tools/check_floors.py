@@ -11,8 +11,8 @@ import sources  # noqa: E402
 
 FLOOR = {"base": 0, "platform": 1, "table": 2, "task": 3, "schedule": 4, "runtime": 5, "load": 5, "rtpu": 6,
          "text": 6, "units": 7, "description": 8, "catalogue": 9, "verify": 10, "analysis": 11,
-         "keeper": 12, "guard": 12, "component_test": 12, "control": 12, "subsystem": 12, "draw": 12, "bake": 12, "cli": 13,
-         "manager": 13, "record": 13, "web": 14}
+         "keeper": 12, "guard": 12, "component_test": 12, "control": 12, "subsystem": 12, "draw": 12, "bake": 12,
+         "cli": 13, "manager": 13, "record": 13, "web": 14}
 # Rooms of one floor: a room imports only those with lower numbers. "" is the folder itself.
 INSIDE = {"cli": {"": 0, "command": 0, "files": 1, "print": 1, "live": 2, "run": 3, "batch": 4},
           "runtime": {"": 0, "record": 1, "job": 2, "plan": 3, "state": 4, "life": 5, "switch": 6, "cycle": 7,

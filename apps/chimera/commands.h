@@ -18,6 +18,7 @@ struct FileCommand {
 /// The rows of one file each. Context of all: setup.
 FileCommand check_row();
 FileCommand schedule_row();
+FileCommand bake_row();
 FileCommand list_row();
 FileCommand describe_row();
 FileCommand test_row();

@@ -15,7 +15,7 @@ namespace chimera::bake {
 /// Context of all: setup.
 /// Periods, offsets and deadlines that are no whole ticks.
 void refuse_times(const Configuration& configuration, const Target& target, Report& report);
-/// What the executive of an image does not do: several rtpus, preemption, laxity, servers, standbys, processes; and
+/// Features that the executive of an image lacks: several rtpus, preemption, laxity, servers, standbys, processes; and
 /// components that need Linux.
 void refuse_features(const Configuration& configuration, const Library& library, Report& report);
 /// Resource ports without a text in the target, and event sources without an interrupt.

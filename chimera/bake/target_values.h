@@ -15,7 +15,7 @@ namespace chimera::bake {
 /// Each function adds one fault to `report` and returns nullopt for another value. Context: setup.
 /// A number below 2^32, decimal or as 0x1f.
 std::optional<std::uint32_t> read_word(const Node& node, const std::string& what, Report& report);
-/// The same, and a multiple of 4.
+/// A number as read_word() reads it that is a multiple of 4.
 std::optional<std::uint32_t> read_address(const Node& node, const std::string& what, Report& report);
 /// {address: ..., size: ...}
 std::optional<MemoryRange> read_memory(const Node& node, const std::string& what, Report& report);

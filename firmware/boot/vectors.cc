@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "firmware/boards/board.h"
+#include "firmware/boot/stacks.h"
 #include "firmware/boot/stop.h"
 
 extern "C" {
@@ -20,6 +21,7 @@ int main();
   const std::uint32_t* from = image_data_source;
   for (std::uint32_t* to = image_data_begin; to < image_data_end;) *to++ = *from++;
   for (std::uint32_t* to = image_bss_begin; to < image_bss_end;) *to++ = 0;
+  chimera::firmware::guard_stacks();
   chimera::firmware::end_image(main());
 }
 
@@ -54,6 +56,7 @@ int main();
 
 /// `frame` has r0 to r3, r12, lr, pc and xpsr.
 [[noreturn, gnu::used]] void image_stop_at_exception(const std::uint32_t* frame, std::uint32_t number) {
+  if (chimera::firmware::is_program_stack_overrun()) chimera::firmware::stop("the stack of the program is too small");
   chimera::firmware::stop_at_exception(number, frame[6]);
 }
 

@@ -99,23 +99,6 @@ std::string why_not(const ScriptAct& act, const RunRequest& request, const Confi
   return is_there ? "" : "no task is on that rtpu";
 }
 
-Result<void> judge_acts(const RunRequest& request, RunPlan& plan) {
-  const auto acts = parse_script(request.at, plan.configuration.spec());
-  if (!acts) return acts.error();
-  for (const TimedAct& timed : *acts) {
-    const bool is_set = timed.act.kind == ScriptAct::Kind::kSet;
-    const std::string why = why_not(timed.act, request, plan.configuration);
-    if (!why.empty())
-      return Error{ErrorCode::kRefused, {"--at '" + timed.text + "': " + why}, {plan.configuration.file()}};
-    const auto act = is_set ? settled(timed, plan) : Result<ScriptAct>(timed.act);
-    if (!act) return act.error();
-    plan.acts.push_back(*act);
-    if (!timed.has_lists()) continue;
-    plan.acts.back().lists = &plan.lists.emplace_back(timed.lists);
-  }
-  return {};
-}
-
 /// An expectation of the value at the end, or of a measure of the whole run, as in a file of cases.
 Result<void> add_expectation(const std::string& text, RunPlan& plan) {
   const auto& units = plan.library.units();
@@ -144,6 +127,23 @@ Result<void> judge_words(const RunRequest& request, RunPlan& plan) {
 }
 
 }  // namespace
+
+Result<void> judge_acts(const RunRequest& request, RunPlan& plan) {
+  const auto acts = parse_script(request.at, plan.configuration.spec());
+  if (!acts) return acts.error();
+  for (const TimedAct& timed : *acts) {
+    const bool is_set = timed.act.kind == ScriptAct::Kind::kSet;
+    const std::string why = why_not(timed.act, request, plan.configuration);
+    if (!why.empty())
+      return Error{ErrorCode::kRefused, {"--at '" + timed.text + "': " + why}, {plan.configuration.file()}};
+    const auto act = is_set ? settled(timed, plan) : Result<ScriptAct>(timed.act);
+    if (!act) return act.error();
+    plan.acts.push_back(*act);
+    if (!timed.has_lists()) continue;
+    plan.acts.back().lists = &plan.lists.emplace_back(timed.lists);
+  }
+  return {};
+}
 
 Nanoseconds sample_distance(Nanoseconds every, Nanoseconds duration, const ApplicationSpec& spec) {
   constexpr std::int64_t kMostSamples = 1'000'000;

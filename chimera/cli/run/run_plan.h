@@ -43,6 +43,10 @@ std::optional<RunPlan> plan_run(const RunRequest& request, const Workplace& work
 std::optional<RunPlan> plan_run(const RunRequest& request, const Library& library, std::FILE* out, std::FILE* err,
                                 int* code = nullptr);
 
+/// Adds the acts of RunRequest::at to the plan of a legal description. Refuses, with the text of the act, what means
+/// nothing in it or comes after the end of the run. Context: setup.
+Result<void> judge_acts(const RunRequest& request, RunPlan& plan);
+
 /// The distance of samples in virtual time: `every`, or if that is 0 the shortest period of the start set; longer if
 /// there were more than a million. Context: setup.
 Nanoseconds sample_distance(Nanoseconds every, Nanoseconds duration, const ApplicationSpec& spec);

@@ -16,9 +16,13 @@ void BoundarySignals::begin(Nanoseconds origin) noexcept {
 void BoundarySignals::look_ahead(Nanoseconds due, Nanoseconds wake) noexcept {
   const Nanoseconds at = script_.next_at();
   const Nanoseconds act = at == kNever ? kNever : origin_ + at;
-  other_act_ = std::min({act, due, switching_.due(), asks_again_});
-  other_act_in_row_ = std::min({act, due, switching_.due(true)});
-  other_wake_ = std::min({act, wake, switching_.wake(), asks_again_});
+  other_act_ = other_act_in_row_ = std::min(act, due);
+  other_wake_ = std::min(act, wake);
+  if constexpr (mechanisms::kSwitch) {
+    other_act_ = std::min({other_act_, switching_->due(), asks_again_});
+    other_act_in_row_ = std::min(other_act_in_row_, switching_->due(true));
+    other_wake_ = std::min({other_wake_, switching_->wake(), asks_again_});
+  }
   look_ahead_to(events_);
 }
 
@@ -31,7 +35,7 @@ void BoundarySignals::look_ahead_to(Nanoseconds events) noexcept {
 
 void BoundarySignals::act(Nanoseconds now) noexcept {
   while (const ScriptAct* next = script_.take(now - origin_)) act(*next, now);
-  pass_request_on(now);
+  if constexpr (mechanisms::kSwitch) pass_request_on(now);
   step(now);
 }
 
@@ -47,22 +51,24 @@ void BoundarySignals::pass_request_on(Nanoseconds now) noexcept {
     return;
   }
   const SwitchRequest next = std::exchange(request_, {});
-  if (switching_.ask(next, now)) asked_ = next, asked_at_ = now;
+  if (switching_->ask(next, now)) asked_ = next, asked_at_ = now;
 }
 
 // A switch may end in the step, and another one or another try be ordered.
 void BoundarySignals::step(Nanoseconds now) noexcept {
+  if constexpr (!mechanisms::kSwitch) return;
   if (orders_ != nullptr) (void)orders_->look(now);
-  switching_.step(now);
-  if (orders_ != nullptr && orders_->look(now)) switching_.step(now);
+  switching_->step(now);
+  if (orders_ != nullptr && orders_->look(now)) switching_->step(now);
 }
 
 void BoundarySignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
-  if (act.kind == ScriptAct::Kind::kSwitch) {
-    switching_.stop_watching(now);
+  if (mechanisms::kSwitch && act.kind == ScriptAct::Kind::kSwitch) {
+    switching_->stop_watching(now);
     return orders_->ask(act.request(), now);
   }
-  if (act.kind == ScriptAct::Kind::kSet) return set_.table().set_operator(act.operator_index, act.value, now);
+  if (mechanisms::kOperators && act.kind == ScriptAct::Kind::kSet)
+    return set_.table().set_operator(act.operator_index, act.value, now);
   if (act.kind != ScriptAct::Kind::kSignal) {
     const bool up = act.kind == ScriptAct::Kind::kRaiseFlag;
     set_.flag().raise(up);
@@ -70,8 +76,8 @@ void BoundarySignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
     return;
   }
   Task& task = set_.tasks()[act.task.index];
-  if (orders_ != nullptr) orders_->note_word(act.task, act.signal);
-  if (act.signal == Signal::kWakeup) return ring(task, now);
+  if (mechanisms::kSwitch && orders_ != nullptr) orders_->note_word(act.task, act.signal);
+  if (mechanisms::kServers && act.signal == Signal::kWakeup) return ring(task, now);
   if (may_touch(act.task)) return carry_out(task, act.signal, now);
   // A task with a job under way takes the signal like one that it sent itself: after the job and its error handling.
   task.has_news = true;
@@ -88,7 +94,8 @@ void BoundarySignals::carry_out_pending(Nanoseconds now) noexcept {
 
 // The script's own `on` has ended what kept the task OFF, so the one that is refused was sent by a task.
 void BoundarySignals::carry_out(Task& task, Signal signal, Nanoseconds now) noexcept {
-  const bool is_kept_off = signal == Signal::kOn && orders_ != nullptr && orders_->is_kept_off(task.id);
+  const bool is_kept_off = mechanisms::kSwitch && signal == Signal::kOn && orders_ != nullptr &&
+                           orders_->is_kept_off(task.id);
   SignalReport report{false, false, Refusal::kKeptOff, signal, task.id, task.state, task.state};
   if (is_kept_off) record(report, set_.flag().is_up(), now);
   else report = this->signal({&task.id, 1}, signal, now);

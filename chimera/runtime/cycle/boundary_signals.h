@@ -35,10 +35,10 @@ inline constexpr Nanoseconds kAskAgain = milliseconds(100);
 /// theirs.
 class BoundarySignals {
  public:
-  /// All arguments outlive this but `options`, whose script is kept and whose listener gets the reports. Context:
+  /// `switching` null: nothing is switched. All arguments outlive this but `options`, whose script is kept and whose listener gets the reports. Context:
   /// setup.
   BoundarySignals(TaskSet& set, const RunOptions& options, ContextTap& tap, Settlement& settlement, JobThreads& threads,
-                  Switching& switching) noexcept
+                  Switching* switching) noexcept
       : set_(set), script_(options.script), tap_(tap), settlement_(settlement), threads_(threads),
         switching_(switching), guest_(options.guest) {}
   /// From now on, `switches` orders the switches; it outlives this. Without it, they are ordered elsewhere. Context:
@@ -93,7 +93,7 @@ class BoundarySignals {
   ContextTap& tap_;
   Settlement& settlement_;
   JobThreads& threads_;
-  Switching& switching_;
+  Switching* switching_;
   BoundaryListener* guest_;
   LocalSwitches* orders_ = nullptr;
   SwitchRequest request_;  // of a task: waits for kAskAgain

@@ -75,7 +75,7 @@ void Recovery::keep_warm(HotStandby& standby, Nanoseconds now) noexcept {
   Task& task = set.tasks()[id.index];
   const bool wanted = set.standbys().keeps_warm(id);
   if (wanted == task.is_warm() || task.in_service() || task.shown_state() != State::kOff) return;
-  if (!parts_.switching.is_free() || !parts_.signals.may_touch(id)) {
+  if ((parts_.switching != nullptr && !parts_.switching->is_free()) || !parts_.signals.may_touch(id)) {
     look_again(now, now + task.spec->period);
   } else if (!wanted) {
     (void)parts_.signals.signal({&id, 1}, Signal::kOff, now);
@@ -95,7 +95,8 @@ void Recovery::keep_warm(HotStandby& standby, Nanoseconds now) noexcept {
 
 // A switch that is not committed gives way to it; the change of one that is comes first.
 bool Recovery::may_touch(Task& task) noexcept {
-  return !task.in_service() && parts_.switching.give_way(task.id) && parts_.signals.may_touch(task.id);
+  const bool gives_way = parts_.switching == nullptr || parts_.switching->give_way(task.id);
+  return !task.in_service() && gives_way && parts_.signals.may_touch(task.id);
 }
 
 // The task that failed, of this context, closes the resource that the next one opens. False: later.

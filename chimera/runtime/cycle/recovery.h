@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <span>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/runtime/cycle/boundary_signals.h"
 #include "chimera/runtime/cycle/takeover_record.h"
 #include "chimera/runtime/life/settlement.h"
@@ -19,6 +20,9 @@
 
 namespace chimera {
 
+/// Tasks that failed can be brought back.
+inline constexpr bool kRecovers = mechanisms::kStandbys || mechanisms::kRestart;
+
 /// Context of everything not marked: cycle boundary; as long as the methods of components take; no allocation but
 /// theirs.
 class Recovery {
@@ -27,7 +31,7 @@ class Recovery {
   struct Parts {
     TaskSet& set;
     Settlement& settlement;
-    Switching& switching;
+    Switching* switching;  ///< null: nothing is switched
     BoundarySignals& signals;
     ReadyQueue& queue;
     JobThreads& threads;

@@ -54,33 +54,17 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
       digest_(options.digest), in_loop_(set.tasks(), &queue_, options.preemptive),
       threads_(options.threads != nullptr ? *options.threads : in_loop_),
       queue_(options.policy, set.spec().tasks, storage_for(records_.size(), set.setup_memory())),
-      misses_(set.tasks(), records_, tap_,
-              guest_ != nullptr ? &cause_.emplace(set.tasks(), threads_, set.setup_memory()) : nullptr, clock),
-      jobs_(records_, tap_, misses_, cause_ ? &*cause_ : nullptr, clock,
-            tap_.is_on() || digest_ != nullptr || guest_ != nullptr),
+      misses_(set.tasks(), records_, tap_, make_cause(), clock),
+      jobs_(records_, tap_, misses_, cause(), clock, tap_.is_on() || digest_ != nullptr || guest_ != nullptr),
       events_({records_, queue_, set.sent(), options.events, options.tick}),
       members_(set.tasks(), records_, queue_, events_, tap_, guest_),
-      settlement_({set, records_, tap_, members_, misses_, cause_ ? &*cause_ : nullptr, guest_}),
-      switching_({set, queue_, threads_, members_, settlement_, tap_, misses_, clock}),
-      signals_(set, options, tap_, settlement_, threads_, switching_),
-      recovery_({set, settlement_, switching_, signals_, queue_, threads_, guest_}) {
-  const std::size_t n_switches = options.script.count(ScriptAct::Kind::kSwitch);
-  const bool is_alone = set.others() == nullptr;
-  CHIMERA_ASSERT(is_alone ? options.switch_peers == nullptr : n_switches == 0);
-  const bool takes_requests = (is_alone || options.switch_peers != nullptr) && may_request(set.spec());
-  const std::size_t n_receipts = n_switches + kept_of_unscripted(set.spec());
-  if (is_alone && n_receipts > 0) {
-    LocalSwitches& switches = switches_.emplace();
-    switches.prepare(set.spec(), 1, n_receipts, options.asked, set.setup_memory());
-    switches.join(0, set, !threads_.preempt());
-    signals_.order_by(switches);
-  }
-  SwitchPeers* const peers = switches_ ? &switches_->of(0) : options.switch_peers;
-  switching_.prepare(peers);
-  const bool takes_lists = options.asked != nullptr || options.switch_peers != nullptr;
-  if (takes_requests)
-    set.sent().allow_requests(set.setup_memory().take<TaskLists>(takes_lists ? set.tasks().size() : 0));
-  recovery_.prepare(peers);
+      settlement_({set, records_, tap_, members_, misses_, cause(), guest_}),
+      switching_(Switching::Parts{set, queue_, threads_, members_, settlement_, tap_, misses_, clock}),
+      signals_(set, options, tap_, settlement_, threads_, switching_.get()),
+      recovery_(Recovery::Parts{set, settlement_, switching_.get(), signals_, queue_, threads_, guest_}) {
+  const bool may_switch = mechanisms::kSwitch && (set.others() == nullptr || options.switch_peers != nullptr);
+  const bool takes_requests = may_switch && may_request(set.spec());
+  prepare_switches(options, takes_requests);
   for (Task& task : set.tasks()) {
     const TaskSpec& spec = *task.spec;
     const bool can = options.preemptive || !set.is_mine(task.id);
@@ -104,12 +88,42 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
   set.methods().run_by({&clock, options.threads, options.writer});
 }
 
+MissCause* Releases::make_cause() {
+  if constexpr (mechanisms::kBlame)
+    if (guest_ != nullptr) cause_->emplace(set_.tasks(), threads_, set_.setup_memory());
+  return cause();
+}
+
+void Releases::prepare_switches(const RunOptions& options, bool takes_requests) {
+  SwitchPeers* peers = options.switch_peers;
+  if constexpr (mechanisms::kSwitch) {
+    const std::size_t n_switches = options.script.count(ScriptAct::Kind::kSwitch);
+    const bool is_alone = set_.others() == nullptr;
+    CHIMERA_ASSERT(is_alone ? peers == nullptr : n_switches == 0);
+    const std::size_t n_receipts = n_switches + kept_of_unscripted(set_.spec());
+    if (is_alone && n_receipts > 0) {
+      LocalSwitches& switches = switches_->emplace();
+      switches.prepare(set_.spec(), 1, n_receipts, options.asked, set_.setup_memory());
+      switches.join(0, set_, !threads_.preempt());
+      signals_.order_by(switches);
+      peers = &switches.of(0);
+    }
+    switching_->prepare(peers);
+    const bool takes_lists = options.asked != nullptr || options.switch_peers != nullptr;
+    if (takes_requests)
+      set_.sent().allow_requests(set_.setup_memory().take<TaskLists>(takes_lists ? set_.tasks().size() : 0));
+  }
+  if constexpr (kRecovers) recovery_->prepare(peers);
+}
+
 void Releases::begin(Nanoseconds origin) noexcept {
   origin_ = origin;
-  if (digest_ != nullptr) digest_->begin(origin);
+  if (mechanisms::kDigest && digest_ != nullptr) digest_->begin(origin);
   queue_.set_origin(origin);
-  if (switches_) switches_->begin(origin);
-  switching_.begin(origin);
+  if constexpr (mechanisms::kSwitch) {
+    if (*switches_) (*switches_)->begin(origin);
+    switching_->begin(origin);
+  }
   signals_.begin(origin);
   events_.begin(origin);
   members_.follow_all(origin);
@@ -129,8 +143,12 @@ void Releases::take_edge(Nanoseconds now, bool puts_off) noexcept {
     signals_.step(now);  // take() heard the bell for changes since the step in act(): it does not ring again
   }
   signals_.carry_out_pending(now);
-  recovery_.act(now);
-  signals_.look_ahead(recovery_.due(), recovery_.wake());
+  Nanoseconds due = kNever, wake = kNever;
+  if constexpr (kRecovers) {
+    recovery_->act(now);
+    due = recovery_->due(), wake = recovery_->wake();
+  }
+  signals_.look_ahead(due, wake);
   members_.follow_all(now);
   follow(events_, signals_, now);
   settlement_.publish();

@@ -17,6 +17,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "chimera/base/mechanisms.h"
+#include "chimera/base/part_if.h"
 #include "chimera/runtime/cycle/boundary_signals.h"
 #include "chimera/runtime/cycle/recovery.h"
 #include "chimera/runtime/cycle/run_options.h"
@@ -85,9 +87,11 @@ class Releases {
   }
   /// The run is over: ends all switches and takeovers that are under way.
   void end(Nanoseconds now) noexcept {
-    recovery_.end(now);
-    switching_.end(now);
-    if (switches_) switches_->end(now);
+    if constexpr (kRecovers) recovery_->end(now);
+    if constexpr (mechanisms::kSwitch) {
+      switching_->end(now);
+      if (*switches_) (*switches_)->end(now);
+    }
   }
   bool stop_requested() const noexcept { return stop_->load(std::memory_order_relaxed); }
 
@@ -127,7 +131,11 @@ class Releases {
   Settlement& settlement() noexcept { return settlement_; }
   /// Receipts of switches and takeovers, if the application has one context; otherwise none. Context: setup, between
   /// runs.
-  const SwitchReceipts& receipts() noexcept { return switches_ ? switches_->receipts() : kNoReceipts; }
+  const SwitchReceipts& receipts() noexcept {
+    if constexpr (mechanisms::kSwitch)
+      if (*switches_) return (*switches_)->receipts();
+    return kNoReceipts;
+  }
   /// The trace that events of this context are recorded in.
   ContextTap& tap() noexcept { return tap_; }
 
@@ -137,6 +145,13 @@ class Releases {
   static constexpr SwitchReceipts kNoReceipts{};
 
   bool decide_start(const Job& job, Nanoseconds now) noexcept;
+  MissCause* cause() noexcept {
+    if constexpr (mechanisms::kBlame)
+      if (*cause_) return &**cause_;
+    return nullptr;
+  }
+  MissCause* make_cause();
+  void prepare_switches(const RunOptions& options, bool takes_requests);
 
   TaskSet& set_;
   BoundaryListener* guest_;
@@ -148,17 +163,17 @@ class Releases {
   Digest* digest_;  // null: none
   JobsInLoop in_loop_;
   JobThreads& threads_;
-  std::optional<MissCause> cause_;  // only with a listener, which reports it
+  [[no_unique_address]] PartIf<mechanisms::kBlame, std::optional<MissCause>> cause_;  // only with a listener, which reports it
   ReadyQueue queue_;
   MissPolicy misses_;
   JobCycle jobs_;
   EventTasks events_;
   Members members_;
   Settlement settlement_;
-  std::optional<LocalSwitches> switches_;  // of a context that is alone
-  Switching switching_;
+  [[no_unique_address]] PartIf<mechanisms::kSwitch, std::optional<LocalSwitches>> switches_;  // of a lone context
+  [[no_unique_address]] PartIf<mechanisms::kSwitch, Switching> switching_;
   BoundarySignals signals_;
-  Recovery recovery_;
+  [[no_unique_address]] PartIf<kRecovers, Recovery> recovery_;
 };
 
 }  // namespace chimera

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/runtime/job/job_record.h"
 #include "chimera/runtime/job/job_step.h"
 #include "chimera/runtime/job/miss_policy.h"
@@ -91,7 +92,7 @@ class JobCycle {
     return cycle_step::begin(*record.task, time);
   }
   void count_times(Task& task, const Job& job, Nanoseconds start, Nanoseconds end, Nanoseconds used) noexcept {
-    if (cause_ != nullptr) cause_->ended(job.task, used, end);
+    if (mechanisms::kBlame && cause_ != nullptr) cause_->ended(job.task, used, end);
     Profile& p = task.profile;
     p.execution[CHIMERA_CYCLE].add(used);
     p.response.add(end - job.release);

@@ -2,6 +2,8 @@
 // Counts the failures of time of jobs and carries out the reactions that a task has for them.
 #include "chimera/runtime/job/miss_policy.h"
 
+#include "chimera/base/mechanisms.h"
+
 namespace chimera {
 namespace {
 
@@ -49,7 +51,7 @@ bool MissPolicy::judge(const Job& job, BodyEnd& body, Nanoseconds end, Nanosecon
   Task& task = tasks_[job.task.index];
   JobRecord& record = records_[job.task.index];
   bool may_publish = true;
-  if (used > record.budget) {
+  if (mechanisms::kBudgets && used > record.budget) {
     const bool is_reported = (reported & JobRecord::kOverrun) != 0;
     ++task.profile.overrun;
     if (!is_reported) tap_.record(TapKind::kOverrun, end, task.id, task.call.cycle, used.count);
@@ -134,7 +136,7 @@ void MissPolicy::leave_reaction(TaskId task, OnMiss reaction, JobRecord::Left on
 }
 
 void MissPolicy::leave_cause(TaskId task, Nanoseconds release) noexcept {
-  if (cause_ == nullptr) return;
+  if (!mechanisms::kBlame || cause_ == nullptr) return;
   cause_->missed(task, release);
   leave(task, JobRecord::kFindCause);
 }
@@ -147,6 +149,7 @@ void MissPolicy::count_miss(Task& task, Nanoseconds at, Nanoseconds lateness) no
 
 bool MissPolicy::react(OnMiss reaction, JobRecord::Left on_switch, Task& task, BodyEnd& body,
                        Nanoseconds at) noexcept {
+  if constexpr (!mechanisms::kReactions) return true;
   const bool is_miss = on_switch == JobRecord::kSwitchForMiss;
   const char* const why = is_miss ? "missed its deadline" : "used more execution time than its budget";
   switch (reaction) {

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "chimera/base/mechanisms.h"
+
 namespace chimera {
 
 void Settlement::settle_job(TaskId id, Nanoseconds now) noexcept {
@@ -19,10 +21,13 @@ void Settlement::settle_at_once(TaskId id, Nanoseconds now) noexcept {
   const TaskSpec& spec = *task.spec;
   if (left & JobRecord::kRaiseFlag) raise_flag(id, State::kOn, now);
   if (left & JobRecord::kStop) stop(id);
-  if (left & JobRecord::kSwitchForMiss) parts_.set.sent().request({spec.on_miss_set, SwitchCause::kMiss, id});
-  if (left & JobRecord::kSwitchForOverrun) parts_.set.sent().request({spec.on_overrun_set, SwitchCause::kOverrun, id});
+  if constexpr (mechanisms::kSwitch) {
+    SentSignals& sent = parts_.set.sent();
+    if (left & JobRecord::kSwitchForMiss) sent.request({spec.on_miss_set, SwitchCause::kMiss, id});
+    if (left & JobRecord::kSwitchForOverrun) sent.request({spec.on_overrun_set, SwitchCause::kOverrun, id});
+  }
   publish();
-  if (!(left & JobRecord::kFindCause)) return;
+  if (!mechanisms::kBlame || !(left & JobRecord::kFindCause)) return;
   if (const auto verdict = parts_.cause->judge(id, now)) parts_.guest->missed(id, *verdict, now);
 }
 
@@ -56,14 +61,14 @@ void Settlement::record_faults(Task& task) noexcept {
 void Settlement::follow_error(Task& task, Nanoseconds now) noexcept {
   const bool was_told = std::exchange(task.is_error_told, task.state == State::kError);
   if (was_told || task.state != State::kError) return;
-  if (task.spec->on_fault == OnFault::kRestart) return parts_.set.sent().want_edge();
+  if (mechanisms::kRestart && task.spec->on_fault == OnFault::kRestart) return parts_.set.sent().want_edge();
   react_to_fault(task, task.spec->on_fault, now);
 }
 
 void Settlement::react_to_fault(Task& task, OnFault reaction, Nanoseconds now) noexcept {
   if (reaction == OnFault::kFlag) raise_flag(task.id, task.state, now);
   if (reaction == OnFault::kStop) stop(task.id);
-  if (reaction == OnFault::kSwitch)
+  if (mechanisms::kSwitch && reaction == OnFault::kSwitch)
     parts_.set.sent().request({task.spec->on_fault_set, SwitchCause::kFault, task.id});
 }
 

@@ -16,7 +16,7 @@ void ContextTap::append(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t
 }
 
 void ContextTap::record_now(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b) noexcept {
-  if (tap_ != nullptr) tap_->append(record_of(kind, at, task, a, b));
+  if (is_on()) tap_->append(record_of(kind, at, task, a, b));
 }
 
 TapRecord ContextTap::record_of(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a,
@@ -32,7 +32,7 @@ TapRecord ContextTap::record_of(TapKind kind, Nanoseconds at, TaskId task, std::
 }
 
 void ContextTap::flush(TaskId id) noexcept {
-  if (tap_ == nullptr && digest_ == nullptr) return;
+  if (!is_on() && digest_ == nullptr) return;
   for (const TapRecord& record : kept_[id.index]) tap_->append(record);
   kept_[id.index].clear();
   if (tasks_[id.index].is_tapped) append_row(tasks_[id.index]);
@@ -43,8 +43,8 @@ void ContextTap::append_row(const Task& task) noexcept {
   if (task.standing == Standing::kWarm) return;  // its publications are no values of variables
   if (task.group.sequence() == rows.last || task.group.sequence() == 0) return;
   rows.last = task.group.sequence();
-  if (digest_ != nullptr) return digest_->add_publication(task);  // in virtual time no other reader wants rows
-  if (tap_ == nullptr) return;
+  if (mechanisms::kDigest && digest_ != nullptr) return digest_->add_publication(task);  // in virtual time no other reader wants rows
+  if (!is_on()) return;
   tap_->append_row(*task.group.published(), task.group.payload_bytes(), task.id, rtpu_, rows.count++);
 }
 

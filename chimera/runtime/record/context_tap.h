@@ -6,6 +6,7 @@
 #include <span>
 
 #include "chimera/base/fixed.h"
+#include "chimera/base/mechanisms.h"
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/record/digest.h"
 #include "chimera/runtime/record/tap_ring.h"
@@ -23,18 +24,18 @@ class ContextTap {
   ContextTap(std::span<const Task> tasks, Tap* tap, std::uint8_t rtpu, bool keeps, SetupMemory& memory,
              Digest* digest = nullptr);
 
-  bool is_on() const noexcept { return tap_ != nullptr; }
+  bool is_on() const noexcept { return mechanisms::kTap && tap_ != nullptr; }
   /// Writes one record if there is a tap. An invalid task: of the context. Where records are kept, the thread of a task
   /// may call this for its task.
   void record(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept {
-    if (tap_ != nullptr) append(kind, at, task, a, b);
+    if (is_on()) append(kind, at, task, a, b);
   }
   /// Writes one record at once, before those that are kept for the task's thread.
   void record_now(TapKind kind, Nanoseconds at, TaskId task, std::uint64_t a, std::int64_t b = 0) noexcept;
   /// The last fault of the task, which is new.
   void record_fault(const Task& task) noexcept {
     record(TapKind::kFault, task.faults.at, task.id, static_cast<std::uint64_t>(task.faults.method));
-    if (digest_ != nullptr) digest_->add_faults(task);
+    if (mechanisms::kDigest && digest_ != nullptr) digest_->add_faults(task);
   }
   /// The release of a job, when the job is about to begin or will not run.
   void record_release(const Job& job) noexcept {

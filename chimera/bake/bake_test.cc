@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chimera/bake/bake.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "chimera/units/testing/unit_samples.h"
+#include "chimera/verify/testing/sample_component.h"
+#include "chimera/verify/verify.h"
+
+namespace chimera::bake::bake_test {
+
+PortDescriptor port(std::string name, std::uint32_t kind, std::string shape = "") {
+  return {.name = std::move(name), .unit = "1", .shape = std::move(shape), .kind = kind};
+}
+
+PortDescriptor resource(std::string name) {
+  PortDescriptor made = port(std::move(name), CHIMERA_RESOURCE);
+  made.type = CHIMERA_STRING;
+  made.element_size = 64;
+  return made;
+}
+
+Descriptor with(Descriptor made, bool background, bool sync, bool event_source) {
+  made.background = background;
+  made.methods[CHIMERA_SYNC] = sync;
+  made.event_source = event_source;
+  return made;
+}
+
+const Library& library() {
+  static const Library kLibrary = Library::of(
+      {sample_component("source", {port("y", CHIMERA_OUT_VAR)}), sample_component("sink", {port("y", CHIMERA_IN_VAR)}),
+       sample_component("wide", {port("z", CHIMERA_OUT_VAR, "[2000]")}),
+       sample_component("device", {resource("tty"), port("y", CHIMERA_OUT_VAR)}),
+       sample_component("key", {resource("pin"), port("y", CHIMERA_OUT_VAR)}),
+       with(sample_component("writer", {port("y", CHIMERA_IN_VAR)}), true, false, false),
+       with(sample_component("waiter", {port("y", CHIMERA_OUT_VAR)}), false, true, true)},
+      our_units());
+  return kLibrary;
+}
+
+const std::string kTarget =
+    "version: 1\ncpu: cortex-m3\nboard: mps2\nclock_hz: 25000000\nflash: {address: 0, size: 64 KiB}\n"
+    "ram: {address: 0x20000000, size: 20 KiB}\ninterrupts: {timer0: 8}\n"
+    "pins: {led0: {register: 0x40028000, bit: 0, access: write}}\n";
+const std::string kFit = "tasks: {source: {}, sink: {}}\n";
+
+struct Case {
+  std::string text = kFit;
+  std::string target{};  ///< added to kTarget
+  const RecordedProfile* profile = nullptr;
+};
+
+Configuration verified(const std::string& text) {
+  Verdict verdict = verify(read_description("version: 1\nsubsystem: s\n" + text, "s.yaml"), library(), Overload::kTold);
+  EXPECT_TRUE(verdict.configuration) << verdict.report.text();
+  return *verdict.configuration;
+}
+
+BakeResult baked(const Case& of) {
+  const Configuration configuration = verified(of.text);
+  const ReadTarget target = read_target(kTarget + of.target, "t.yaml", {});
+  EXPECT_TRUE(target.target) << target.report.text();
+  return bake({.configuration = configuration,
+               .target = *target.target,
+               .target_file = "t.yaml",
+               .library = library(),
+               .profile = of.profile,
+               .acts = {}});
+}
+
+/// All faults, of the description first; "" if files were made.
+std::string refusal(const Case& of) {
+  const BakeResult result = baked(of);
+  const std::string text = result.description.text() + result.target.text();
+  EXPECT_EQ(result.is_baked(), text.empty()) << text;
+  return text;
+}
+
+TEST(Bake, GivesTheSameBytesTwice) {
+  const BakeResult one = baked({}), other = baked({});
+  ASSERT_TRUE(one.is_baked());
+  ASSERT_EQ(one.files.size(), other.files.size());
+  for (std::size_t i = 0; i < one.files.size(); ++i) {
+    EXPECT_EQ(one.files[i].name, other.files[i].name);
+    EXPECT_EQ(one.files[i].text, other.files[i].text);
+    EXPECT_EQ(one.files[i].text.find("s.yaml"), std::string::npos) << "a path";
+  }
+  EXPECT_EQ(one.files[0].text, "sink\nsource\n");
+  EXPECT_EQ(one.files[1].text, "-mcpu=cortex-m3 -mthumb\n");
+}
+
+TEST(Bake, NamesTheNearestRateOfWholeTicks) {
+  EXPECT_EQ(refusal({.text = "tasks: {source: {rate: 300 Hz, offset: 1.5 ms}, sink: {}}\n"}),
+            "s.yaml:3:25: error: the period of task 'source' is 3.333 ms, which is no multiple of the tick of 1 ms "
+            "[time-range]\n  write 'rate: 333.333333 Hz', a period of 3 ms\n"
+            "s.yaml:3:41: error: the offset of task 'source' is 1.5 ms, which is no multiple of the tick of 1 ms "
+            "[time-range]\n  write 'offset: 2 ms', or 'tick: 500 us' in the target\n");
+}
+
+TEST(Bake, RefusesADeadlineOfBrokenTicks) {
+  EXPECT_EQ(refusal({.text = "tasks: {source: {deadline: 2.25 ms}, sink: {}}\n"}),
+            "s.yaml:3:28: error: the deadline of task 'source' is 2.25 ms, which is no multiple of the tick of 1 ms "
+            "[time-range]\n  write 'deadline: 2 ms', or 'tick: 250 us' in the target\n");
+}
+
+TEST(Bake, RefusesWhatNeedsMoreThanOneLoop) {
+  const std::string text = refusal(
+      {.text = "rtpus: {a: {cpu: 0, executor: preemptive, policy: llf}, b: {cpu: 1, policy: muf-laxity}}\n"
+               "tasks:\n  source: {rtpu: a, stack: 64 KiB, on_miss: demote}\n  sink: {rtpu: b, isolation: process}\n"
+               "  spare: {component: source, standby_for: source, rtpu: b, on_overrun: demote}\n"});
+  for (const char* each :
+       {"an image cannot have 2 rtpus; an image has 1 [not-built]\n  put every task on 'a'",
+        "an image cannot have the executor 'preemptive' of rtpu 'a' [not-built]\n  write 'executor: executive'",
+        "an image cannot have the policy 'llf' of rtpu 'a' [not-built]\n  write 'policy: rm', 'edf' or 'muf'",
+        "an image cannot have the policy 'muf-laxity' of rtpu 'b'",
+        "an image cannot have 'stack' of task 'source' [not-built]\n  write 'stack' in the target",
+        "an image cannot have 'on_miss: demote' of task 'source'",
+        "an image cannot have 'on_overrun: demote' of task 'spare'",
+        "an image cannot have 'isolation: process' of task 'sink'",
+        "an image cannot have 'standby_for' of task 'spare'"})
+    EXPECT_NE(text.find(each), std::string::npos) << each << "\nnot in\n" << text;
+}
+
+TEST(Bake, RefusesAServer) {
+  EXPECT_EQ(refusal({.text = "rtpus: {a: {cpu: 0, executor: preemptive}}\n"
+                             "tasks: {w: {component: waiter, "
+                             "server: {kind: sporadic, capacity: 1 ms, period: 10 ms}}}\n",
+                     .target = "events: {w: timer0}\n"}),
+            "s.yaml:3:31: error: an image cannot have the executor 'preemptive' of rtpu 'a' [not-built]\n"
+            "  write 'executor: executive': one loop runs all jobs, each to its end\n"
+            "s.yaml:4:32: error: an image cannot have 'server' of task 'w' [not-built]\n"
+            "  leave it out: without a server the task looks for an event at its rate\n");
+}
+
+TEST(Bake, RefusesBackgroundWork) {
+  EXPECT_EQ(refusal({.text = "tasks: {source: {}, writer: {}}\n"}),
+            "s.yaml:3:21: error: an image cannot have the component 'writer' of task 'writer': its background work "
+            "needs a thread of Linux [not-built]\n  use a component without 'background: true'\n");
+}
+
+TEST(Bake, RefusesAnEventSourceWithoutAnInterrupt) {
+  EXPECT_EQ(refusal({.text = "tasks: {waiter: {}, sink: {}}\n"}),
+            "s.yaml:3:9: error: the events of task 'waiter' come from a descriptor of Linux, and the target names no "
+            "interrupt for them [not-built]\n  write 'events: {waiter: INTERRUPT}' in the target\n");
+  EXPECT_EQ(refusal({.text = "tasks: {waiter: {}, sink: {}}\n", .target = "events: {waiter: timer0}\n"}), "");
+}
+
+TEST(Bake, RefusesAResourceWithoutATextInTheTarget) {
+  EXPECT_EQ(refusal({.text = "tasks: {device: {resources: {tty: /dev/ttyS0}}, sink: {}}\n"}),
+            "s.yaml:3:9: error: resource 'tty' of task 'device' has no text in the target 't' [resource-missing]\n"
+            "  write 'resources: {device: {tty: TEXT}}' in the target\n");
+}
+
+TEST(Bake, PutsTheTextOfTheTargetIntoTheTables) {
+  const BakeResult result = baked({.text = "tasks: {device: {resources: {tty: /dev/ttyS0}}, sink: {}}\n",
+                                   .target = "resources: {device: {tty: AB}}\n"});
+  ASSERT_TRUE(result.is_baked());
+  EXPECT_NE(result.files.back().text.find("{0x41_b, 0x42_b,}"), std::string::npos) << result.files.back().text;
+}
+
+TEST(Bake, RefusesUnknownLinesOfTheTarget) {
+  EXPECT_EQ(refusal({.text = "tasks: {key: {resources: {pin: x}}, sink: {}}\n",
+                     .target = "resources: {key: {pin: led1}, kee: {pin: a}, sink: {tty: a}}\n"
+                               "events: {sink: timer0}\n"}),
+            "t.yaml:9:24: error: the target has no pin 'led1' [word-unknown]\n  did you mean 'led0'?\n"
+            "t.yaml:9:31: error: the description has no task 'kee' [word-unknown]\n  did you mean 'key'?\n"
+            "t.yaml:9:53: error: task 'sink' has no resource port 'tty' [word-unknown]\n  its resource ports: none\n"
+            "t.yaml:10:10: error: task 'sink' takes no events: its component 'sink' has no method sync [port-kind]\n"
+            "  take the line out of 'events'\n");
+}
+
+TEST(Bake, RefusesAWrongNumberOfResourceTexts) {
+  EXPECT_NE(refusal({.text = "tasks: {device: {resources: {tty: a}}, sink: {}}\n",
+                     .target = "resources: {device: {tty: [a, b]}}\n"})
+                .find("resource 'tty' of task 'device' has 2 texts; the description has 1 instance"),
+            std::string::npos);
+}
+
+TEST(Bake, RefusesValuesThatExceedTheRam) {
+  EXPECT_EQ(refusal({.text = "tasks: {wide: {}}\n"}),
+            "t.yaml:6:6: error: stacks, records, ports and values of the tasks need at least 34.6 KiB; 'ram' has 20.0 "
+            "KiB [table-limit]\n  use fewer tasks and smaller lists, smaller stacks, or a chip with more RAM\n");
+}
+
+RecordedProfile profile_of(std::int64_t source_us, std::int64_t sink_us) {
+  const auto task = [](const char* name, std::int64_t us) {
+    return RecordedTask{.task = name, .samples = 1000, .worst = microseconds(us), .mean = microseconds(us),
+                        .response = microseconds(us), .jitter = {}};
+  };
+  return {"s", {task("source", source_us), task("sink", sink_us)}};
+}
+
+TEST(Bake, JudgesDeadlinesByTheProfileAndNotByBudgets) {
+  const RecordedProfile fits = profile_of(300, 300);
+  EXPECT_EQ(refusal({.text = "tasks: {source: {rate: 1 kHz, budget: 5 ms}, sink: {rate: 1 kHz}}\n", .profile = &fits}),
+            "");
+}
+
+TEST(Bake, RefusesADeadlineBehindAJobThatCannotBePreempted) {
+  const RecordedProfile late = profile_of(300, 900);
+  EXPECT_EQ(refusal({.text = "tasks: {source: {rate: 1 kHz}, sink: {rate: 10 Hz}}\n", .profile = &late}),
+            "s.yaml:3:9: error: by the profile task 'source' takes up to 300 us of every 1 ms, waits up to 900 us for "
+            "a running job: its deadline of 1 ms is not guaranteed [unschedulable]\n"
+            "  all keep their deadlines with times at most 0.833 times as long as stated\n");
+}
+
+TEST(Bake, CountsTheShellAsBlocking) {
+  const RecordedProfile tight = profile_of(450, 450);
+  const std::string text = "tasks: {source: {rate: 1 kHz}, sink: {rate: 1 kHz}}\n";
+  EXPECT_EQ(refusal({.text = text, .profile = &tight}), "");
+  EXPECT_NE(refusal({.text = text, .target = "uart: {address: 64, interrupt: timer0, baud: 9600}\n", .profile = &tight})
+                .find("waits up to 160 us for a running job"),
+            std::string::npos);
+}
+
+TEST(Bake, RefusesATaskThatTheProfileLacks) {
+  RecordedProfile profile = profile_of(1, 1);
+  profile.tasks.pop_back();
+  EXPECT_EQ(refusal({.profile = &profile}),
+            "s.yaml:3:21: error: the profile has no measured cycle of task 'sink', and a budget of the description "
+            "does not count on the target [unschedulable]\n"
+            "  record the profile on the target with every task ON, or bake without --profile\n");
+}
+
+TEST(Bake, LeavesBudgetsOutWithoutAProfile) {
+  const BakeResult result = baked({.text = "tasks: {source: {budget: 2 ms, on_overrun: hold}, sink: {}}\n"});
+  ASSERT_TRUE(result.is_baked());
+  EXPECT_EQ(result.files.back().text.find(".budget"), std::string::npos);
+  ASSERT_EQ(result.notes.size(), 2u);
+  EXPECT_NE(result.notes[1].find("left out: 'source'"), std::string::npos) << result.notes[1];
+}
+
+TEST(Bake, TurnsOnTheMechanismsThatAreUsed) {
+  const auto used = [](const Case& of) {
+    std::set<std::string> names;
+    for (const Mechanism& each : baked(of).mechanisms)
+      if (each.is_used) names.emplace(each.name);
+    return names;
+  };
+  EXPECT_EQ(used({}), (std::set<std::string>{"kSignals"}));
+  EXPECT_EQ(used({.text = "tasks: {source: {on_fault: {restart: 2, within: 1 s, then: error}}, sink: {on_miss: hold}}\n"
+                          "configurations: {all: [source, sink], one: [source]}\nstart: all\n",
+                  .target = "watchdog: 1 s\nuart: {address: 64, interrupt: timer0, baud: 9600}\n"}),
+            (std::set<std::string>{"kSignals", "kSwitch", "kSlowSwitch", "kRestart", "kReactions", "kShell",
+                                   "kWatchdog"}));
+}
+
+}  // namespace chimera::bake::bake_test

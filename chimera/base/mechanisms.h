@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mechanisms that an image has. A host has all of them. The image of a microcontroller has those that its
+// application uses: the compiler is given -DCHIMERA_MECHANISMS='"mechanisms.h"', a header that `chimera bake` wrote with
+// the same constants. Code asks with `if constexpr`; a linker that drops unused sections then leaves the rest out.
+#pragma once
+
+#ifdef CHIMERA_MECHANISMS
+#include CHIMERA_MECHANISMS
+#else
+namespace chimera::mechanisms {
+
+inline constexpr bool kPeers = true;       ///< other contexts: peers, shared memory, agreements among rtpus
+inline constexpr bool kService = true;     ///< a service thread runs init and kill
+inline constexpr bool kPreemptive = true;  ///< jobs preempt each other, each in a thread of its own
+inline constexpr bool kServers = true;     ///< servers of aperiodic tasks
+inline constexpr bool kStandbys = true;    ///< tasks that take over from others
+inline constexpr bool kRestart = true;     ///< the reaction `restart` of on_fault
+inline constexpr bool kTap = true;         ///< the trace
+inline constexpr bool kBlame = true;       ///< the cause of a missed deadline
+inline constexpr bool kSwitch = true;      ///< switches among configurations
+inline constexpr bool kSlowSwitch = true;  ///< switches in which one task goes after the other
+inline constexpr bool kConstants = true;   ///< constants that tasks produce
+inline constexpr bool kOperators = true;   ///< variables that an operator sets
+inline constexpr bool kEvents = true;      ///< aperiodic tasks
+inline constexpr bool kSafety = true;      ///< safety ports
+inline constexpr bool kSignals = true;     ///< signals and requests that tasks send
+inline constexpr bool kReactions = true;   ///< on_miss or on_overrun other than continue, tolerate, max_consecutive
+inline constexpr bool kBudgets = true;     ///< budgets of execution time
+inline constexpr bool kDigest = true;      ///< hashes of what is published
+inline constexpr bool kShell = true;       ///< commands that come over a serial line
+inline constexpr bool kWatchdog = true;    ///< a watchdog that a healthy context strokes
+
+}  // namespace chimera::mechanisms
+#endif

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds the target, judges the description for it, and writes the files of the image.
+#include "chimera/cli/batch/bake.h"
+
+#include <filesystem>
+#include <optional>
+
+#include "chimera/bake/bake.h"
+#include "chimera/base/hosted/ordinary_file.h"
+#include "chimera/cli/batch/bake_text.h"
+#include "chimera/cli/files/file_refusal.h"
+#include "chimera/cli/files/output_file.h"
+#include "chimera/cli/run/run.h"
+#include "chimera/cli/run/run_plan.h"
+#include "chimera/description/yaml_reader.h"
+#include "chimera/verify/verify.h"
+
+namespace chimera::cli {
+namespace {
+
+bool is_path(const std::string& target) { return target.ends_with(".yaml"); }
+
+std::string path_of(const std::string& name, const Workplace& workplace) {
+  return workplace.documents + "/firmware/targets/" + name + ".yaml";
+}
+
+/// The target's text is read before it is judged; a missing file is a refusal of its own.
+Result<bake::ReadTarget> target_of(const BakeRequest& request, const Workplace& workplace, std::string& file) {
+  file = is_path(request.target) ? request.target : path_of(request.target, workplace);
+  const auto text = read_ordinary(file, kMaxTextBytes + 1);
+  if (!text) {
+    const std::string of = "the target '" + request.target + "' cannot be read: ";
+    return Error{text.error().code, {of + text.error().message.c_str()}, {file}};
+  }
+  const auto find = [&workplace](const std::string& name, std::string& at) -> std::optional<std::string> {
+    at = path_of(name, workplace);
+    auto like = read_ordinary(at, kMaxTextBytes + 1);
+    return like ? std::optional(*std::move(like)) : std::nullopt;
+  };
+  return bake::read_target(*text, file, find);
+}
+
+/// Warnings about budgets are left out: they belong to the machine of the description.
+Report without_budgets(const Report& report) {
+  Report kept(report.file(), report.keys());
+  for (const Fault& fault : report.faults())
+    if (fault.rule != "utilisation") kept.add(fault);
+  return kept;
+}
+
+CommandResult refuse(const Report& description, const Report& target, bool json) {
+  if (!json) return {"", description.text() + target.text(), kRefused};
+  Json all = Json::object();
+  all["baked"] = false;
+  all["description_faults"] = Json::parse(description.json());
+  all["target_faults"] = Json::parse(target.json());
+  return {all.dump(Json::Style::kDense) + "\n", "", kRefused};
+}
+
+Result<void> write(const std::string& folder, std::span<const bake::BakedFile> files) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return Error{ErrorCode::kSystem, {"cannot be made: " + error.message()}, {folder}};
+  for (const bake::BakedFile& file : files)
+    if (auto written = write_whole(folder + "/" + file.name, file.text); !written) return written;
+  return {};
+}
+
+CommandResult report(const BakeRequest& request, const RunPlan& plan, const bake::Target& target,
+                     const bake::BakeResult& result) {
+  CommandResult output;
+  output.code = result.is_baked() ? kOk : kRefused;
+  if (request.json) {
+    output.out = bake_json(plan.configuration, target, result).dump(Json::Style::kDense) + "\n";
+    return output;
+  }
+  output.err = result.description.text() + result.target.text();
+  for (const std::string& note : result.notes) output.err += "note: " + note + "\n";
+  if (result.is_baked())
+    output.out = plan.configuration.subsystem() + " for " + target.name + ": baked into " + request.out + "\n";
+  output.out += bake_text(plan.configuration, target, result);
+  return output;
+}
+
+/// Both files are legal: what remains is whether they suit each other.
+CommandResult bake_for(const BakeRequest& request, const bake::Target& target, const std::string& target_file,
+                       RunPlan plan) {
+  if (!request.settings.empty()) {
+    auto set = with_settings(plan.configuration, plan.library, request.settings, Overload::kTold);
+    if (!set) return file_refusal(set.error(), request.json);
+    plan.configuration = *std::move(set);
+  }
+  RunRequest run;
+  run.file = request.file;
+  run.at = request.at;
+  run.duration = request.duration;
+  if (auto judged = judge_acts(run, plan); !judged) return file_refusal(judged.error(), request.json, kUsage);
+  std::optional<RecordedProfile> profile;
+  if (!request.profile.empty()) {
+    auto read = read_recorded_profile(request.profile);
+    if (!read) return file_refusal(read.error(), request.json);
+    profile = *std::move(read);
+  }
+  const bake::BakeResult result = bake::bake({.configuration = plan.configuration,
+                                              .target = target,
+                                              .target_file = target_file,
+                                              .library = plan.library,
+                                              .profile = profile ? &*profile : nullptr,
+                                              .acts = plan.acts,
+                                              .duration = request.duration});
+  if (auto written = write(request.out, result.files); result.is_baked() && !written)
+    return file_refusal(written.error(), request.json);
+  return report(request, plan, target, result);
+}
+
+}  // namespace
+
+CommandResult bake(const BakeRequest& request, const Workplace& workplace) {
+  auto library = workplace.library(request.file);
+  if (!library) return file_refusal(library.error(), request.json);
+  std::string target_file;
+  const auto target = target_of(request, workplace, target_file);
+  if (!target) return file_refusal(target.error(), request.json);
+  ReadDescription reading = read_description_file(request.file);
+  const Verdict verdict = verify(reading, *library, Overload::kTold);
+  const Report description = without_budgets(verdict.report);
+  if (!verdict.configuration || !target->target) return refuse(description, target->report, request.json);
+  CommandResult output = bake_for(request, *target->target, target_file,
+                                  RunPlan{*std::move(library), std::move(reading.text), *verdict.configuration,
+                                          {}, {}, {}, {}, {}, {}});
+  if (!request.json) output.err = description.text() + output.err;
+  return output;
+}
+
+}  // namespace chimera::cli
