@@ -197,8 +197,8 @@ RecordedProfile profile_of(std::int64_t source_us, std::int64_t sink_us) {
 
 TEST(Bake, JudgesDeadlinesByTheProfileAndNotByBudgets) {
   const RecordedProfile fits = profile_of(300, 300);
-  EXPECT_EQ(refusal({.text = "tasks: {source: {rate: 1 kHz, budget: 900 us}, sink: {rate: 1 kHz, budget: 900 us}}\n", .profile = &fits}),
-            "");
+  const std::string text = "tasks: {source: {rate: 1 kHz, budget: 900 us}, sink: {rate: 1 kHz, budget: 900 us}}\n";
+  EXPECT_EQ(refusal({.text = text, .profile = &fits}), "");
 }
 
 TEST(Bake, RefusesADeadlineBehindAJobThatCannotBePreempted) {
