@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <limits>
 
 namespace chimera::bake::source_text_test {
@@ -13,7 +14,7 @@ TEST(Literal, EscapesWhatATextOfTheCompilerCannotHold) {
 
 TEST(Literal, KeepsEveryBitOfANumber) {
   for (const double value : {0.1, 1e-300, 5.0, -1e22, std::numeric_limits<double>::denorm_min()})
-    EXPECT_EQ(std::stod(literal(value)), value) << literal(value);
+    EXPECT_EQ(std::strtod(literal(value).c_str(), nullptr), value) << literal(value);
   EXPECT_EQ(literal(5.0), "5.0");
   EXPECT_EQ(literal(-std::numeric_limits<double>::infinity()), "-__builtin_inf()");
 }

@@ -242,7 +242,7 @@ class WholeTarget {
 
   void tick() {
     const std::int64_t ns = target_.tick.value.count;
-    const bool is_whole = ns > 0 && ns <= seconds(60).count && ns * target_.clock_hz % 1'000'000'000 == 0;
+    const bool is_whole = ns > 0 && ns <= INT64_MAX / target_.clock_hz && ns * target_.clock_hz % 1'000'000'000 == 0;
     const std::int64_t cycles = is_whole ? ns * target_.clock_hz / 1'000'000'000 : 0;
     if (cycles > 0 && cycles <= kMostTickCycles) return;
     report_.add({.rule = "time-range",

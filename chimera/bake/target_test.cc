@@ -103,7 +103,7 @@ TEST(Target, RefusesATickBeyondTheTimer) {
 
 TEST(Target, RefusesAnInterruptThatIsNotListed) {
   EXPECT_EQ(said(replaced("interrupt: uart0_rx", "interrupt: uart0_rs")),
-            "boards/t.yaml:8:42: error: 'interrupts' has no 'uart0_rs'; it has 'uart0_rx', 'timer0' [word-unknown]\n"
+            "boards/t.yaml:8:40: error: 'interrupts' has no 'uart0_rs'; it has 'uart0_rx', 'timer0' [word-unknown]\n"
             "  did you mean 'uart0_rx'?\n");
 }
 
