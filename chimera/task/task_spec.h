@@ -48,7 +48,7 @@ struct PortSpec {
   bool intermittent = false;  ///< in-var: a set of tasks may lack a producer
   /// Without the index of an instance. Only tables of an image need it, whose components do not declare their ports; an
   /// ApplicationImage does not carry it.
-  std::string_view name;
+  std::string_view name = {};
 
   std::uint32_t max_count() const noexcept { return extent[0].max * extent[1].max; }
   std::uint32_t max_bytes() const noexcept { return max_count() * element_bytes; }

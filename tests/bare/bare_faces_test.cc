@@ -204,7 +204,7 @@ TEST(BareFaces, PublishTheBytesAndHaveTheFaultsOfTheLoadedOnes) {
   const Task& beyond = (*second)->tasks()[0];
   EXPECT_EQ(beyond.faults.count, 7u);
   EXPECT_STREQ(beyond.faults.last.text, "index 31 of a port that has 3");
-  EXPECT_EQ(beyond.state, State::kOn);
+  EXPECT_EQ(beyond.state, chimera::State::kOn);
 }
 
 /// The refusal of a specification that `change` makes wrong.
