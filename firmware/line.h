@@ -44,7 +44,7 @@ class Line {
   std::size_t size_ = 0;
 };
 
-/// Sends the line, or counts it as lost: SerialLine::send. Context: cycle; wait-free.
+/// Sends the line, or counts it as lost: BareUart::send. Context: cycle; wait-free.
 inline void send(Line& line) noexcept { uart().send(line.finish()); }
 
 }  // namespace chimera::firmware

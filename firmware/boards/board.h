@@ -7,13 +7,13 @@
 #include <cstdint>
 
 #include "chimera/platform/bare/bare_clock.h"
-#include "chimera/platform/bare/serial_line.h"
+#include "chimera/platform/bare/bare_uart.h"
 #include CHIMERA_BOARD
 
 namespace chimera::firmware {
 
 inline constexpr std::size_t kSendBytes = 256, kReceiveBytes = 128;
-using BoardUart = bare::SerialLine<UartPort, kSendBytes, kReceiveBytes>;
+using BoardUart = bare::BareUart<UartPort, kSendBytes, kReceiveBytes>;
 
 /// Starts the clock and the serial line. Context: setup.
 void begin_board() noexcept;

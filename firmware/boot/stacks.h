@@ -17,9 +17,9 @@ struct StackUse {
 /// Context: setup, from a function with a small frame.
 void guard_stacks() noexcept;
 
-/// Of the program. Context: any; O(size).
+/// Use of the stack of the program. Context: any; O(size).
 StackUse program_stack() noexcept;
-/// Of interrupts. Context: any; O(size).
+/// Use of the stack of interrupts. Context: any; O(size).
 StackUse handler_stack() noexcept;
 /// The program is at the guard of its stack, or beyond. Context: exception; wait-free.
 bool is_program_stack_overrun() noexcept;

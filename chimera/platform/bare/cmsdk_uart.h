@@ -8,7 +8,7 @@
 
 namespace chimera::bare {
 
-/// The port of a SerialLine. Context of everything: any; wait-free.
+/// The port of a BareUart. Context of everything: any; wait-free.
 class CmsdkUart {
  public:
   void begin(std::uintptr_t address, std::uint32_t clock_hz, std::uint32_t baud) noexcept {

@@ -31,7 +31,9 @@ inline void wait_for_interrupt() noexcept { asm volatile("dsb\n\twfi" ::: "memor
 /// Interrupts are off while an object of this type lives; nested ones are allowed. Context: any; wait-free.
 class NoInterrupts {
  public:
-  [[gnu::always_inline]] NoInterrupts() noexcept { asm volatile("mrs %0, primask\n\tcpsid i" : "=r"(were_off_)::"memory"); }
+  [[gnu::always_inline]] NoInterrupts() noexcept {
+    asm volatile("mrs %0, primask\n\tcpsid i" : "=r"(were_off_)::"memory");
+  }
   [[gnu::always_inline]] ~NoInterrupts() {
     if (were_off_ == 0) asm volatile("cpsie i" ::: "memory");
   }

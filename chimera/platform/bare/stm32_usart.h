@@ -8,7 +8,7 @@
 
 namespace chimera::bare {
 
-/// The port of a SerialLine. Context of everything: any; wait-free.
+/// The port of a BareUart. Context of everything: any; wait-free.
 class Stm32Usart {
  public:
   /// The clock of the peripheral must be on.

@@ -13,7 +13,7 @@ namespace chimera::bare {
 
 /// `Port` is CmsdkUart or Stm32Usart.
 template <class Port, std::size_t kSendBytes, std::size_t kReceiveBytes>
-class SerialLine {
+class BareUart {
  public:
   /// Context: setup. The interrupt of the port is enabled by the caller.
   void begin(std::uintptr_t address, std::uint32_t clock_hz, std::uint32_t baud) noexcept {
