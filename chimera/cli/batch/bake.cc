@@ -18,7 +18,7 @@
 namespace chimera::cli {
 namespace {
 
-bool is_path(const std::string& target) { return target.ends_with(".yaml"); }
+bool is_target_file(const std::string& target) { return target.ends_with(".yaml"); }
 
 std::string path_of(const std::string& name, const Workplace& workplace) {
   return workplace.documents + "/firmware/targets/" + name + ".yaml";
@@ -26,7 +26,7 @@ std::string path_of(const std::string& name, const Workplace& workplace) {
 
 /// The target's text is read before it is judged; a missing file is a refusal of its own.
 Result<bake::ReadTarget> target_of(const BakeRequest& request, const Workplace& workplace, std::string& file) {
-  file = is_path(request.target) ? request.target : path_of(request.target, workplace);
+  file = is_target_file(request.target) ? request.target : path_of(request.target, workplace);
   const auto text = read_ordinary(file, kMaxTextBytes + 1);
   if (!text) {
     const std::string of = "the target '" + request.target + "' cannot be read: ";
@@ -57,7 +57,7 @@ CommandResult refuse(const Report& description, const Report& target, bool json)
   return {all.dump(Json::Style::kDense) + "\n", "", kRefused};
 }
 
-Result<void> write(const std::string& folder, std::span<const bake::BakedFile> files) {
+Result<void> write_files(const std::string& folder, std::span<const bake::BakedFile> files) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return Error{ErrorCode::kSystem, {"cannot be made: " + error.message()}, {folder}};
@@ -108,8 +108,9 @@ CommandResult bake_for(const BakeRequest& request, const bake::Target& target, c
                                               .profile = profile ? &*profile : nullptr,
                                               .acts = plan.acts,
                                               .duration = request.duration});
-  if (auto written = write(request.out, result.files); result.is_baked() && !written)
-    return file_refusal(written.error(), request.json);
+  if (result.is_baked())
+    if (auto written = write_files(request.out, result.files); !written)
+      return file_refusal(written.error(), request.json);
   return report(request, plan, target, result);
 }
 
