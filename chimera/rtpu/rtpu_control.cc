@@ -154,6 +154,7 @@ void RtpuControl::report(const Post& signal, State before, State after, Refusal 
     if (!signal.task.is_valid() || !signal.from.is_valid()) return;  // no sender waits for the report
     post.kind = PostKind::kEvent;
     post.happening = accepted ? EventKind::kSignalled : EventKind::kRefused;
+    if (why == Refusal::kSwitch) post.detail = UINT32_MAX;  // the target is not known here
   }
   this->post(post);
 }
@@ -177,6 +178,7 @@ void RtpuControl::told(const SignalReport& done, Nanoseconds now) noexcept {
   post.kind = PostKind::kEvent;
   post.happening = done.is_accepted ? EventKind::kSignalled : EventKind::kRefused;
   post.why = static_cast<std::uint8_t>(done.why);
+  if (done.why == Refusal::kSwitch) post.detail = done.set;
   post.before = done.before;
   post.after = done.after;
   this->post(post);

@@ -15,9 +15,10 @@ enum class Refusal : std::uint8_t {
   kFault,       ///< `on` or the constructor said no; the text is in the task's fault record
   kNotYet,      ///< `on` answered not yet: it is to be asked again; the task is OFF
   kRival,       ///< of spawn: another task that is created has its resource (runtime/plan/rivals.h)
-  kKeptOff      ///< of on, sent by a task: an operator turned the task OFF
+  kKeptOff,     ///< of on, sent by a task: an operator turned the task OFF
+  kSwitch       ///< of on and spawn: a switch is under way (runtime/switch/switching.h)
 };
-inline constexpr Refusal kLastRefusal = Refusal::kKeptOff;
+inline constexpr Refusal kLastRefusal = Refusal::kSwitch;
 /// A task whose `on` answers not yet is asked again for at most this time: a device may need seconds to start.
 inline constexpr Nanoseconds kReadyLimit = seconds(10);
 

@@ -117,6 +117,7 @@ SignalRefusal Subsystem::Parts::refusal_of(const Reported& report) const {
     case Refusal::kFault: return {RefusalKind::kFault, report.text.empty() ? "a method failed" : report.text, {}};
     case Refusal::kNotYet: return {RefusalKind::kNotYet, "on: it is not ready yet", {}};
     case Refusal::kRival: return {RefusalKind::kResource, "another task that is created has its resource", {}};
+    case Refusal::kSwitch: return {RefusalKind::kOther, "a switch is under way", {}};
     case Refusal::kKeptOff:  // the step function judges it before it sends `on`
     case Refusal::kNone: break;
   }

@@ -3,6 +3,7 @@
 // every executor of one context, and over several rtpus in virtual time, where the value comes from the other rtpu.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -139,16 +140,19 @@ class SafeWhen : public ::testing::TestWithParam<How> {
   }
   SwitchReceipt go_to(std::uint32_t to, Nanoseconds duration, Nanoseconds at) {
     testing::TestApplication& app = application_->app;
-    const ScriptAct acts[] = {switch_to(to, at)};
+    std::vector<ScriptAct> acts = signals_;
+    acts.push_back(switch_to(to, at));
+    std::ranges::stable_sort(acts, {}, &ScriptAct::at);
     if (GetParam() >= How::kTwoRtpus) return go_on_two(app, acts, duration);
     auto set = *HeapTaskSet::create(app.spec, app.components);
     Runner runner(*set, static_cast<Kind>(GetParam()), Policy::kEdf, acts);
     EXPECT_TRUE(runner.start());
     EXPECT_EQ(runner.run(duration), RunEnd::kTime);
+    look(set->tasks()[kAuto.index], runner.refused());
     runner.shut_down();
     return runner.receipts()[0];
   }
-  static SwitchReceipt go_on_two(testing::TestApplication& app, std::span<const ScriptAct> acts, Nanoseconds duration) {
+  SwitchReceipt go_on_two(testing::TestApplication& app, std::span<const ScriptAct> acts, Nanoseconds duration) {
     auto peers = *VirtualPeers::create(app.spec);
     std::vector<std::unique_ptr<HeapTaskSet>> sets;
     for (std::uint32_t r = 0; r < 2; ++r) {
@@ -165,10 +169,19 @@ class SafeWhen : public ::testing::TestWithParam<How> {
     VirtualRtpus run(*peers, options, how);
     EXPECT_TRUE(run.start());
     EXPECT_EQ(run.run(duration), RunEnd::kTime);
+    look(sets[0]->tasks()[kAuto.index], run.refused());
     run.shut_down();
     return run.receipts().all()[0];
   }
+  void look(const Task& automatic, std::span<const RefusedSignal> refused) {
+    state_of_auto_ = automatic.state;
+    refused_.assign(refused.begin(), refused.end());
+  }
   std::unique_ptr<Application> application_;
+  std::vector<ScriptAct> signals_;
+  // At the end of the run.
+  chimera::State state_of_auto_ = chimera::State::kNotCreated;
+  std::vector<RefusedSignal> refused_;
 };
 
 INSTANTIATE_TEST_SUITE_P(All, SafeWhen,
@@ -181,6 +194,17 @@ TEST_P(SafeWhen, HoldsArmingUpUntilItIsTrue) {
   EXPECT_EQ(receipt.end, SwitchEnd::kDone);
   EXPECT_GE(receipt.armed, milliseconds(6));  // the cycle of 6 ms publishes 4
   EXPECT_LE(receipt.armed, milliseconds(7));
+}
+
+TEST_P(SafeWhen, KeepsAnotherProducerOutWhileItIsWaitedFor) {
+  signals_ = {{milliseconds(1), ScriptAct::Kind::kSignal, Signal::kOff, kAuto},
+              {milliseconds(4), ScriptAct::Kind::kSignal, Signal::kOn, kAuto}};
+  const SwitchReceipt receipt = go({"speed", 0, Relation::kLess, 4.5}, milliseconds(20));
+  EXPECT_EQ(receipt.end, SwitchEnd::kDone);
+  EXPECT_EQ(state_of_auto_, chimera::State::kOff);
+  ASSERT_EQ(refused_.size(), 1u);
+  EXPECT_EQ(refused_[0].why, Refusal::kSwitch);
+  EXPECT_EQ(refused_[0].set, kToHand) << "it names the switch";
 }
 
 TEST_P(SafeWhen, IsNotWaitedForWhereItHolds) {

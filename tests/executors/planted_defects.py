@@ -26,6 +26,8 @@ LIMIT = 300  # seconds for one test program; one that hangs has caught the defec
 
 # The defect in words, the file, its text, and the text with the defect.
 DEFECTS = (
+    ("a signal turns a task ON that takes no part in a switch", "cycle/boundary_signals.cc",
+     "if (order && keeps_out(set_, *order, tasks, signal)) {", "if (false && order) {"),
     ("each event makes an active server active anew", "job/sporadic_job.cc",
      "if (!is_active_) server_.activate(now);", "server_.activate(now);"),
     ("a rest below the granularity of the clock is still capacity", "job/sporadic_job.cc", "left < smallest_", "false"),

@@ -166,6 +166,9 @@ class Plant:
         done = [(each[time], kind, each["tasks"]) for each in receipts if each["end"] == "done"
                 for time, kind in (("armed_ns", "armed"), ("at_ns", "done")) if each[time] is not None]
         self.events = sorted(case.acts + done, key=lambda event: event[0])
+        # A switch keeps `on` out until its change, or its end.
+        self.switches = [(each["asked_ns"], each["at_ns"] if each["end"] == "done" else each["ended_ns"])
+                         for each in receipts if each["end"] in ("done", "aborted")]
 
     def until(self, now):
         """Carries out what comes before the job at `now`."""
@@ -199,6 +202,8 @@ class Plant:
         self.name()
 
     def do_on(self, at, task):
+        if any(begin <= at < end for begin, end in self.switches):
+            return
         if task not in self.on and (task == "sequence" or self.level() is None):
             self.on.add(task)
             self.on_at = at if task == "sequence" else self.on_at

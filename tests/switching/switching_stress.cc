@@ -12,6 +12,7 @@ namespace {
 
 using chimera::switching_trial::Kind;
 using chimera::switching_trial::run_loop_trial;
+using chimera::switching_trial::run_on_trial;
 using chimera::switching_trial::run_trial;
 using chimera::switching_trial::run_virtual_trial;
 using chimera::switching_trial::Tally;
@@ -19,9 +20,10 @@ using chimera::switching_trial::Tally;
 constexpr std::uint32_t kSwitches = 40, kOfModel = 3;
 
 Tally run(std::uint64_t seed) {
-  switch (seed % 4) {
+  switch (seed % 5) {
     case 0: return run_virtual_trial(seed, kSwitches);
     case 1: return run_loop_trial(seed, kSwitches);
+    case 2: return run_on_trial(seed, kSwitches);
     default: return run_trial(seed, kSwitches);
   }
 }

@@ -46,5 +46,19 @@ TEST(SwitchingTrial, ExchangedTasksOfALoopReadNoOldValue) {
   EXPECT_GT(all.done, 300u);
 }
 
+TEST(SwitchingTrial, SignalsOfPersonsDuringSwitchesNeverTurnTwoProducersOn) {
+  Tally all;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const Tally one = run_on_trial(seed, 100);
+    ASSERT_EQ(one.failure, "") << "seed " << seed;
+    all.done += one.done;
+    all.aborted += one.aborted;
+    all.signals += one.signals;
+  }
+  EXPECT_GT(all.done, 300u);
+  EXPECT_GT(all.aborted, 10u);
+  EXPECT_GT(all.signals, 100u);
+}
+
 }  // namespace
 }  // namespace chimera::switching_trial

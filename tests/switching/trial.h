@@ -34,5 +34,7 @@ Tally run_trial(std::uint64_t seed, std::uint32_t n_switches, Kind kind = Kind::
 Tally run_virtual_trial(std::uint64_t seed, std::uint32_t n_switches);
 /// One trial of a random loop of tasks on one to three rtpus in virtual time.
 Tally run_loop_trial(std::uint64_t seed, std::uint32_t n_switches);
+/// One trial of persons who signal tasks during switches in virtual time. `signals`: those that a switch kept out.
+Tally run_on_trial(std::uint64_t seed, std::uint32_t n_acts);
 
 }  // namespace chimera::switching_trial

@@ -25,7 +25,8 @@
 namespace chimera::cli {
 namespace {
 
-std::string signal_line(const RefusedSignal& refused, const Task& task, Nanoseconds origin) {
+std::string signal_line(const RefusedSignal& refused, const Task& task, const ApplicationSpec& spec,
+                        Nanoseconds origin) {
   const std::string name(task.spec->name);
   std::string why = task.faults.last.text;
   if (refused.why == Refusal::kState) why = std::string("not legal in state ") + state_name(refused.state);
@@ -35,6 +36,7 @@ std::string signal_line(const RefusedSignal& refused, const Task& task, Nanoseco
   if (refused.why == Refusal::kNotYet) why = "it is not ready yet; ask again";
   if (refused.why == Refusal::kRival) why = "another task that is created has its resource";
   if (refused.why == Refusal::kKeptOff) why = "a task sent it, and an operator turned " + name + " OFF";
+  if (refused.why == Refusal::kSwitch) why = under_way_text(spec, refused.set);
   const std::string signal = is_ring ? "ring" : signal_name(refused.signal);
   return refused_line(refused.at - origin, signal + " " + name, why);
 }
@@ -52,7 +54,7 @@ std::vector<std::string> refused_lines(RunLoop& loop, std::span<const Task* cons
                                        const ApplicationSpec& spec) {
   std::vector<std::pair<Nanoseconds, std::string>> found;
   for (const RefusedSignal& refused : loop.refused())
-    found.emplace_back(refused.at, signal_line(refused, *tasks[refused.task.index], loop.origin()));
+    found.emplace_back(refused.at, signal_line(refused, *tasks[refused.task.index], spec, loop.origin()));
   for (const RefusedLists& refused : asked.refused())
     found.emplace_back(refused.at, lists_line(refused, spec, loop.origin()));
   std::ranges::stable_sort(found, {}, [](const auto& one) { return one.first; });

@@ -4,6 +4,7 @@
 
 #include "chimera/base/hosted/wording.h"
 #include "chimera/manager/state/cause.h"
+#include "chimera/runtime/hosted/refusal_text.h"
 #include "chimera/runtime/refusal.h"
 #include "chimera/text/time_text.h"
 
@@ -14,7 +15,7 @@ std::string sender(const ApplicationSpec& spec, const Post& post) {
   return post.from.index < spec.tasks.size() ? " sent by " + std::string(spec.tasks[post.from.index].name) : "";
 }
 
-std::string refusal(const Post& post, const std::string& fault) {
+std::string refusal(const ApplicationSpec& spec, const Post& post, const std::string& fault) {
   switch (static_cast<Refusal>(post.why)) {
     case Refusal::kState: return std::string("not legal in state ") + state_name(post.before);
     case Refusal::kIllegalSet:
@@ -23,6 +24,7 @@ std::string refusal(const Post& post, const std::string& fault) {
     case Refusal::kNotYet: return "it is not ready yet";
     case Refusal::kRival: return "another task that is created has its resource";
     case Refusal::kKeptOff: return "an operator turned it OFF";
+    case Refusal::kSwitch: return under_way_text(spec, static_cast<std::uint32_t>(post.detail));
     case Refusal::kNone: break;
   }
   return "another task of the list was refused";
@@ -94,7 +96,7 @@ std::string event_text(const ApplicationSpec& spec, const Post& post, const std:
     case EventKind::kNote:
       return fault;
     case EventKind::kRefused:
-      return std::string(signal_name(post.signal)) + sender(spec, post) + ": " + refusal(post, fault);
+      return std::string(signal_name(post.signal)) + sender(spec, post) + ": " + refusal(spec, post, fault);
     case EventKind::kSignalled:
       return signal_name(post.signal) + sender(spec, post);
     case EventKind::kFlag:

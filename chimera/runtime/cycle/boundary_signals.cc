@@ -99,7 +99,7 @@ void BoundarySignals::carry_out(Task& task, Signal signal, Nanoseconds now) noex
   SignalReport report{false, false, Refusal::kKeptOff, signal, task.id, task.state, task.state};
   if (is_kept_off) record(report, set_.flag().is_up(), now);
   else report = this->signal({&task.id, 1}, signal, now);
-  if (!report.is_accepted) (void)refused_.try_push({now, task.id, signal, report.why, report.before});
+  if (!report.is_accepted) (void)refused_.try_push({now, task.id, signal, report.why, report.before, report.set});
   if (guest_ != nullptr) guest_->told(report, now);
 }
 
@@ -112,7 +112,14 @@ void BoundarySignals::ring(Task& task, Nanoseconds now) noexcept {
 SignalReport BoundarySignals::signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept {
   const bool was_illegal = set_.flag().is_up();
   const bool was_warm = tasks.size() == 1 && set_.tasks()[tasks[0].index].is_warm();
-  const SignalReport report = set_.life().signal(tasks, signal, now);
+  SignalReport report{false, false, Refusal::kSwitch, signal, tasks[0]};
+  const std::optional<SwitchOrder> order = switching_.under_way();
+  if (order && keeps_out(set_, *order, tasks, signal)) {
+    report.before = report.after = set_.tasks()[tasks[0].index].shown_state();
+    report.set = order->after;
+  } else {
+    report = set_.life().signal(tasks, signal, now);
+  }
   if (was_warm && signal == Signal::kOn && report)
     tap_.record(TapKind::kState, now, tasks[0], static_cast<std::uint64_t>(State::kOn));
   record(report, was_illegal, now);

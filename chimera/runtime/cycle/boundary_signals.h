@@ -24,6 +24,7 @@ struct RefusedSignal {
   Signal signal = Signal::kOn;
   Refusal why = Refusal::kNone;
   State state = State::kNotCreated;  ///< of the task at `at`
+  std::uint32_t set = UINT32_MAX;    ///< as SignalReport::set
 };
 
 inline constexpr std::size_t kRefusedKept = 64;
@@ -69,7 +70,7 @@ class BoundarySignals {
 
   /// True if a cycle boundary may touch the task now: no job of it is under way.
   bool may_touch(TaskId task) noexcept { return threads_.claim(task); }
-  /// Calls TaskLife::signal. Requires: may_touch() of all.
+  /// Calls TaskLife::signal, unless a switch keeps the signal out. Requires: may_touch() of all.
   SignalReport signal(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept;
   /// Carries out a signal of an operator to these tasks, as signal(): `off` and `kill` keep them OFF until `on`.
   SignalReport operate(std::span<const TaskId> tasks, Signal signal, Nanoseconds now) noexcept;

@@ -7,6 +7,11 @@
 
 namespace chimera {
 
+std::string under_way_text(const ApplicationSpec& spec, std::uint32_t set) {
+  if (set >= spec.sets.size()) return "a switch is under way";
+  return "the switch to '" + std::string(spec.sets[set].name) + "' is under way";
+}
+
 std::string refusal_text(TaskSet& set, const SignalReport& report) {
   if (!report.is_accepted && report.why == Refusal::kIllegalSet) {
     const auto wanted = set.life().judge().wanted();

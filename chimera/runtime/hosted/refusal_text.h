@@ -13,6 +13,9 @@ namespace chimera {
 /// call of TaskLife::signal(). Context: setup; may block.
 std::string refusal_text(TaskSet& set, const SignalReport& report);
 
+/// Why a signal was refused with Refusal::kSwitch; `set` as SignalReport::set. Context: setup; may block.
+std::string under_way_text(const ApplicationSpec& spec, std::uint32_t set);
+
 /// The report of TaskLife::start() of the set, as a result. Context: setup; may block.
 Result<void> start_result(TaskSet& set, const SignalReport& report);
 

@@ -25,6 +25,7 @@ struct SignalReport {
   TaskId task;  ///< the one it failed at, else the last
   State before = State::kNotCreated;
   State after = State::kNotCreated;
+  std::uint32_t set = UINT32_MAX;  ///< of kSwitch: its target, in ApplicationSpec::sets; UINT32_MAX: none of them
 
   explicit operator bool() const noexcept { return is_accepted; }
 };

@@ -61,6 +61,17 @@ VariableId missing_value(TaskSet& set, Task& task, std::span<const Handover> han
   return {};
 }
 
+bool keeps_out(TaskSet& set, const SwitchOrder& order, std::span<const TaskId> tasks, Signal signal) noexcept {
+  if (signal != Signal::kSpawn) return signal == Signal::kOn;
+  const Rivals& rivals = set.life().judge().rivals();
+  for (const Task& each : set.tasks()) {
+    if (!order.on.has(each.id) && !order.target.has(each.id)) continue;
+    for (const TaskId id : tasks)
+      if (rivals.are(id, each.id)) return true;
+  }
+  return false;
+}
+
 Disturbance find_disturbance(TaskSet& set, const SwitchPlan& plan, std::size_t n_armed,
                              const UndisturbedState& before, const SwitchPeers& peers) noexcept {
   for (std::size_t i = 0; i < plan.arriving.size(); ++i) {
@@ -72,6 +83,9 @@ Disturbance find_disturbance(TaskSet& set, const SwitchPlan& plan, std::size_t n
   for (const auto ids : {plan.leaving, plan.staying})
     for (const TaskId id : ids)
       if (set.is_mine(id) && set.tasks()[id.index].state != State::kOn) return {NoSwitch::kDisturbed, id};
+  for (const Task& each : set.tasks())
+    if (set.is_mine(each.id) && each.shown_state() == State::kOn && !before.on.has(each.id))
+      return {NoSwitch::kDisturbed, each.id};
   const IllegalFlag& flag = set.flag();
   if ((flag.is_up() && !before.flag_was_up) || (flag.is_raised() && !before.flag_was_raised))
     return {NoSwitch::kFlagRaised, flag.raised_by()};

@@ -41,8 +41,13 @@ bool follow_constants(TaskSet& set, Task& task, const SwitchOrder& order, Nanose
 /// under way. Context: cycle boundary; as long as `off` takes.
 bool cool_down(TaskSet& set, JobThreads& threads, Members& members, const SwitchPlan& plan, Nanoseconds now) noexcept;
 
+/// A switch with that order keeps the signal out: `on`, so that no variable gets two producers; `spawn` of a task that
+/// cannot be created at the same time as one that the order names. Context: cycle boundary; O(tasks).
+bool keeps_out(TaskSet& set, const SwitchOrder& order, std::span<const TaskId> tasks, Signal signal) noexcept;
+
 /// State in which a switch took up its plan. Plain value.
 struct UndisturbedState {
+  TaskBits on;                ///< tasks that are ON
   std::uint16_t members = 0;  ///< contexts that take part
   bool flag_was_up = false;
   bool flag_was_raised = false;  ///< by a task of this context
@@ -57,7 +62,7 @@ struct Disturbance {
 };
 
 /// The first difference from what the plan was made from, in the context of `set`. Arriving tasks before place
-/// `n_armed` of the plan are armed. Context: cycle boundary; O(tasks of the plan).
+/// `n_armed` of the plan are armed. Context: cycle boundary; O(tasks).
 Disturbance find_disturbance(TaskSet& set, const SwitchPlan& plan, std::size_t n_armed,
                              const UndisturbedState& before, const SwitchPeers& peers) noexcept;
 

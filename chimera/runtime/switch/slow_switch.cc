@@ -137,6 +137,10 @@ TaskId SlowSwitch::find_disturbed(std::size_t done) const noexcept {
       const Task& each = parts_.set.tasks()[id.index];
       if (!is_as_left(each, done)) return id;
     }
+  for (const Task& each : parts_.set.tasks()) {
+    const bool is_of_order = order_.on.has(each.id) || order_.target.has(each.id);
+    if (parts_.set.is_mine(each.id) && each.shown_state() == State::kOn && !is_of_order) return each.id;
+  }
   return {};
 }
 

@@ -80,6 +80,18 @@ bool Switching::is_free() const noexcept {
   return phase_ == Phase::kAfter && n_off_ == plan_.leaving.size();
 }
 
+// A plan that this context has not taken up counts too: another context may have begun.
+std::optional<SwitchOrder> Switching::under_way() const noexcept {
+  if (peers_ == nullptr) return std::nullopt;
+  if (phase_ != Phase::kNone) {
+    const bool is_over = !is_held_ && (phase_ == Phase::kAfter || phase_ == Phase::kUndoing);
+    return is_over ? std::nullopt : std::optional(order_);
+  }
+  const PlanWord plan = agreement().plan();
+  if (plan.number == seen_ || !plan.is_open()) return std::nullopt;
+  return agreement().order(plan, parts_.set.spec().sets.size(), parts_.set.tasks().size());
+}
+
 // The request changes nothing if it is for the tasks that are ON, or are being switched to.
 bool Switching::ask(const SwitchRequest& request, Nanoseconds now) noexcept {
   const bool has_lists = request.lists.are_there();
@@ -146,7 +158,7 @@ void Switching::take_up(const PlanWord& plan, Nanoseconds now) noexcept {
   if (is_made) {
     order_ = *order;
     record_.take_up(plan_);
-    before_ = {order_.members, parts_.set.flag().is_up(), parts_.set.flag().is_raised()};
+    before_ = {order_.on, order_.members, parts_.set.flag().is_up(), parts_.set.flag().is_raised()};
     next_armed_ = n_off_ = 0;
     at_ = gap_since_ = off_since_ = kNever;
     is_changed_ = false;
@@ -182,7 +194,16 @@ void Switching::arm(Nanoseconds edge, Nanoseconds now) noexcept {
     if (!has_gap(next, Method::kOn, now)) return wait(now);
     parts_.set.sources().read_ahead(next.id, plan_.handovers, plan_.arriving.first(next_armed_));
     if (missing_value(parts_.set, next, plan_.handovers).is_valid()) return wait(now, kLookForValue);
-    if (is_behind(parts_.set, next, order_)) return has_gap(next, Method::kReinit, now) ? reinit(next, now) : wait(now);
+    if (is_behind(parts_.set, next, order_)) {
+      if (!has_gap(next, Method::kReinit, now)) return wait(now);
+      const bool is_done = follow_constants(parts_.set, next, order_, now);
+      parts_.settlement.record_faults(next);
+      if (is_done) record_.reinitialised(next.id);
+      else abort(NoSwitch::kStepFailed, next.id, {});
+      if (!is_done) record_.receipt().said.assign(next.faults.last.text);
+      due_ = wake_ = parts_.clock.now();
+      return;
+    }
     if (!arm(next, now)) return;
     now = parts_.clock.now();
     record_.receipt().armed = now;
@@ -240,18 +261,6 @@ bool Switching::has_gap(const Task& next, Method method, Nanoseconds now) noexce
   return true;
 }
 
-void Switching::reinit(Task& next, Nanoseconds now) noexcept {
-  const bool is_done = follow_constants(parts_.set, next, order_, now);
-  parts_.settlement.record_faults(next);
-  if (is_done) {
-    record_.reinitialised(next.id);
-  } else {
-    abort(NoSwitch::kStepFailed, next.id, {});
-    record_.receipt().said.assign(next.faults.last.text);
-  }
-  due_ = wake_ = parts_.clock.now();
-}
-
 bool Switching::arm(Task& next, Nanoseconds now) noexcept {
   ContextConstants& constants = parts_.set.constants();
   const Nanoseconds began = parts_.clock.now();
@@ -287,6 +296,8 @@ void Switching::propose(Nanoseconds now) noexcept {
 // From here to the change, or to the end, tasks of other contexts count as they were before.
 void Switching::agree(Nanoseconds now) noexcept {
   at_ = agreement().at(agreement().plan());
+  if (const auto found = find_disturbance(parts_.set, plan_, next_armed_, before_, *peers_))
+    return abort(found.why, found.of, {});
   if (now > at_ || parts_.threads.latest_release() >= at_) return abort(NoSwitch::kLate, {}, {});
   changeover_.hold(plan_, order_.on, at_);
   is_held_ = true;
@@ -401,6 +412,7 @@ void Switching::finish(SwitchEnd end, Nanoseconds now) noexcept {
 }
 
 bool Switching::give_way(TaskId to) noexcept {
+  if (phase_ == Phase::kNone && under_way()) return false;
   if (phase_ == Phase::kSlow) slow_.abort(agreement(), NoSwitch::kDisturbed, to, {});
   if (phase_ == Phase::kArming || phase_ == Phase::kAgreed) abort(NoSwitch::kDisturbed, to, {});
   if (phase_ == Phase::kUndoing && is_held_) {

@@ -16,12 +16,15 @@
 //
 // A switch that cannot be made so goes the slow way: runtime/switch/slow_switch.h.
 //
+// Until all contexts have changed, no signal turns another task ON, so that a variable never has two producers.
+//
 // `on` and `off` run while the processor is idle (idle_gap.h); where jobs preempt each other they run at the urgency of
 // the task (job_threads.h). Jobs take no part: each step is an act of a cycle boundary.
 // docs/design/switch.md, docs/decisions/0045-a-switch-is-committed-by-the-rtpus.md.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "chimera/runtime/job/miss_policy.h"
@@ -67,8 +70,11 @@ class Switching {
   bool is_free() const noexcept;
   /// Goes on with the switch that is under way, or takes up the plan on the page. No effect without one.
   void step(Nanoseconds edge) noexcept;
+  /// The order of a switch that was announced, until all contexts have changed or its abort is seen here; none: no
+  /// switch is under way. keeps_out() in arming.h says which signals are refused until then. Wait-free.
+  std::optional<SwitchOrder> under_way() const noexcept;
   /// A task is to go ON in place of a failed one: aborts a switch that is not committed. False: the change is under
-  /// way.
+  /// way, or the plan was not taken up yet.
   bool give_way(TaskId to) noexcept;
   /// The run is over: aborts a switch that is not committed, finishes one that is.
   void end(Nanoseconds now) noexcept;
@@ -87,7 +93,6 @@ class Switching {
   void take_up(const PlanWord& plan, Nanoseconds now) noexcept;
   void go_slowly(Nanoseconds now) noexcept;
   void arm(Nanoseconds edge, Nanoseconds now) noexcept;
-  void reinit(Task& next, Nanoseconds now) noexcept;
   bool has_gap(const Task& next, Method method, Nanoseconds now) noexcept;
   bool arm(Task& next, Nanoseconds now) noexcept;
   bool may_go_on(Nanoseconds now) noexcept;
