@@ -149,8 +149,7 @@ TEST_F(WatchdogTest, StrokesWhileHealthyAndKeepsTheReasonWhenNot) {
 TEST_F(WatchdogTest, HealthyRunEndsTheRowOfWarmBoots) {
   for (int boot = 0; boot < 3; ++boot) (void)take_up(record);
   Watchdog watchdog(vitals, *this, record);
-  tasks = {};
-  for (std::size_t t = 0; t < 3; ++t) tasks[t].spec = &specs[t];
+  for (Task& task : tasks) task.state = State::kNotCreated;
   watchdog.tick({});
   watchdog.tick(Watchdog::kSettled - Nanoseconds{1});
   ResetRecord early = record;

@@ -64,10 +64,9 @@ class ShellScene : private Clock, private JobClock, private DigestLines {
  public:
   ShellScene() {
     orders = {};
-    const auto* const wave = chimera::testing::component<Wave>("wave");
-    app_.add("wave", wave);
-    app_.add("spare", chimera::testing::component<Spare>("spare"));
-    app_.add("gain", chimera::testing::component<Gain>("gain"));
+    app_.add("wave", chimera::testing::component<Wave>("wave")).rtpu = RtpuId(0u);
+    app_.add("spare", chimera::testing::component<Spare>("spare")).rtpu = RtpuId(0u);
+    app_.add("gain", chimera::testing::component<Gain>("gain")).rtpu = RtpuId(0u);
     for (std::uint32_t t = 0; t < 3; ++t)
       for (std::uint32_t p = 0; p < app_.components[t]->n_ports; ++p)
         app_.port(t, p).unit = app_.components[t]->ports[p].unit;
@@ -79,11 +78,11 @@ class ShellScene : private Clock, private JobClock, private DigestLines {
     app_.spec.on_order = normal_on_order_;
     set_ = *HeapTaskSet::create(app_.spec, app_.components);
     listener_.emplace(*set_, heap_);
-    digest_.emplace(3, *this, heap_);
+    digest_.emplace(3, static_cast<DigestLines&>(*this), heap_);
     RunOptions options;
     options.guest = &*listener_;
     options.digest = &*digest_;
-    executive_.emplace(*set_, *this, *this, options);
+    executive_.emplace(*set_, static_cast<Clock&>(*this), static_cast<JobClock&>(*this), options);
     EXPECT_TRUE(executive_->start());
   }
   ~ShellScene() { executive_->shut_down(); }
