@@ -21,7 +21,8 @@ FOLDERS = ("base", "table", "task", "schedule", "runtime", "runtime/record", "ru
            "runtime/state", "runtime/life", "runtime/switch", "runtime/cycle", "runtime/executive")
 FILE = re.compile(rf"chimera/({'|'.join(FOLDERS)})/[^/]+(?<!_test)(?<!_stress)(?<!_fuzz)\.(h|cc)$")
 HOSTED = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"(chimera/\w+/hosted/[^"]+)"', re.MULTILINE)
-COMPONENTS = ("library/gain/gain.cc", "library/pid_joint/pid_joint.cc", "library/tderiv/tderiv.cc")
+COMPONENTS = ("library/display_manager/display_manager.cc", "library/gain/gain.cc", "library/pid_joint/pid_joint.cc",
+              "library/tderiv/tderiv.cc")
 IN_C = ("tests/components/t_paper.c", "tests/components/t_parts.c", "tests/components/t_tderiv.c")
 FREESTANDING = ("-std=c++20", "-ffreestanding", "-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics")
 ARM = "arm-none-eabi-g++"
