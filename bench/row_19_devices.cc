@@ -44,6 +44,7 @@ void give_six(ArmRig& rig) {
 /// A screen of seven values, which stand.
 void give_menu(ArmRig& rig) {
   rig.instances("shown", 7);
+  for (const char* port : {"edited", "preset", "minimum", "maximum", "step"}) rig.instances(port, 0);
   rig.extent("screens", 1);
   rig.extent("items", 7);
   rig.set("screen", Text<32>("values"));
