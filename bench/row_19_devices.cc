@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Row 19: one cycle of each component that speaks to a person, a disk or a camera, beside its law or a copy of what
 // crosses.
-// Components: button csv_log display tball camera_targets visual_servo_interface
+// Components: button csv_log display display_manager tball camera_targets visual_servo_interface
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "bench/component.h"
+#include "library/display_manager/menu_item.h"
 #include "library/frame/frame.h"
 #include "library/vision/pinhole.h"
 
@@ -40,6 +41,32 @@ void give_six(ArmRig& rig) {
   for (std::size_t i = 0; i < 6; ++i) rig.set("in", 0.1 * static_cast<double>(i), i);
 }
 
+/// A screen of seven values, which stand.
+void give_menu(ArmRig& rig) {
+  rig.instances("shown", 7);
+  for (const char* port : {"edited", "preset", "minimum", "maximum", "step"}) rig.instances(port, 0);
+  rig.extent("screens", 1);
+  rig.extent("items", 7);
+  rig.set("screen", Text<32>("values"));
+  for (std::uint32_t i = 0; i < 7; ++i) {
+    rig.set("item", library::MenuItem{"value", "show", 0, static_cast<std::int32_t>(i), 6}, i);
+    rig.set("shown", 0.1 * i, 0, i);
+  }
+}
+
+/// Seven numbers as text into a picture of 8 rows of 32, which is compared with the one before.
+void draw_seven(std::uint64_t n) {
+  std::array<double, 7> x{0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6};
+  char wanted[8][32] = {}, shown[8][32] = {};
+  for (int changed = 0; n > 0; --n) {
+    bench::keep(x);
+    for (std::size_t i = 0; i < 7; ++i) std::snprintf(wanted[i + 1], 32, "value %25.6g", x[i]);
+    for (std::size_t i = 0; i < 256; ++i) changed += wanted[i / 32][i % 32] != shown[i / 32][i % 32] ? 1 : 0;
+    std::copy(&wanted[0][0], &wanted[0][0] + 256, &shown[0][0]);
+    bench::keep(changed);
+  }
+}
+
 void write_what_waits(ArmRig& rig) { rig.background(); }
 
 /// Runs the background with standard output sent to /dev/null: standard output is for the figures.
@@ -57,7 +84,8 @@ std::vector<ComponentCase> to_people() {
            copy_rows, write_what_waits, 9000},
           {"display", "copy of a row of 7", [](ArmRig& rig) { give_six(rig), rig.set("title", Text<32>("")); },
            copy_rows, print_what_waits, 60},
-          {"button", "pread of a byte", [](ArmRig& rig) { rig.resource("pin", kPin); }, read_pin}};
+          {"button", "pread of a byte", [](ArmRig& rig) { rig.resource("pin", kPin); }, read_pin},
+          {"display_manager", "seven numbers as text", give_menu, draw_seven}};
 }
 
 /// Reads the level of a pin, as a loop without components does.

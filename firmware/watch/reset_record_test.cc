@@ -23,7 +23,7 @@ std::string text_of(const Boot& boot) {
 
 TEST(ResetRecord, PowerUpIsAColdBoot) {
   ResetRecord record;
-  std::memset(&record, 0xa5, sizeof record);
+  std::memset(static_cast<void*>(&record), 0xa5, sizeof record);
   EXPECT_EQ(text_of(take_up(record)), "cold boot");
   EXPECT_TRUE(is_whole(record));
 }
@@ -74,7 +74,7 @@ TEST(ResetRecord, IsNotBelievedWithAnyOneOrTwoBitsFlipped) {
       flipped[a / 32] ^= 1u << a % 32;
       if (b != a) flipped[b / 32] ^= 1u << b % 32;
       ResetRecord other;
-      std::memcpy(&other, flipped.data(), sizeof other);
+      std::memcpy(static_cast<void*>(&other), flipped.data(), sizeof other);
       believed += is_whole(other) ? 1 : 0;
     }
   }

@@ -113,7 +113,8 @@ SignalReport BoundarySignals::signal(std::span<const TaskId> tasks, Signal signa
   const bool was_illegal = set_.flag().is_up();
   const bool was_warm = tasks.size() == 1 && set_.tasks()[tasks[0].index].is_warm();
   SignalReport report{false, false, Refusal::kSwitch, signal, tasks[0]};
-  const std::optional<SwitchOrder> order = switching_.under_way();
+  std::optional<SwitchOrder> order;
+  if constexpr (mechanisms::kSwitch) order = switching_->under_way();
   if (order && keeps_out(set_, *order, tasks, signal)) {
     report.before = report.after = set_.tasks()[tasks[0].index].shown_state();
     report.set = order->after;

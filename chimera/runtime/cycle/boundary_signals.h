@@ -36,8 +36,8 @@ inline constexpr Nanoseconds kAskAgain = milliseconds(100);
 /// theirs.
 class BoundarySignals {
  public:
-  /// `switching` null: nothing is switched. All arguments outlive this but `options`, whose script is kept and whose listener gets the reports. Context:
-  /// setup.
+  /// `switching` null: nothing is switched. All arguments outlive this but `options`, whose script is kept and whose
+  /// listener gets the reports. Context: setup.
   BoundarySignals(TaskSet& set, const RunOptions& options, ContextTap& tap, Settlement& settlement, JobThreads& threads,
                   Switching* switching) noexcept
       : set_(set), script_(options.script), tap_(tap), settlement_(settlement), threads_(threads),

@@ -163,7 +163,7 @@ class Releases {
   Digest* digest_;  // null: none
   JobsInLoop in_loop_;
   JobThreads& threads_;
-  [[no_unique_address]] PartIf<mechanisms::kBlame, std::optional<MissCause>> cause_;  // only with a listener, which reports it
+  [[no_unique_address]] PartIf<mechanisms::kBlame, std::optional<MissCause>> cause_;  // only with a listener
   ReadyQueue queue_;
   MissPolicy misses_;
   JobCycle jobs_;
