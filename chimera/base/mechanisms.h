@@ -32,3 +32,16 @@ inline constexpr bool kWatchdog = true;    ///< a watchdog that a healthy contex
 
 }  // namespace chimera::mechanisms
 #endif
+
+namespace chimera::mechanisms {
+
+/// Tasks read some groups through copies of their own, because the writer runs beside them.
+inline constexpr bool kCopies = kPeers || kPreemptive;
+/// A task may be created while another one that opens the same resource is not.
+inline constexpr bool kRivals = kSwitch || kStandbys;
+/// Components have work that a thread does beside their methods.
+inline constexpr bool kBackground = kService;
+/// Tasks that failed are brought back.
+inline constexpr bool kRecovery = kStandbys || kRestart;
+
+}  // namespace chimera::mechanisms

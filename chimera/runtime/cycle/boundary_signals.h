@@ -27,7 +27,7 @@ struct RefusedSignal {
   std::uint32_t set = UINT32_MAX;    ///< as SignalReport::set
 };
 
-inline constexpr std::size_t kRefusedKept = 64;
+inline constexpr std::size_t kRefusedKept = mechanisms::kCopies ? 64 : 4;
 
 /// A task's repeated request is passed on after this time. While it waits, another request replaces it.
 inline constexpr Nanoseconds kAskAgain = milliseconds(100);
