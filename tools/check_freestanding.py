@@ -2,8 +2,8 @@
 """Floors 0, 2, 3 and 4, the runtime without its folders hosted, preemptive and virtual, and components build
 freestanding for x86-64 and for a 32-bit microcontroller (ARM Cortex-M3), without exceptions or RTTI, and ask for no
 heap, stream, thread or file. Components are one constant table, chimera_component_NAME: no byte of RAM, no constructor.
-Components in C need no C library either. The hosted halves of these floors lie in subfolders (base/hosted, runtime/hosted),
-which a microcontroller replaces, and which the other half does not include."""
+Components in C need no C library either. The hosted halves of these floors lie in subfolders (base/hosted,
+runtime/hosted), which a microcontroller replaces, and which the other half does not include."""
 import concurrent.futures
 import itertools
 import os
@@ -151,7 +151,8 @@ def planted(machine):
     new = "_Znwj" if machine == "ARM" else "_Znwm"
     yield {COMPONENTS[0]: _TABLE}, None
     yield {COMPONENTS[0]: _TABLE + "int* f() { return new int; }\n"}, asks(new, COMPONENTS[0])
-    yield {COMPONENTS[0]: _TABLE + "int n;\n"}, f"{COMPONENTS[0]}: has .bss on {machine}, but its tables must be constant"
+    yield ({COMPONENTS[0]: _TABLE + "int n;\n"},
+           f"{COMPONENTS[0]}: has .bss on {machine}, but its tables must be constant")
     yield ({COMPONENTS[0]: _TABLE + "[[gnu::constructor]] static void f() {}\n"},
            f"{COMPONENTS[0]}: has .init_array on {machine}, but its tables must be constant")
     yield ({COMPONENTS[0]: _TABLE.replace("gain", "grain")},
