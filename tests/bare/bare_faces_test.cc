@@ -16,18 +16,19 @@
 #include "chimera/runtime/testing/test_application.h"
 #include "tests/conformance/runner.h"
 
-#define CHIMERA_BARE_COMPONENT(name) extern "C" const chimera_component chimera_component_##name
-CHIMERA_BARE_COMPONENT(t_beyond);
-CHIMERA_BARE_COMPONENT(t_constants);
-CHIMERA_BARE_COMPONENT(t_extent);
-CHIMERA_BARE_COMPONENT(t_generic);
-CHIMERA_BARE_COMPONENT(t_parts);
-CHIMERA_BARE_COMPONENT(t_repeat);
-CHIMERA_BARE_COMPONENT(t_resource);
-CHIMERA_BARE_COMPONENT(t_source);
-CHIMERA_BARE_COMPONENT(t_struct);
-CHIMERA_BARE_COMPONENT(t_tderiv);
-CHIMERA_BARE_COMPONENT(t_values);
+extern "C" {
+extern const chimera_component chimera_component_t_beyond;
+extern const chimera_component chimera_component_t_constants;
+extern const chimera_component chimera_component_t_extent;
+extern const chimera_component chimera_component_t_generic;
+extern const chimera_component chimera_component_t_parts;
+extern const chimera_component chimera_component_t_repeat;
+extern const chimera_component chimera_component_t_resource;
+extern const chimera_component chimera_component_t_source;
+extern const chimera_component chimera_component_t_struct;
+extern const chimera_component chimera_component_t_tderiv;
+extern const chimera_component chimera_component_t_values;
+}
 
 namespace chimera::toy::bare_faces_test {
 namespace {
