@@ -46,6 +46,9 @@ char* put(char* to, std::size_t number) noexcept {
     innermost = innermost->outer;
     return CHIMERA_FAULT;
   }
+#if defined(__thumb__) && !defined(__thumb2__)
+  asm volatile("" : : : "r8", "r9", "r10", "r11");  // a Cortex-M0+ saves these for the caller only if they are named
+#endif
   innermost = &guard;
   const std::int32_t status = body(state, argument);
   innermost = guard.outer;
