@@ -153,7 +153,7 @@ def planted(machine):
     yield {COMPONENTS[0]: _TABLE + "int* f() { return new int; }\n"}, asks(new, COMPONENTS[0])
     yield ({COMPONENTS[0]: _TABLE + "int n;\n"},
            f"{COMPONENTS[0]}: has .bss on {machine}, but its tables must be constant")
-    yield ({COMPONENTS[0]: _TABLE + "[[gnu::constructor]] static void f() {}\n"},
+    yield ({COMPONENTS[0]: _TABLE + "[[gnu::constructor]] static void f() { asm volatile(\"\"); }\n"},
            f"{COMPONENTS[0]}: has .init_array on {machine}, but its tables must be constant")
     yield ({COMPONENTS[0]: _TABLE.replace("gain", "grain")},
            f"{COMPONENTS[0]}: defines chimera_component_grain on {machine}, but not chimera_component_gain alone")
