@@ -23,8 +23,8 @@ FILE = re.compile(rf"(chimera/({'|'.join(FOLDERS)})|firmware/(shell|watch))/[^/]
                   r"(?<!_test)(?<!_stress)(?<!_fuzz)\.(h|cc)$")
 HOSTED = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"(chimera/\w+/hosted/[^"]+)"', re.MULTILINE)
 # Components that a microcontroller may take; the first three are compiled for x86-64, too.
-TAKEN = ("gain pid_joint tderiv accel brake car ccui control dashboard deadband display_manager engine join_mean join_priority "
-         "joint_trajectory limit lowpass motor notch position rate_limit select servo_axis signal_generator split_pm "
+TAKEN = ("gain pid_joint tderiv accel brake car ccui control dashboard deadband display_manager engine join_mean "
+         "join_priority joint_trajectory limit lowpass motor notch position rate_limit select servo_axis signal_generator split_pm "
          "split_pm_override unit_convert watchdog wheels")
 COMPONENTS = tuple(f"library/{name}/{name}.cc" for name in TAKEN.split())
 IN_C = ("tests/components/t_paper.c", "tests/components/t_parts.c", "tests/components/t_tderiv.c")
@@ -153,8 +153,9 @@ def planted(machine):
     new = "_Znwj" if machine == "ARM" else "_Znwm"
     yield {COMPONENTS[0]: _TABLE}, None
     yield {COMPONENTS[0]: _TABLE + "int* f() { return new int; }\n"}, asks(new, COMPONENTS[0])
-    yield {COMPONENTS[0]: _TABLE + "int n;\n"}, f"{COMPONENTS[0]}: has .bss on {machine}, but its tables must be constant"
-    yield ({COMPONENTS[0]: _TABLE + "[[gnu::constructor]] static void f() {}\n"},
+    yield ({COMPONENTS[0]: _TABLE + "int n;\n"},
+           f"{COMPONENTS[0]}: has .bss on {machine}, but its tables must be constant")
+    yield ({COMPONENTS[0]: _TABLE + "[[gnu::constructor]] static void f() { asm volatile(\"\"); }\n"},
            f"{COMPONENTS[0]}: has .init_array on {machine}, but its tables must be constant")
     yield ({COMPONENTS[0]: _TABLE.replace("gain", "grain")},
            f"{COMPONENTS[0]}: defines chimera_component_grain on {machine}, but not chimera_component_gain alone")

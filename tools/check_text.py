@@ -2,7 +2,8 @@
 """Every tracked file: a name that says what it is. Every tracked text: the licence line, no path of one machine, no
 word about a workplace, nothing left to do. Every production source x.cc: a sentence that says what it does. Every
 component: sines and powers from chimera/base/math.h, so that all machines compute the same bits, and one text for
-hosts and microcontrollers. Comments, messages, documents and names of tests: none of the words that a reader has to guess the meaning of."""
+hosts and microcontrollers. Comments, messages, documents and names of tests: none of the words that a reader has to
+guess the meaning of."""
 import io
 import pathlib
 import re
@@ -209,7 +210,7 @@ PLANTED = (
      "library/a/a.c:2: 'powf' depends on the C library: chimera/base/math.h has one"),
     ({"library/a/a.h": _HEAD + "#ifdef CHIMERA_BARE\n#endif\n"},
      "library/a/a.h:2: 'CHIMERA_BARE': a component has one text for hosts and microcontrollers"),
-    ({"library/a/a.c": _HEAD + "#if defined(__arm__)\n#endif\n", "chimera/a.h": _HEAD + "#ifdef CHIMERA_BARE\n#endif\n"},
+    ({"library/a/a.c": _HEAD + "#if defined(__arm__)\n#endif\n", "chimera/a.h": _HEAD + "#ifdef CHIMERA_BARE\n"},
      "library/a/a.c:2: '__arm__': a component has one text for hosts and microcontrollers"),
     ({"a.cc": _HEAD + "// TO" + "DO\n"}, "a.cc:2: something left to do: 'TO" + "DO'"),
 )

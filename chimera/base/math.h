@@ -63,6 +63,12 @@ constexpr double floor(double x) noexcept {
   const auto cut = static_cast<double>(static_cast<std::int64_t>(x));
   return copysign(cut > x ? cut - 1 : cut, x);
 }
+constexpr double ceil(double x) noexcept { return -floor(-x); }
+/// The nearest whole number; halves go away from 0.
+constexpr double round(double x) noexcept {
+  const double below = floor(fabs(x));
+  return copysign(fabs(x) - below >= 0.5 ? below + 1 : below, x);
+}
 
 inline constexpr double kPi = 0x1.921fb54442d18p+1;
 

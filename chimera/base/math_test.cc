@@ -168,6 +168,9 @@ TEST(Math, RemainderAndFloorAreExact) {
     ASSERT_EQ(math::fmod(near, 0.1), std::fmod(near, 0.1)) << near;
     ASSERT_EQ(math::floor(near), std::floor(near)) << near;
     ASSERT_EQ(math::floor(x), std::floor(x)) << x;
+    ASSERT_EQ(math::ceil(near), std::ceil(near)) << near;
+    for (const double half : {std::floor(near) + 0.5, std::nextafter(std::floor(near) + 0.5, near), near, x})
+      ASSERT_EQ(math::round(half), std::round(half)) << half;
   }
 }
 
@@ -185,7 +188,8 @@ TEST(Math, SpecialValuesAreThoseOfIeee754) {
       SpecialCase{"asin", math::asin, std::asin}, SpecialCase{"acos", math::acos, std::acos},
       SpecialCase{"exp", math::exp, std::exp},    SpecialCase{"log", math::log, std::log},
       SpecialCase{"sqrt", math::sqrt, std::sqrt}, SpecialCase{"floor", math::floor, std::floor},
-      SpecialCase{"fabs", math::fabs, std::fabs}};
+      SpecialCase{"fabs", math::fabs, std::fabs}, SpecialCase{"ceil", math::ceil, std::ceil},
+      SpecialCase{"round", math::round, std::round}};
   for (const SpecialCase& c : cases) {
     for (const double x : {0.0, -0.0, 1.0, -1.0, kInf, -kInf, kNan, kTiny, -kTiny, 1e-310}) {
       const double got = c.ours(x), expected = c.reference(x);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// CHIMERA_COMPONENT with CHIMERA_BARE, for an image without a loader: one constant table, which tables of the image name
-// as chimera_component_NAME. It has no declarations, because the ports report themselves (wiring.h). Nothing runs
+// CHIMERA_COMPONENT with CHIMERA_BARE, for an image without a loader: one constant table, which the tables of the image
+// name as chimera_component_NAME. It has no declarations, because the ports report themselves (wiring.h). Nothing runs
 // before main, and nothing lies in RAM.
 #pragma once
 
@@ -15,7 +15,7 @@ constexpr chimera_component bare_component(PortName name, Literal, Extras... ext
   made.name = name.text;
   made.doc = made.source = "";
   (apply_extra(made, extras), ...);
-  made.source = "";
+  made.source = "";  // only programs with a library show it
   return made;
 }
 

@@ -32,9 +32,9 @@ class DeclaredPort {
     if (decl_ != nullptr) return decl_->max_instances;
     return is_repeated() ? wired_->form->max_instances : 1;
   }
-  /// Of the chimera_port in the state; of a repeated port: of the array of max_instances().
+  /// The offset in the state of the chimera_port, or, if the port is repeated, of the array of max_instances().
   std::uint32_t live_offset() const noexcept { return decl_ != nullptr ? decl_->live_offset : wired_->live_offset; }
-  /// Of the uint32_t with the number of instances in use. Requires: is_repeated().
+  /// The offset in the state of the uint32_t with the number of instances in use. Requires: is_repeated().
   std::uint32_t instances_offset() const noexcept {
     return decl_ != nullptr ? decl_->instances_offset : wired_->live_offset - component_api::kCounterToArray;
   }
@@ -55,7 +55,7 @@ class DeclaredPort {
 class DeclaredPorts {
  public:
   DeclaredPorts() noexcept = default;
-  /// Of a table with declarations.
+  /// The ports of a table with declarations.
   explicit DeclaredPorts(const chimera_component& component) noexcept
       : decls_(component.ports), size_(component.n_ports) {}
   explicit DeclaredPorts(std::span<const WiredPort> wired) noexcept

@@ -8,16 +8,16 @@ namespace chimera {
 namespace {
 
 /// A body that runs now.
-struct Guard {
+struct GuardedRun {
   void* place[5];  ///< as __builtin_setjmp wants it
   chimera_fault* fault;
-  Guard* outer;
+  GuardedRun* outer;
 };
 
 #if __STDC_HOSTED__
-thread_local Guard* innermost = nullptr;
+thread_local GuardedRun* innermost = nullptr;
 #else
-Guard* innermost = nullptr;  // this system has one thread
+GuardedRun* innermost = nullptr;  // this system has one thread
 #endif
 
 char* put(char* to, const char* text) noexcept {
@@ -39,13 +39,16 @@ char* put(char* to, std::size_t number) noexcept {
 // Not inlined: the jump must not come from the function that it leads to. Every register counts as overwritten there.
 [[gnu::noinline]] std::int32_t run_guarded(GuardedBody body, void* state, const void* argument,
                                            chimera_fault* fault) noexcept {
-  Guard guard;
+  GuardedRun guard;
   guard.fault = fault;
   guard.outer = innermost;
   if (__builtin_setjmp(guard.place) != 0) {
     innermost = innermost->outer;
     return CHIMERA_FAULT;
   }
+#if defined(__thumb__) && !defined(__thumb2__)
+  asm volatile("" : : : "r8", "r9", "r10", "r11");  // a Cortex-M0+ saves these for the caller only if they are named
+#endif
   innermost = &guard;
   const std::int32_t status = body(state, argument);
   innermost = guard.outer;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a method ends that reads an index beyond a port, where there are no exceptions: it returns at once, with the fault
-// that the exception makes on a host. The destructors of local objects of the method and of its callees do not run, so
-// a component for a microcontroller must not rely on them; the values in its own members stay as they are.
+// How a method ends that reads an index beyond a port, where there are no exceptions: it returns at once, with the
+// fault that the exception makes on a host. The destructors of local objects of the method and of its callees do not
+// run, so a component for a microcontroller must not rely on them; the values in its own members stay as they are.
 #pragma once
 
 #include <cstddef>

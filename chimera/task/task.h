@@ -102,7 +102,7 @@ struct alignas(kCacheLine) Task {
   bool is_error_told = false;  ///< its reaction on_fault has acted since it went to ERROR
   FixedVector<Signal, kOutboxSize> pending;  ///< signals that wait for the present method to end
   const chimera_component* component = nullptr;  ///< from the construction of the component on
-  DeclaredPorts ports;  ///< of the component
+  DeclaredPorts ports;  ///< of the component, from its construction on
   chimera_inherited* inherited = nullptr;  ///< by output: the inherited value of its port at the last on
 
   /// The state that other tasks and users see.

@@ -20,7 +20,7 @@ struct Car : library::RollingCar {
   Outcome cycle(Cycle c) {
     if (!std::isfinite(*gas) || !std::isfinite(*fb)) return fault("gas or fb is not finite");
     // An illegal configuration releases gas and brake, and the car rolls.
-    const double wanted = c.illegal() ? 0 : std::clamp(*gas, 0.0, 1.0), brake = c.illegal() ? 0 : std::fmax(0, *fb);
+    const double wanted = c.illegal() ? 0 : std::clamp(*gas, 0.0, 1.0), brake = c.illegal() ? 0 : (*fb > 0 ? *fb : 0.0);
     roll(c.dt(), brake, [&](double h) {
       opening_ += (wanted - opening_) * h / (engine_.lag + h);
       return engine_.force(opening_, present_speed());

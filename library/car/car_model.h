@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chimera/base/math.h"
+
 namespace chimera::library {
 
 /// Properties of a car. The defaults are those of the book; lag and wheel radius are ours.
@@ -54,12 +56,12 @@ class CarModel {
   /// resistance can stop the car but not push it. Requires: dt >= 0. Context: cycle; wait-free.
   void step(double drive, double brake, double grade, double dt) noexcept {
     constexpr double kGravity = 9.81;
-    const double level = 1 / std::sqrt(1 + grade * grade);  // cos s, with tan s = grade
+    const double level = 1 / math::sqrt(1 + grade * grade);  // cos s, with tan s = grade
     const double air = 0.5 * body_.air_density * body_.drag_area * speed_ * std::abs(speed_);
     const double pushed = speed_ + (drive - air - body_.mass * kGravity * grade * level) / body_.mass * dt;
     const double rubbed = (brake + body_.rolling * body_.mass * kGravity * level) / body_.mass * dt;
     const double before = speed_;
-    speed_ = std::abs(pushed) <= rubbed ? 0 : pushed - std::copysign(rubbed, pushed);
+    speed_ = std::abs(pushed) <= rubbed ? 0 : pushed - math::copysign(rubbed, pushed);
     const double moved = 0.5 * (before + speed_) * dt;
     distance_ += moved;
     wheel_angle_ += moved / body_.wheel_radius;

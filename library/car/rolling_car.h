@@ -49,7 +49,7 @@ struct RollingCar {
   /// `brake` is as in CarModel::step.
   template <class Drive>
   void roll(double dt, double brake, Drive drive) {
-    const double n = std::ceil(dt / 5e-3), h = dt / n;
+    const double n = math::ceil(dt / 5e-3), h = dt / n;
     for (double i = 0; i < n; ++i) car_.step(drive(h), brake, grade_.line(car_.distance()), h);
     publish();
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Speedometer and odometer of the cruise control (2000 paper, figure 15).
-#include <cmath>
-
+#include "chimera/base/math.h"
 #include "chimera/task/component.h"
 
 using namespace chimera;
@@ -16,8 +15,8 @@ struct Dashboard {
 
   void on() { cycle(); }
   void cycle() {
-    *speedometer = std::round(std::abs(*vz) * 3.6);
-    *odometer = std::floor(*xz / 100) / 10;
+    *speedometer = math::round(math::fabs(*vz) * 3.6);
+    *odometer = math::floor(*xz / 100) / 10;
   }
 };
 

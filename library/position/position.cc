@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The wheel position resolver of the cruise control (2000 paper, figure 15).
-#include <cmath>
 #include <numbers>
 
+#include "chimera/base/math.h"
 #include "chimera/task/component.h"
 
 using namespace chimera;
@@ -23,7 +23,7 @@ struct Position {
   void on() { cycle(); }
   void cycle() {
     const double count = 2 * std::numbers::pi / *counts;
-    *xz = std::floor(*xw / count) * count * *wheel_radius;
+    *xz = math::floor(*xw / count) * count * *wheel_radius;
   }
 };
 

@@ -16,18 +16,19 @@
 #include "chimera/runtime/testing/test_application.h"
 #include "tests/conformance/runner.h"
 
-#define CHIMERA_BARE_COMPONENT(name) extern "C" const chimera_component chimera_component_##name
-CHIMERA_BARE_COMPONENT(t_beyond);
-CHIMERA_BARE_COMPONENT(t_constants);
-CHIMERA_BARE_COMPONENT(t_extent);
-CHIMERA_BARE_COMPONENT(t_generic);
-CHIMERA_BARE_COMPONENT(t_parts);
-CHIMERA_BARE_COMPONENT(t_repeat);
-CHIMERA_BARE_COMPONENT(t_resource);
-CHIMERA_BARE_COMPONENT(t_source);
-CHIMERA_BARE_COMPONENT(t_struct);
-CHIMERA_BARE_COMPONENT(t_tderiv);
-CHIMERA_BARE_COMPONENT(t_values);
+extern "C" {
+extern const chimera_component chimera_component_t_beyond;
+extern const chimera_component chimera_component_t_constants;
+extern const chimera_component chimera_component_t_extent;
+extern const chimera_component chimera_component_t_generic;
+extern const chimera_component chimera_component_t_parts;
+extern const chimera_component chimera_component_t_repeat;
+extern const chimera_component chimera_component_t_resource;
+extern const chimera_component chimera_component_t_source;
+extern const chimera_component chimera_component_t_struct;
+extern const chimera_component chimera_component_t_tderiv;
+extern const chimera_component chimera_component_t_values;
+}
 
 namespace chimera::toy::bare_faces_test {
 namespace {
@@ -69,18 +70,24 @@ class Scene {
   explicit Scene(bool is_bare) : is_bare_(is_bare) {
     for (const Both& one : components()) app_.add(one.name.c_str(), &one.hosted);
     for (std::size_t task = 0; task < components().size(); ++task) link_outputs(task);
-    for (const char* many : {"t_repeat.in", "t_repeat.out", "t_beyond.in", "t_parts.in", "t_parts.gain", "t_parts.out",
-                             "t_parts.label"}) {
-      const auto [task, port] = place(many);
-      app_.add_instance(task, port, names_.emplace_back(std::string(many) + ".2"));
-    }
-    for (const char* reader : {"t_repeat.in", "t_tderiv.x", "t_generic.x", "t_values.real", "t_parts.x"})
-      link(reader, "t_source.x");
+    const std::pair<const char*, const char*> second[] = {
+        {"t_repeat.in", "t_source.x"}, {"t_repeat.out", "t_repeat.out.2"}, {"t_beyond.in", "t_source.x"},
+        {"t_parts.in", "t_beyond.list"}, {"t_parts.gain", ""}, {"t_parts.out", "t_parts.out.2"},
+        {"t_parts.label", "t_parts.label.2"}};
+    for (const auto& [many, to] : second) app_.add_instance(place(many).first, place(many).second, to);
+    // Outputs of this scene that have at least as many bytes. A pose is made of numbers.
+    const std::pair<const char*, const char*> readers[] = {
+        {"t_repeat.in", "t_source.x"}, {"t_beyond.in", "t_source.x"}, {"t_tderiv.x", "t_source.x"},
+        {"t_generic.x", "t_source.x"}, {"t_parts.x", "t_source.x"}, {"t_values.real", "t_source.x"},
+        {"t_parts.in", "t_beyond.list"}, {"t_extent.q", "t_beyond.list"}, {"t_struct.pose", "t_extent.outer"},
+        {"t_parts.pose", "t_extent.outer"}, {"t_parts.m", "t_extent.identity"}, {"t_values.flag", "t_source.expired"},
+        {"t_values.small", "t_constants.inits"}, {"t_values.large", "t_beyond.errors"},
+        {"t_values.single", "t_values.single_half"}, {"t_values.text", "t_values.echo"}};
+    for (const auto& [reader, to] : readers) link(reader, to);
     for (const char* x : {"t_generic.x", "t_generic.y", "t_parts.x", "t_parts.y"}) port(x).type = CHIMERA_FLOAT64;
     for (const char* own : {"t_constants.joints", "t_constants.scale", "t_source.start", "t_source.slope",
                             "t_source.spend", "t_parts.gain"})
       link(own, "");
-    link("t_parts.in", "t_beyond.list");
     set_extents();
     port("t_resource.file").value = std::as_bytes(std::span(file()));
     for (std::size_t task = 0; task < app_.tasks.size(); ++task) fill(task);

@@ -63,7 +63,6 @@ void TaskSet::prepare_task(std::size_t t, const chimera_component* component) {
   task.spec = &spec_.tasks[t];
   task.id = TaskId(t);
   task.component = component;
-  task.ports = memories_[t].ports();
   hosts_[t] = {this, &task, nullptr, nullptr};
   task.call.fault = &task.said;
   task.call.host = &TaskHost::kCalls;

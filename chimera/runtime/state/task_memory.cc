@@ -52,6 +52,22 @@ Result<void> check_port(const TaskSpec& spec, const chimera_component& component
   return {};
 }
 
+// Constructs the component in `state` and destroys it, if it does not declare its ports.
+Result<DeclaredPorts> find_ports(const TaskSpec& spec, const chimera_component& component, std::span<std::byte> state,
+                                 SetupMemory& memory) {
+  std::size_t n = 0;
+  for (const PortSpec& port : spec.ports) n = std::max<std::size_t>(n, port.declared + 1);
+  if (component.ports != nullptr || n == 0) return DeclaredPorts(component);
+  const std::span<WiredPort> wired = memory.take<WiredPort>(n);
+  const Wiring wiring(wired, state);
+  chimera_fault fault{};
+  if (component.construct(state.data(), &fault) != CHIMERA_OK)
+    return Error{ErrorCode::kRefused, {fault.text}, {spec.name}};
+  component.destroy(state.data());
+  if (!wiring.is_inside()) return misfit(spec, "a port is no member of it");
+  return DeclaredPorts(wired.first(std::min(n, wiring.size())));
+}
+
 // `name`: of the port.
 bool is_in_range(const ExtentSpec& extent, std::string_view name, const ConstantStore& store, FixedString<160>& why) {
   const std::int64_t n = !extent.constant.is_valid() ? extent.max : store.integer(extent.constant, extent.max);
@@ -71,7 +87,9 @@ Result<TaskMemory> TaskMemory::create(const TaskSpec& spec, const chimera_compon
   made.component_ = &component;
   made.memory_ = &memory;
   made.state_ = memory.take_bytes(component.state_size, component.state_align);
-  if (auto found = made.find_ports(); !found) return found.error();
+  const auto found = find_ports(spec, component, made.state_, memory);
+  if (!found) return found.error();
+  made.ports_ = *found;
   if (auto planned = made.plan(); !planned) return planned.error();
   made.take_lists(memory);
   made.constant_memory_ = memory.take_bytes(made.constant_bytes_, kCacheLine);
@@ -87,22 +105,6 @@ void TaskMemory::place(std::span<std::byte> first, std::span<std::byte> second) 
     std::copy(fill_.begin(), fill_.end(), writer.staging());
     writer.publish_initial(Nanoseconds{}, initial_valid_);
   }
-}
-
-Result<void> TaskMemory::find_ports() {
-  ports_ = DeclaredPorts(*component_);
-  std::size_t n = 0;
-  for (const PortSpec& port : spec_->ports) n = std::max<std::size_t>(n, port.declared + 1);
-  if (component_->ports != nullptr || n == 0) return {};
-  const std::span<WiredPort> wired = memory_->take<WiredPort>(n);
-  const Wiring wiring(wired, state_);
-  chimera_fault fault{};
-  if (component_->construct(state_.data(), &fault) != CHIMERA_OK)
-    return Error{ErrorCode::kRefused, {fault.text}, {spec_->name}};
-  component_->destroy(state_.data());
-  if (!wiring.is_inside()) return misfit(*spec_, "a port is no member of it");
-  ports_ = DeclaredPorts(wired.first(std::min(n, wiring.size())));
-  return {};
 }
 
 Result<void> TaskMemory::plan() {
@@ -228,6 +230,7 @@ void TaskMemory::wire(Task& task) noexcept {
       std::memcpy(constant.local, constant.spec->value.data(), constant.spec->value.size());
   }
   for (const ResourcePort& resource : resources_) live(*resource.spec)->value = const_cast<char*>(resource.text);
+  task.ports = ports_;
   task.inputs = inputs_;
   task.outputs = outputs_;
   task.inherited = inherited_.data();

@@ -56,8 +56,6 @@ class TaskMemory {
   std::uint32_t incarnation() const noexcept { return incarnation_; }
   /// False for the memory of a task of another context.
   bool is_planned() const noexcept { return component_ != nullptr; }
-  /// The ports of the component; empty for the memory of a task of another context.
-  const DeclaredPorts& ports() const noexcept { return ports_; }
   std::span<Input> inputs() noexcept { return inputs_; }
   std::span<const ConstantPort> constants() const noexcept { return constants_; }
   std::uint64_t initial_valid() const noexcept { return initial_valid_; }
@@ -75,7 +73,6 @@ class TaskMemory {
   bool is_unwritten(const Task& task, std::size_t i) const noexcept;
 
  private:
-  Result<void> find_ports();
   Result<void> plan();
   void take_lists(SetupMemory& memory);
   void wire(Task& task) noexcept;
