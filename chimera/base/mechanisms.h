@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The mechanisms that an image has. A host has all of them. The image of a microcontroller has those that its
-// application uses: the compiler is given -DCHIMERA_MECHANISMS='"mechanisms.h"', a header that `chimera bake` wrote with
-// the same constants. Code asks with `if constexpr`; a linker that drops unused sections then leaves the rest out.
+// application uses: the compiler is given -DCHIMERA_MECHANISMS='"mechanisms.h"', a header that `chimera bake` wrote
+// with the same constants. Code asks with `if constexpr`; a linker that drops unused sections then leaves the rest out.
 #pragma once
 
 #ifdef CHIMERA_MECHANISMS
@@ -32,3 +32,16 @@ inline constexpr bool kWatchdog = true;    ///< a watchdog that a healthy contex
 
 }  // namespace chimera::mechanisms
 #endif
+
+namespace chimera::mechanisms {
+
+/// Tasks read some groups through copies of their own, because the writer runs beside them.
+inline constexpr bool kCopies = kPeers || kPreemptive;
+/// A task may be created while another one that opens the same resource is not.
+inline constexpr bool kRivals = kSwitch || kStandbys;
+/// Components have work that a thread does beside their methods.
+inline constexpr bool kBackground = kService;
+/// Tasks that failed are brought back.
+inline constexpr bool kRecovery = kStandbys || kRestart;
+
+}  // namespace chimera::mechanisms

@@ -12,7 +12,9 @@ namespace chimera {
 struct Nanoseconds {
   std::int64_t count = 0;
 
-  constexpr auto operator<=>(const Nanoseconds&) const noexcept = default;
+  // In place also where the compiler saves bytes: a job compares instants twenty times.
+  [[gnu::always_inline]] constexpr bool operator==(const Nanoseconds&) const noexcept = default;
+  [[gnu::always_inline]] constexpr auto operator<=>(const Nanoseconds&) const noexcept = default;
   constexpr Nanoseconds& operator+=(Nanoseconds other) noexcept { count += other.count; return *this; }
   constexpr Nanoseconds& operator-=(Nanoseconds other) noexcept { count -= other.count; return *this; }
 };

@@ -15,9 +15,10 @@ ReadyQueue::ReadyQueue(Policy policy, std::span<const TaskSpec> tasks, const Que
       pauses_(storage.pauses),
       runs_(storage.runs),
       loose_(storage.loose) {
-  const std::size_t n = tasks.size();
+  const std::size_t n = tasks.size(), n_classes = TaskClasses::count(tasks);
+  CHIMERA_ASSERT(storage.pauses.size() >= n_classes && storage.runs.size() >= n_classes);
+  if constexpr (!mechanisms::kPreemptive) return;
   CHIMERA_ASSERT(storage.tasks.size() >= n && storage.loose.size() >= n);
-  CHIMERA_ASSERT(storage.pauses.size() >= n && storage.runs.size() >= n);
   for (std::size_t i = 0; i < n; ++i) tasks_[i] = QueueTask{};
 }
 
@@ -42,7 +43,7 @@ void ReadyQueue::leave(TaskId task) noexcept {
   const TaskClass& c = classes_[index];
   const bool had_run = c.cursor < c.active;
   Job forgotten;
-  (void)take_deferred(task, forgotten);
+  if constexpr (mechanisms::kPreemptive) (void)take_deferred(task, forgotten);
   classes_.deactivate(task.index);
   if (c.active == 0) {
     std::uint32_t at = 0;
@@ -53,10 +54,12 @@ void ReadyQueue::leave(TaskId task) noexcept {
 }
 
 bool ReadyQueue::has_waiting(TaskId task, Nanoseconds before) const noexcept {
-  const QueueTask& t = tasks_[task.index];
-  if (t.has_pending && t.pending.release < before) return true;
-  for (const LooseJob& one : loose_.items())
-    if (one.job.task == task && one.job.release < before) return true;
+  if constexpr (mechanisms::kPreemptive) {
+    const QueueTask& t = tasks_[task.index];
+    if (t.has_pending && t.pending.release < before) return true;
+    for (const LooseJob& one : loose_.items())
+      if (one.job.task == task && one.job.release < before) return true;
+  }
   const TaskClass& c = classes_[classes_.class_of(task.index)];
   const std::uint32_t at = classes_.place(task.index);
   return at >= c.cursor && at < c.active && classes_.member(c, at).first <= c.release && c.release < before;
@@ -77,7 +80,7 @@ Urgency ReadyQueue::top_urgency() const noexcept {
 // Pops if several runs are ready, or if loose jobs wait beside them.
 Job ReadyQueue::pop_among() noexcept {
   CHIMERA_ASSERT(!is_empty());
-  if (!loose_.is_empty() && loose_is_top()) return pop_loose();
+  if (mechanisms::kPreemptive && !loose_.is_empty() && loose_is_top()) return pop_loose();
   TaskClass& c = classes_[runs_.top()];
   const Job job = TaskClasses::job(c, classes_.member(c, c.cursor++));
   if (!settle(c)) runs_.erase(0, ByUrgency{classes_});
@@ -172,7 +175,7 @@ bool ReadyQueue::settle(TaskClass& c) noexcept {
   for (; c.cursor < c.active; ++c.cursor) {
     const ClassMember& m = classes_.member(c, c.cursor);
     if (m.first > c.release) continue;
-    if (n_beside_ == 0) return true;
+    if (!mechanisms::kPreemptive || n_beside_ == 0) return true;
     QueueTask& t = tasks_[m.task];
     if (!t.busy) return true;
     t.pending = TaskClasses::job(c, m);

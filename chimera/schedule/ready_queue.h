@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <span>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/schedule/binary_heap.h"
 #include "chimera/schedule/task_classes.h"
 
@@ -40,7 +41,8 @@ struct QueueTask {
   Job pending;
 };
 
-/// Memory for a queue of n tasks: every span has n elements.
+/// Memory for a queue of n tasks: every span has n elements, but `runs` and `pauses` one for each class. `tasks` and
+/// `loose` are for preemptive use.
 struct QueueStorage {
   TaskClasses::Storage classes;
   std::span<QueueTask> tasks;
@@ -88,7 +90,7 @@ class ReadyQueue {
   /// Removes and returns the most urgent job; ties: user priority, then tie_of(). Requires: not empty.
   /// Context: cycle; O(1) while one class is ready, otherwise O(log classes).
   Job pop() noexcept {
-    const std::uint32_t others = (runs_.size() - 1) | n_beside_;  // one branch for both
+    const std::uint32_t others = (runs_.size() - 1) | (mechanisms::kPreemptive ? n_beside_ : 0);  // one branch
     if (others != 0) [[unlikely]] return pop_among();
     TaskClass& c = classes_[runs_.top()];
     const ClassMember& m = classes_.member(c, c.cursor);
@@ -137,7 +139,7 @@ class ReadyQueue {
       const ClassMember& m = classes_.member(c, i);
       if (m.first <= c.release) dropped(DroppedRelease{TaskId(m.task), c.release, 1});
     }
-    if (n_deferred_ > 0) drop_deferred(c, dropped);
+    if (mechanisms::kPreemptive && n_deferred_ > 0) drop_deferred(c, dropped);
     const std::int64_t passed = now < c.next + c.period ? 1 : (now - c.next) / c.period + 1;
     c.release = c.next + c.period * (passed - 1);
     c.next = c.release + c.period;

@@ -8,10 +8,22 @@
 
 namespace chimera {
 
+std::size_t TaskClasses::count(std::span<const TaskSpec> tasks) noexcept {
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const auto is_of_it = [&](const TaskSpec& t) {
+      return t.period == tasks[i].period && t.offset == tasks[i].offset;
+    };
+    if (std::none_of(tasks.begin(), tasks.begin() + static_cast<std::ptrdiff_t>(i), is_of_it)) ++n;
+  }
+  return n;
+}
+
 TaskClasses::TaskClasses(Policy policy, std::span<const TaskSpec> tasks, const Storage& storage) noexcept
     : policy_(policy), tasks_(tasks), storage_(storage) {
   const std::size_t n = tasks.size();
-  CHIMERA_ASSERT(storage.members.size() >= n && storage.classes.size() >= n && storage.class_of.size() >= n);
+  CHIMERA_ASSERT(storage.members.size() >= n && storage.class_of.size() >= n);
+  CHIMERA_ASSERT(storage.classes.size() >= count(tasks));
   std::uint32_t filled = 0, n_classes = 0;
   for (std::uint32_t first = 0; first < n; ++first) storage_.class_of[first] = UINT32_MAX;
   for (std::uint32_t first = 0; first < n; ++first) {

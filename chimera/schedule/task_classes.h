@@ -50,13 +50,15 @@ struct TaskClass {
 /// Context of all functions but the constructor: cycle boundary, unless stated otherwise.
 class TaskClasses {
  public:
-  /// Memory for n tasks: every span has n elements.
+  /// Memory for n tasks: every span has n elements, but `classes` one for each class.
   struct Storage {
     std::span<ClassMember> members;
     std::span<TaskClass> classes;
     std::span<std::uint32_t> class_of;
   };
 
+  /// The number of classes of these tasks. Context: setup; O(tasks^2).
+  static std::size_t count(std::span<const TaskSpec> tasks) noexcept;
   /// All tasks start inactive (OFF). `tasks` outlives this. Requires: period > 0. Context: setup.
   TaskClasses(Policy policy, std::span<const TaskSpec> tasks, const Storage& storage) noexcept;
   /// Sets the origin of the grid; 0 by default. Requires: no task has joined yet. Context: setup.

@@ -17,7 +17,7 @@ bool is_aligned(const std::byte* p, std::size_t to) noexcept { return reinterpre
 
 }  // namespace
 
-GroupWriter::GroupWriter(std::span<std::byte> memory, std::uint32_t payload_bytes) noexcept
+RegisterWriter::RegisterWriter(std::span<std::byte> memory, std::uint32_t payload_bytes) noexcept
     : base_(memory.data()),
       payload_bytes_(payload_bytes),
       stride_(static_cast<std::uint32_t>(slot_stride(payload_bytes))) {
@@ -27,24 +27,24 @@ GroupWriter::GroupWriter(std::span<std::byte> memory, std::uint32_t payload_byte
   shared_copy::release_fence();  // as at the end of publish()
 }
 
-GroupReader::GroupReader(const std::byte* memory, std::uint32_t payload_bytes) noexcept
+RegisterReader::RegisterReader(const std::byte* memory, std::uint32_t payload_bytes) noexcept
     : base_(memory), payload_bytes_(payload_bytes), stride_(static_cast<std::uint32_t>(slot_stride(payload_bytes))) {
   CHIMERA_ASSERT(is_aligned(base_, kCacheLine));
 }
 
-void GroupWriter::publish_initial(Nanoseconds now, std::uint64_t valid) noexcept {
+void RegisterWriter::publish_initial(Nanoseconds now, std::uint64_t valid) noexcept {
   // Stored before the counter: a reader that sees the publication also sees this number. Pairs, through the counter,
   // with the load of is_initial().
   shared_copy::word(base_ + kInitialAt).store(latest_ + 1, std::memory_order_release);
   publish(now, valid);
 }
 
-bool GroupReader::is_initial(std::uint64_t sequence) const noexcept {
+bool RegisterReader::is_initial(std::uint64_t sequence) const noexcept {
   // Pairs with the store of publish_initial(). Callers read a publication before they ask about it.
   return sequence <= shared_copy::word(base_ + kInitialAt).load(std::memory_order_acquire);
 }
 
-bool GroupReader::try_read_part(chimera_slot& header, std::uint32_t offset,
+bool RegisterReader::try_read_part(chimera_slot& header, std::uint32_t offset,
                                 std::span<std::byte> values) const noexcept {
   CHIMERA_ASSERT(offset % sizeof(std::uint64_t) == 0 && offset + values.size() <= payload_bytes_);
   std::uint64_t n = shared_copy::word(base_).load(std::memory_order_acquire);  // pairs with the store of publish()
@@ -57,13 +57,13 @@ bool GroupReader::try_read_part(chimera_slot& header, std::uint32_t offset,
   return false;
 }
 
-bool GroupReader::try_again(std::uint64_t n, chimera_slot& header, std::byte* values) const noexcept {
+bool RegisterReader::try_again(std::uint64_t n, chimera_slot& header, std::byte* values) const noexcept {
   for (std::uint32_t tries = 1; tries < kReadTries; ++tries)
     if (read_slot(n, header, values)) return true;
   return false;
 }
 
-bool GroupReader::try_again(std::uint64_t n, chimera_slot* to) const noexcept {
+bool RegisterReader::try_again(std::uint64_t n, chimera_slot* to) const noexcept {
   for (std::uint32_t tries = 1; tries < kReadTries; ++tries)
     if (read_slot(n, to)) return true;
   return false;

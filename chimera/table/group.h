@@ -20,20 +20,23 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/base/time.h"
+#include "chimera/table/plain_group.h"
 #include "chimera/table/shared_copy.h"
 #include "chimera/table/slot.h"
 
 namespace chimera {
 
 /// The writing side. Exactly one per group at any time; the memory outlives it.
-class GroupWriter {
+class RegisterWriter {
  public:
-  GroupWriter() noexcept = default;
+  RegisterWriter() noexcept = default;
   /// Continues from the counter of `memory`; zeroed memory is a group never written. Requires: memory.size() >=
   /// group_bytes(payload_bytes), 64-byte aligned. Context: setup.
-  GroupWriter(std::span<std::byte> memory, std::uint32_t payload_bytes) noexcept;
+  RegisterWriter(std::span<std::byte> memory, std::uint32_t payload_bytes) noexcept;
 
   /// Memory for the values of the next publication; 8-byte aligned. The address changes with every publish(). Until
   /// prefill() the memory holds the values of four publications ago. Context: cycle; wait-free.
@@ -67,11 +70,11 @@ class GroupWriter {
 };
 
 /// A reading side. Works on a read-only mapping.
-class GroupReader {
+class RegisterReader {
  public:
-  GroupReader() noexcept = default;
-  /// Requires: as GroupWriter. Context: setup.
-  GroupReader(const std::byte* memory, std::uint32_t payload_bytes) noexcept;
+  RegisterReader() noexcept = default;
+  /// Requires: as RegisterWriter. Context: setup.
+  RegisterReader(const std::byte* memory, std::uint32_t payload_bytes) noexcept;
 
   /// Copies the latest publication whole: header to `header`, payload_bytes to `values`. False, with both
   /// unchanged or partly overwritten, after kReadTries attempts were overtaken: the caller keeps its
@@ -133,7 +136,7 @@ class GroupReader {
   std::uint32_t stride_ = 0;
 };
 
-inline void GroupWriter::publish(Nanoseconds now, std::uint64_t valid) noexcept {
+inline void RegisterWriter::publish(Nanoseconds now, std::uint64_t valid) noexcept {
   // Loads all members first: the compiler must assume that a store to the group may change them.
   std::byte* const base = base_;
   const std::uint64_t n = latest_ + 1;
@@ -145,17 +148,21 @@ inline void GroupWriter::publish(Nanoseconds now, std::uint64_t valid) noexcept 
   latest_ = n;
 }
 
-inline void GroupWriter::prefill() noexcept {
+inline void RegisterWriter::prefill() noexcept {
   shared_copy::move_inside(staging(), slot_of(latest_) + sizeof(chimera_slot), payload_bytes_);
 }
 
-inline void GroupWriter::write(const std::byte* values, Nanoseconds now, std::uint64_t valid) noexcept {
+inline void RegisterWriter::write(const std::byte* values, Nanoseconds now, std::uint64_t valid) noexcept {
   shared_copy::copy_in(staging(), values, payload_bytes_);
   publish(now, valid);
 }
 
-inline const chimera_slot* GroupReader::published() const noexcept {
+inline const chimera_slot* RegisterReader::published() const noexcept {
   return reinterpret_cast<const chimera_slot*>(slot(shared_copy::word(base_).load(std::memory_order_acquire)));
 }
+
+/// The sides of a group: of the register, or of a plain group where no context reads copies.
+using GroupWriter = std::conditional_t<mechanisms::kCopies, RegisterWriter, PlainGroupWriter>;
+using GroupReader = std::conditional_t<mechanisms::kCopies, RegisterReader, PlainGroupReader>;
 
 }  // namespace chimera

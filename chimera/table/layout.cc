@@ -9,8 +9,6 @@
 namespace chimera {
 namespace {
 
-constexpr std::uint64_t kElementAlignment = 8;
-
 class Fnv1a {
  public:
   void add(std::string_view text) noexcept {
@@ -47,7 +45,7 @@ Result<std::uint32_t> place_variables(const GroupSpec& spec, GroupId group, std:
           .error(ErrorCode::kRefused);
     places[i] = {group, static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(bytes),
                  static_cast<std::uint32_t>(i)};
-    offset += (bytes + kElementAlignment - 1) / kElementAlignment * kElementAlignment;
+    offset += round_to_value(static_cast<std::uint32_t>(bytes));
   }
   return static_cast<std::uint32_t>(offset);
 }

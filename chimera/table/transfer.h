@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/table/group.h"
 #include "chimera/table/local_group.h"
 
@@ -28,7 +29,7 @@ class GroupInput {
   /// Updates slot(). False if it is unchanged because the writer overtook the read (the LocalGroup counts this).
   /// Context: cycle; bounded; O(1) when direct, otherwise O(payload).
   bool latch() noexcept {
-    if (local_ == nullptr) {
+    if (!mechanisms::kCopies || local_ == nullptr) {
       slot_ = reader_.published();
       return true;
     }

@@ -5,16 +5,21 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <type_traits>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/base/time.h"
 #include "chimera/task/abi.h"
 #include "chimera/task/signal.h"
 
 namespace chimera {
 
+/// A count of the run: 32 bits where the target has no more.
+using Count = std::conditional_t<mechanisms::kCopies, std::uint64_t, std::uint32_t>;
+
 /// Smallest, largest and sum of a duration. Context: cycle; wait-free.
 struct Spread {
-  std::uint64_t count = 0;
+  Count count = 0;
   Nanoseconds min = kNever;
   Nanoseconds max{INT64_MIN};
   Nanoseconds sum;
@@ -29,13 +34,23 @@ struct Spread {
   Nanoseconds mean() const noexcept { return {count == 0 ? 0 : sum.count / static_cast<std::int64_t>(count)}; }
 };
 
+/// Execution times of cycle, and of all other methods together.
+struct CycleSpread {
+  Spread cycle, others;
+
+  constexpr Spread& operator[](int method) noexcept { return method == CHIMERA_CYCLE ? cycle : others; }
+  constexpr const Spread& operator[](int method) const noexcept { return method == CHIMERA_CYCLE ? cycle : others; }
+};
+inline constexpr bool kMethodsAreTimed = mechanisms::kCopies || mechanisms::kSwitch;
+using MethodSpreads = std::conditional_t<kMethodsAreTimed, Spread[CHIMERA_METHODS], CycleSpread>;
+
 /// Adds to a count that only the calling thread changes, while count_of() may read it. Context: cycle; wait-free.
-inline void add_to(std::uint64_t& count, std::uint64_t n) noexcept {
-  const std::atomic_ref<std::uint64_t> shared(count);
+inline void add_to(Count& count, Count n) noexcept {
+  const std::atomic_ref<Count> shared(count);
   shared.store(shared.load(std::memory_order_relaxed) + n, std::memory_order_relaxed);
 }
-inline std::uint64_t count_of(std::uint64_t& count) noexcept {
-  return std::atomic_ref<std::uint64_t>(count).load(std::memory_order_relaxed);
+inline std::uint64_t count_of(Count& count) noexcept {
+  return std::atomic_ref<Count>(count).load(std::memory_order_relaxed);
 }
 
 /// All counts about one task. Only the job step and the executor of its context write it.
@@ -43,32 +58,32 @@ struct Profile {
   // The members that every job adds to come first (Task).
   Spread response;                    ///< release to completion of a cycle
   Spread start_delay;                 ///< release to start of a cycle: its max minus min is the start jitter
-  std::uint64_t cycles = 0;           ///< completed (published) cycles since spawn
+  Count cycles = 0;           ///< completed (published) cycles since spawn
   std::uint32_t missed_in_a_row = 0;
   // These members fill a gap, because a job step multiplies by the size of a task. 65535: or more.
   std::uint16_t restarts = 0;         ///< by the reaction `restart` of on_fault
   std::uint16_t takeovers = 0;        ///< number of times that it replaced a failed task
   /// Execution time of a method, with both its transfers; in virtual time the modelled time.
-  Spread execution[CHIMERA_METHODS];
-  std::uint64_t aborted = 0;          ///< cycles that gave up
-  std::uint64_t partial = 0;          ///< published cycles that gave up with a useful result
-  std::uint64_t tolerated = 0;        ///< missed deadlines without a reaction, as `tolerate` allows
-  std::uint64_t held = 0;             ///< late cycles not published (on_miss: hold)
-  std::uint64_t missed = 0;           ///< deadlines: cycles that ended late, releases dropped for lack of time
-  std::uint64_t overrun = 0;          ///< cycles that used more than their budget
-  std::uint64_t min_refused = 0;      ///< cycles whose minimum time was no longer available
-  std::uint64_t dropped = 0;          ///< releases dropped
-  std::uint64_t stale = 0;            ///< inputs that kept their old value because a read was overtaken
-  std::uint64_t rejected = 0;         ///< outputs that a safety port refused: NaN, infinite or out of range
-  std::uint64_t preempted = 0;        ///< number of times that a more urgent job took the processor
-  std::uint64_t demoted = 0;          ///< jobs that continued below all real-time threads
-  std::uint64_t events = 0;           ///< behind a server: events that came while the task was ON
-  std::uint64_t events_lost = 0;      ///< behind a server: events while it was not ON, or waiting when it went OFF;
+  MethodSpreads execution;
+  Count aborted = 0;          ///< cycles that gave up
+  Count partial = 0;          ///< published cycles that gave up with a useful result
+  Count tolerated = 0;        ///< missed deadlines without a reaction, as `tolerate` allows
+  Count held = 0;             ///< late cycles not published (on_miss: hold)
+  Count missed = 0;           ///< deadlines: cycles that ended late, releases dropped for lack of time
+  Count overrun = 0;          ///< cycles that used more than their budget
+  Count min_refused = 0;      ///< cycles whose minimum time was no longer available
+  Count dropped = 0;          ///< releases dropped
+  Count stale = 0;            ///< inputs that kept their old value because a read was overtaken
+  Count rejected = 0;         ///< outputs that a safety port refused: NaN, infinite or out of range
+  Count preempted = 0;        ///< number of times that a more urgent job took the processor
+  Count demoted = 0;          ///< jobs that continued below all real-time threads
+  Count events = 0;           ///< behind a server: events that came while the task was ON
+  Count events_lost = 0;      ///< behind a server: events while it was not ON, or waiting when it went OFF;
                                       ///< any task: events it sent without room on the way to another rtpu
-  std::uint64_t exhausted = 0;        ///< number of times that its server ran out of capacity during a job
+  Count exhausted = 0;        ///< number of times that its server ran out of capacity during a job
   Nanoseconds on_since = kNever;      ///< kNever: not ON
   Nanoseconds on_before;              ///< time ON before on_since
-  Nanoseconds late[3];                ///< the results of of_late() for reinit, on and off
+  Nanoseconds late[kMethodsAreTimed ? 3 : 1];  ///< the results of of_late() for reinit, on and off
 
   /// The recent time of a method: the length of a gap for it. For reinit, on and off it is the longest call, halved at
   /// each later call, so that one delayed call does not count for ever. For other methods it is the longest call ever.
@@ -85,6 +100,7 @@ struct Profile {
     if (place >= 0) late[place] = std::max(used, Nanoseconds{late[place].count / 2});
   }
   static constexpr int late_place(Method method) noexcept {
+    if constexpr (!kMethodsAreTimed) return -1;
     return method == Method::kReinit ? 0 : method == Method::kOn ? 1 : method == Method::kOff ? 2 : -1;
   }
 

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "chimera/base/fixed.h"
+#include "chimera/base/mechanisms.h"
 #include "chimera/table/group.h"
 #include "chimera/table/transfer.h"
 #include "chimera/task/abi.h"
@@ -42,7 +43,7 @@ struct SentSignal {
   TaskId target;
 };
 
-inline constexpr std::size_t kOutboxSize = 16;
+inline constexpr std::size_t kOutboxSize = mechanisms::kSignals ? 16 : 1;
 
 /// The target of a request: none, or lists of tasks that SentSignals keeps. Otherwise a configuration number.
 inline constexpr std::uint16_t kNoRequest = UINT16_MAX, kListsRequested = UINT16_MAX - 1;
@@ -52,7 +53,7 @@ inline std::atomic<std::uint32_t> running_untold{0};
 
 /// The members that every job touches come first, on few cache lines: with a thousand tasks, cache misses dominate the
 /// cost of a job.
-struct alignas(64) Task {
+struct alignas(kCacheLine) Task {
   // Constant after set-up, or after the construction of the component.
   chimera_method cycle = nullptr;  ///< the component's
   void* instance = nullptr;        ///< the component's state
@@ -81,11 +82,11 @@ struct alignas(64) Task {
   const TaskSpec* spec = nullptr;
   chimera_background background = nullptr;  ///< set at cycle boundaries, from the end of init to kill; null: none
   chimera_call call{};
-  chimera_fault said{};  ///< the present method stores its fault here; faults keeps the last one
+  TaskSaid said = said_by_method;  ///< the present method stores its fault here; faults keeps the last one
   Profile profile;
 
   // Rarely touched.
-  FaultRecord faults;
+  TaskFaults faults;
   FixedVector<SentSignal, kOutboxSize> outbox;  ///< its end and the next four share a cache line, which jobs read
   /// The present job must give up, because it used up its budget. Relaxed, pairs with nothing: a job that sees it late
   /// gives up late.

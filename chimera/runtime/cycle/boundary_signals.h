@@ -26,7 +26,7 @@ struct RefusedSignal {
   State state = State::kNotCreated;  ///< of the task at `at`
 };
 
-inline constexpr std::size_t kRefusedKept = 64;
+inline constexpr std::size_t kRefusedKept = mechanisms::kCopies ? 64 : 4;
 
 /// A task's repeated request is passed on after this time. While it waits, another request replaces it.
 inline constexpr Nanoseconds kAskAgain = milliseconds(100);
@@ -35,8 +35,8 @@ inline constexpr Nanoseconds kAskAgain = milliseconds(100);
 /// theirs.
 class BoundarySignals {
  public:
-  /// `switching` null: nothing is switched. All arguments outlive this but `options`, whose script is kept and whose listener gets the reports. Context:
-  /// setup.
+  /// `switching` null: nothing is switched. All arguments outlive this but `options`, whose script is kept and whose
+  /// listener gets the reports. Context: setup.
   BoundarySignals(TaskSet& set, const RunOptions& options, ContextTap& tap, Settlement& settlement, JobThreads& threads,
                   Switching* switching) noexcept
       : set_(set), script_(options.script), tap_(tap), settlement_(settlement), threads_(threads),

@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <span>
 
-#include "chimera/base/mechanisms.h"
 #include "chimera/runtime/cycle/boundary_signals.h"
 #include "chimera/runtime/cycle/takeover_record.h"
 #include "chimera/runtime/life/settlement.h"
@@ -19,9 +18,6 @@
 #include "chimera/runtime/switch/switching.h"
 
 namespace chimera {
-
-/// Tasks that failed can be brought back.
-inline constexpr bool kRecovers = mechanisms::kStandbys || mechanisms::kRestart;
 
 /// Context of everything not marked: cycle boundary; as long as the methods of components take; no allocation but
 /// theirs.

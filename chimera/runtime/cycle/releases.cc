@@ -17,12 +17,21 @@ bool is_built(OnMiss reaction, bool can_demote, bool can_switch) noexcept {
   return (can_switch || reaction != OnMiss::kSwitch) && (can_demote || reaction != OnMiss::kDemote);
 }
 
-QueueStorage storage_for(std::size_t n, SetupMemory& memory) {
-  return {{memory.take<ClassMember>(n), memory.take<TaskClass>(n), memory.take<std::uint32_t>(n)},
-          memory.take<QueueTask>(n),
-          memory.take<LooseJob>(n),
-          memory.take<std::uint32_t>(n),
-          memory.take<std::uint32_t>(n)};
+MissCause* cause_for(const BoundaryListener* guest, PartIf<mechanisms::kBlame, std::optional<MissCause>>& heard,
+                     TaskSet& set, JobThreads& threads) {
+  if constexpr (mechanisms::kBlame)
+    if (guest != nullptr) return &heard->emplace(set.tasks(), threads, set.setup_memory());
+  return nullptr;
+}
+
+QueueStorage storage_for(std::span<const TaskSpec> tasks, SetupMemory& memory) {
+  const std::size_t n = tasks.size(), n_classes = TaskClasses::count(tasks);
+  const std::size_t n_beside = mechanisms::kPreemptive ? n : 0;
+  return {{memory.take<ClassMember>(n), memory.take<TaskClass>(n_classes), memory.take<std::uint32_t>(n)},
+          memory.take<QueueTask>(n_beside),
+          memory.take<LooseJob>(n_beside),
+          memory.take<std::uint32_t>(n_classes),
+          memory.take<std::uint32_t>(n_classes)};
 }
 
 }  // namespace
@@ -47,17 +56,36 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
            options.digest),
       digest_(options.digest), in_loop_(set.tasks(), &queue_, options.preemptive),
       threads_(options.threads != nullptr ? *options.threads : in_loop_),
-      queue_(options.policy, set.spec().tasks, storage_for(records_.size(), set.setup_memory())),
-      misses_(set.tasks(), records_, tap_, make_cause(), clock),
-      jobs_(records_, tap_, misses_, cause(), clock, tap_.is_on() || digest_ != nullptr || guest_ != nullptr),
+      cause_(cause_for(guest_, heard_, set, threads_)),
+      queue_(options.policy, set.spec().tasks, storage_for(set.spec().tasks, set.setup_memory())),
+      misses_(set.tasks(), records_, tap_, cause_, clock),
+      jobs_(records_, tap_, misses_, cause_, clock, tap_.is_on() || digest_ != nullptr || guest_ != nullptr),
       members_(set.tasks(), records_, queue_, tap_, guest_),
-      settlement_({set, records_, tap_, members_, misses_, cause(), guest_}),
+      settlement_({set, records_, tap_, members_, misses_, cause_, guest_}),
       switching_(Switching::Parts{set, queue_, threads_, members_, settlement_, tap_, misses_, clock}),
       signals_(set, options, tap_, settlement_, threads_, switching_.get()),
       recovery_(Recovery::Parts{set, settlement_, switching_.get(), signals_, queue_, threads_, guest_}) {
-  const bool may_switch = mechanisms::kSwitch && (set.others() == nullptr || options.switch_peers != nullptr);
+  const bool is_alone = set.others() == nullptr;
+  const bool may_switch = mechanisms::kSwitch && (is_alone || options.switch_peers != nullptr);
   const bool takes_requests = may_switch && may_request(set.spec());
-  prepare_switches(options, takes_requests);
+  SwitchPeers* peers = options.switch_peers;
+  if constexpr (mechanisms::kSwitch) {
+    const std::size_t n_switches = options.script.count(ScriptAct::Kind::kSwitch);
+    CHIMERA_ASSERT(is_alone ? peers == nullptr : n_switches == 0);
+    const std::size_t n_receipts = n_switches + kept_of_unscripted(set.spec());
+    if (is_alone && n_receipts > 0) {
+      LocalSwitches& switches = switches_->emplace();
+      switches.prepare(set.spec(), 1, n_receipts, options.asked, set.setup_memory());
+      switches.join(0, set, !threads_.preempt());
+      signals_.order_by(switches);
+      peers = &switches.of(0);
+    }
+    switching_->prepare(peers);
+    const bool takes_lists = options.asked != nullptr || options.switch_peers != nullptr;
+    if (takes_requests)
+      set.sent().allow_requests(set.setup_memory().take<TaskLists>(takes_lists ? set.tasks().size() : 0));
+  }
+  if constexpr (mechanisms::kRecovery) recovery_->prepare(peers);
   for (Task& task : set.tasks()) {
     const TaskSpec& spec = *task.spec;
     const bool can = options.preemptive || !set.is_mine(task.id);
@@ -72,34 +100,6 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
     record.budget = spec.budget > Nanoseconds{} ? spec.budget : kNever;
   }
   set.methods().run_by({&clock, options.threads, options.writer});
-}
-
-MissCause* Releases::make_cause() {
-  if constexpr (mechanisms::kBlame)
-    if (guest_ != nullptr) cause_->emplace(set_.tasks(), threads_, set_.setup_memory());
-  return cause();
-}
-
-void Releases::prepare_switches(const RunOptions& options, bool takes_requests) {
-  SwitchPeers* peers = options.switch_peers;
-  if constexpr (mechanisms::kSwitch) {
-    const std::size_t n_switches = options.script.count(ScriptAct::Kind::kSwitch);
-    const bool is_alone = set_.others() == nullptr;
-    CHIMERA_ASSERT(is_alone ? peers == nullptr : n_switches == 0);
-    const std::size_t n_receipts = n_switches + kept_of_unscripted(set_.spec());
-    if (is_alone && n_receipts > 0) {
-      LocalSwitches& switches = switches_->emplace();
-      switches.prepare(set_.spec(), 1, n_receipts, options.asked, set_.setup_memory());
-      switches.join(0, set_, !threads_.preempt());
-      signals_.order_by(switches);
-      peers = &switches.of(0);
-    }
-    switching_->prepare(peers);
-    const bool takes_lists = options.asked != nullptr || options.switch_peers != nullptr;
-    if (takes_requests)
-      set_.sent().allow_requests(set_.setup_memory().take<TaskLists>(takes_lists ? set_.tasks().size() : 0));
-  }
-  if constexpr (kRecovers) recovery_->prepare(peers);
 }
 
 void Releases::begin(Nanoseconds origin) noexcept {
@@ -126,7 +126,7 @@ void Releases::take_edge(Nanoseconds now, bool puts_off) noexcept {
   }
   signals_.carry_out_pending(now);
   Nanoseconds due = kNever, wake = kNever;
-  if constexpr (kRecovers) {
+  if constexpr (mechanisms::kRecovery) {
     recovery_->act(now);
     due = recovery_->due(), wake = recovery_->wake();
   }

@@ -86,7 +86,7 @@ class Releases {
   }
   /// The run is over: ends all switches and takeovers that are under way.
   void end(Nanoseconds now) noexcept {
-    if constexpr (kRecovers) recovery_->end(now);
+    if constexpr (mechanisms::kRecovery) recovery_->end(now);
     if constexpr (mechanisms::kSwitch) {
       switching_->end(now);
       if (*switches_) (*switches_)->end(now);
@@ -139,18 +139,12 @@ class Releases {
   ContextTap& tap() noexcept { return tap_; }
 
  private:
+  using HeardCause = PartIf<mechanisms::kBlame, std::optional<MissCause>>;
   static constexpr Nanoseconds kAtOnce{INT64_MIN};
   static constexpr std::atomic<bool> kNoStop{false};
   static constexpr SwitchReceipts kNoReceipts{};
 
   bool decide_start(const Job& job, Nanoseconds now) noexcept;
-  MissCause* cause() noexcept {
-    if constexpr (mechanisms::kBlame)
-      if (*cause_) return &**cause_;
-    return nullptr;
-  }
-  MissCause* make_cause();
-  void prepare_switches(const RunOptions& options, bool takes_requests);
 
   TaskSet& set_;
   BoundaryListener* guest_;
@@ -162,7 +156,8 @@ class Releases {
   Digest* digest_;  // null: none
   JobsInLoop in_loop_;
   JobThreads& threads_;
-  [[no_unique_address]] PartIf<mechanisms::kBlame, std::optional<MissCause>> cause_;  // only with a listener, which reports it
+  [[no_unique_address]] HeardCause heard_;
+  MissCause* cause_;  // null without a listener, which reports it
   ReadyQueue queue_;
   MissPolicy misses_;
   JobCycle jobs_;
@@ -171,7 +166,7 @@ class Releases {
   [[no_unique_address]] PartIf<mechanisms::kSwitch, std::optional<LocalSwitches>> switches_;  // of a lone context
   [[no_unique_address]] PartIf<mechanisms::kSwitch, Switching> switching_;
   BoundarySignals signals_;
-  [[no_unique_address]] PartIf<kRecovers, Recovery> recovery_;
+  [[no_unique_address]] PartIf<mechanisms::kRecovery, Recovery> recovery_;
 };
 
 }  // namespace chimera

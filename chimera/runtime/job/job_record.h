@@ -2,9 +2,9 @@
 // Record of the jobs of one task, beside the Task itself.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 
+#include "chimera/base/shared_word.h"
 #include "chimera/base/time.h"
 #include "chimera/runtime/job/miss_history.h"
 #include "chimera/task/task.h"
@@ -13,7 +13,7 @@ namespace chimera {
 
 /// One cache line a task: everything that a job touches beside the Task. The thread of the task writes it while a job
 /// of it is under way, cycle boundaries otherwise; both write the atomics.
-struct alignas(64) JobRecord {
+struct alignas(kCacheLine) JobRecord {
   /// Work that a job leaves for the next cycle boundary: bits of `left`.
   enum Left : std::uint8_t {
     kSettle = 1,     ///< the state of the task, signals it sent or a fault are to be looked at
@@ -42,10 +42,10 @@ struct alignas(64) JobRecord {
   /// Bits set by the thread of the task (fetch_or) and cleared by cycle boundaries (fetch_and). Relaxed, pairs with
   /// nothing: JobThreads::claim orders the data behind the bits, and a cycle boundary calls it before it touches the
   /// task.
-  std::atomic<std::uint8_t> left{0};
+  SharedWord<std::uint8_t> left{0};
   /// fetch_or of the reporter (a cycle boundary, the supervisor) pairs with that at the end of the job, both acq_rel:
   /// of a report and the end exactly one sees the other. Cleared before any thread knows of the next job.
-  std::atomic<std::uint8_t> reported{0};
+  SharedWord<std::uint8_t> reported{0};
   MissHistory history;  ///< kept if misses are tolerated
 };
 

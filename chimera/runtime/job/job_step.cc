@@ -18,9 +18,7 @@ void note_fault(Task& task, Method method, Nanoseconds at) noexcept {
   task.faults.method = method;
   if (task.faults.last.text[0] == '\0') std::strcpy(task.faults.last.text, "answered with a fault and gave no text");
   if (method != Method::kOff && method != Method::kKill) return;
-  ++task.faults.off_count;
-  task.faults.off_method = method;
-  std::memcpy(task.faults.off_text, task.faults.last.text, CHIMERA_FAULT_TEXT);
+  task.faults.keep_off();
 }
 
 // The method's report of its fault becomes the last fault of the task.
@@ -49,7 +47,7 @@ void record_fault(Task& task, Method method, const char* text, Nanoseconds at) n
 }
 
 void record_note(Task& task, const char* text) noexcept {
-  FaultRecord& record = task.faults;
+  TaskFaults& record = task.faults;
   task.has_news = true;
   std::size_t size = 0;
   while (size + 1 < sizeof record.note && text[size] != '\0') ++size;
@@ -89,7 +87,7 @@ static bool refuses_unsafe(Task& task, Method method, Nanoseconds now) noexcept 
 }
 
 Answer publish(Task& task, Method method, std::uint64_t valid, Nanoseconds now) noexcept {
-  if (task.has_safety && refuses_unsafe(task, method, now)) return Answer::kFault;
+  if (mechanisms::kSafety && task.has_safety && refuses_unsafe(task, method, now)) return Answer::kFault;
   task.valid = valid;
   task.group.publish(now, valid);
   return Answer::kOk;
@@ -134,7 +132,7 @@ BodyEnd cycle_step::judge_body(Task& task, std::int32_t value, Nanoseconds at) n
   body.is_partial = value == CHIMERA_PARTIAL;
   if (value != CHIMERA_OK && !body.is_partial) body.answer = answer_of(Method::kCycle, value);
   if (body.answer == Answer::kFault) take_fault(task, Method::kCycle, at);
-  if (body.answer == Answer::kOk && task.has_safety && refuses_unsafe(task, Method::kCycle, at))
+  if (mechanisms::kSafety && body.answer == Answer::kOk && task.has_safety && refuses_unsafe(task, Method::kCycle, at))
     body.answer = Answer::kFault;
   return body;
 }

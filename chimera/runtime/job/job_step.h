@@ -11,6 +11,7 @@
 // size (docs/decisions/0026-instructions-of-a-job.md).
 #pragma once
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/base/time.h"
 #include "chimera/runtime/job/job_clock.h"
 #include "chimera/runtime/task_word.h"
@@ -87,8 +88,9 @@ namespace cycle_step {
 
 /// The halves of read_inputs(). Groups produced elsewhere: once each, however many inputs look at them.
 [[gnu::always_inline]] inline void refresh_copies(Task& task) noexcept {
-  for (LocalGroup* copy : task.copies)
-    if (!copy->refresh()) ++task.profile.stale;
+  if constexpr (mechanisms::kCopies)
+    for (LocalGroup* copy : task.copies)
+      if (!copy->refresh()) ++task.profile.stale;
 }
 [[gnu::always_inline]] inline void read_input(Input& input) noexcept {
   (void)input.group.latch();
@@ -124,7 +126,7 @@ BodyEnd judge_body(Task& task, std::int32_t answer, Nanoseconds at) noexcept;
   call.dropped = time.dropped;
   call.illegal = time.illegal ? 1u : 0u;
   stage(task);
-  if (task.asks_sync) [[unlikely]]
+  if (mechanisms::kEvents && task.asks_sync) [[unlikely]]
     if (const Answer answer = ask_sync(task, time.release); answer != Answer::kOk) return {answer, Method::kSync};
   refresh_copies(task);
   for (Input& input : task.inputs) {
@@ -137,7 +139,7 @@ BodyEnd judge_body(Task& task, std::int32_t answer, Nanoseconds at) noexcept;
   task.said.text[0] = '\0';
   task.said.code = 0;
   const std::int32_t answer = task.cycle(task.instance, &call);
-  if (answer == CHIMERA_OK && !task.has_safety) [[likely]] return {};
+  if (answer == CHIMERA_OK && !(mechanisms::kSafety && task.has_safety)) [[likely]] return {};
   return judge_body(task, answer, time.release);
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "chimera/base/ids.h"
+#include "chimera/base/mechanisms.h"
 #include "chimera/base/time.h"
 #include "chimera/runtime/job/job_step.h"
 #include "chimera/schedule/ready_queue.h"
@@ -67,9 +68,11 @@ class JobsInLoop : public JobThreads {
   bool is_blocked(TaskId) noexcept override { return false; }
   bool run_beside_methods() const noexcept override { return false; }
   bool preempt() const noexcept override { return preemptive_; }
-  Nanoseconds latest_release() const noexcept override { return queue_->latest_release(); }
+  Nanoseconds latest_release() const noexcept override {
+    return mechanisms::kSwitch ? queue_->latest_release() : Nanoseconds{};
+  }
   bool has_job_before(TaskId task, Nanoseconds at) const noexcept override {
-    return tasks_[task.index].is_busy || queue_->has_waiting(task, at);
+    return mechanisms::kSwitch && (tasks_[task.index].is_busy || queue_->has_waiting(task, at));
   }
   void await_job(TaskId) noexcept override {}
   void hold_releases(Nanoseconds) noexcept override {}

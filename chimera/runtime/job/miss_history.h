@@ -2,10 +2,10 @@
 // Which of the last 64 cycles of a task missed their deadlines, and whether `tolerate` allows a miss among them.
 #pragma once
 
-#include <atomic>
 #include <bit>
 #include <cstdint>
 
+#include "chimera/base/shared_word.h"
 #include "chimera/task/task_spec.h"
 
 namespace chimera {
@@ -34,7 +34,7 @@ class MissHistory {
 
   // Of each cycle one bit, the latest the lowest, 1: the deadline was missed. Relaxed, pairs with nothing: written at
   // the end of jobs, read by the supervisor to see whether a miss is tolerated.
-  std::atomic<std::uint64_t> last_{0};
+  SharedWord<std::uint64_t> last_{0};
 };
 
 }  // namespace chimera

@@ -17,20 +17,22 @@ bool SentSignals::ring(TaskId id) noexcept {
 void SentSignals::deliver(Task& task) noexcept {
   for (const SentSignal& sent : task.outbox) {
     Task& target = tasks_[sent.target.index];
-    if (sent.signal == Signal::kWakeup && is_mine(sent.target)) {
+    if (mechanisms::kServers && sent.signal == Signal::kWakeup && is_mine(sent.target)) {
       (void)ring(sent.target);
       continue;
     }
-    const bool goes_to_manager = sent.signal == Signal::kOn && others_ != nullptr && others_->has_manager();
-    if (others_ != nullptr && (!is_mine(sent.target) || goes_to_manager)) {
-      const bool is_sent = others_->post(sent.signal, sent.target, task.id, false);
+    PeerView* const others = mechanisms::kPeers ? others_ : nullptr;
+    const bool goes_to_manager = sent.signal == Signal::kOn && others != nullptr && others->has_manager();
+    if (others != nullptr && (!is_mine(sent.target) || goes_to_manager)) {
+      const bool is_sent = others->post(sent.signal, sent.target, task.id, false);
       if (!is_sent && sent.signal == Signal::kWakeup) ++task.profile.events_lost;
       continue;
     }
     defer(target, sent.signal);
   }
+  if (!mechanisms::kSwitch || task.requested_set == kNoRequest) return task.forget_sent();
   if (task.requested_set == kListsRequested) request({UINT32_MAX, SwitchCause::kRequest, task.id, *lists_of(task.id)});
-  else if (task.requested_set != kNoRequest) request({task.requested_set, SwitchCause::kRequest, task.id});
+  else request({task.requested_set, SwitchCause::kRequest, task.id});
   task.forget_sent();
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/runtime/plan/switch_request.h"
 #include "chimera/runtime/state/peer_view.h"
 #include "chimera/runtime/state/task_memory.h"
@@ -60,7 +61,7 @@ class SentSignals {
   bool ring(TaskId task) noexcept;
 
  private:
-  bool is_mine(TaskId task) const noexcept { return memories_[task.index].is_planned(); }
+  bool is_mine(TaskId task) const noexcept { return !mechanisms::kPeers || memories_[task.index].is_planned(); }
 
   std::span<Task> tasks_;
   std::span<const TaskMemory> memories_;

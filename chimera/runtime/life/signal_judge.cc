@@ -74,9 +74,10 @@ bool SignalJudge::claims_groups_of(std::span<const TaskId> tasks) noexcept {
 bool SignalJudge::would_be_legal(std::span<const TaskId> tasks) noexcept {
   for (const Task& task : set_.tasks())
     wanted_[task.id.index] = (set_.is_mine(task.id) ? task.shown_state() : set_.others()->state(task.id)) == State::kOn;
-  set_.standbys().add_covered(wanted_, tasks);
+  if constexpr (mechanisms::kStandbys) set_.standbys().add_covered(wanted_, tasks);
   for (TaskId id : tasks) wanted_[id.index] = true;
   if (is_legal_set(set_.spec().variables, wanted_)) return true;
+  if constexpr (!mechanisms::kStandbys) return false;
   // The producers of a standby's inputs may have failed with its primary: the last values stand, and the flag is up.
   const Standbys& standbys = set_.standbys();
   const std::size_t group = tasks.size() == 1 ? standbys.group_of(tasks[0]) : standbys.n_groups();

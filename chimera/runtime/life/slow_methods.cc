@@ -13,7 +13,7 @@ void SlowMethods::prepare(std::span<Task> tasks, std::span<TaskHost> hosts, Task
   methods_ = &methods;
   service_ = service;
   serving_ = &serving;
-  asked_ = memory.take<Asked>(tasks.size());
+  asked_ = memory.take<Asked>(is_there() ? tasks.size() : 0);
 }
 
 void SlowMethods::ask(Task& task, const Asked& asked) noexcept {

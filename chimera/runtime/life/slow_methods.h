@@ -6,6 +6,7 @@
 #include <atomic>
 #include <span>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/runtime/life/task_host.h"
 #include "chimera/runtime/life/task_methods.h"
 #include "chimera/runtime/service.h"
@@ -29,10 +30,10 @@ class SlowMethods {
                std::atomic<std::uint32_t>& serving, SetupMemory& memory);
 
   /// True when there is a service thread.
-  bool is_there() const noexcept { return service_ != nullptr; }
+  bool is_there() const noexcept { return mechanisms::kService && service_ != nullptr; }
   /// True if the service thread runs the method.
   bool takes(Method method) const noexcept {
-    return service_ != nullptr && (method == Method::kInit || method == Method::kKill);
+    return is_there() && (method == Method::kInit || method == Method::kKill);
   }
   /// Hands the task over; no other thread touches it before finish(). A task that is being killed is no longer ON,
   /// whatever its kill does. Context: cycle boundary; wait-free.

@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/base/message.h"
 #include "chimera/runtime/life/task_set.h"
 
@@ -29,6 +30,7 @@ TaskId task_named(std::string_view name, std::span<const TaskSpec> tasks) noexce
 }
 
 std::int32_t host_signal(void* context, std::uint32_t signal, const char* name) {
+  if constexpr (!mechanisms::kSignals) return CHIMERA_FAULT;
   const TaskHost& host = host_of(context);
   const TaskId target = name == nullptr ? host.task->id : task_named(name, host.set->spec().tasks);
   if (!target.is_valid() || signal > CHIMERA_SIGNAL_WAKEUP) return CHIMERA_FAULT;
@@ -71,6 +73,7 @@ std::int32_t request_lists(void* context, const char* text) {
 }
 
 std::int32_t host_request(void* context, const char* name) {
+  if constexpr (!mechanisms::kSignals) return CHIMERA_FAULT;
   if (has_lists(name)) return request_lists(context, name);
   const TaskHost& host = host_of(context);
   const auto sets = host.set->spec().sets;
@@ -110,7 +113,9 @@ chimera_text host_configuration(void* context) {
   return {name.data(), static_cast<std::uint32_t>(name.size())};
 }
 
-SafeFrames* frames_of(void* context) noexcept { return host_of(context).set->place().safe_frames; }
+SafeFrames* frames_of(void* context) noexcept {
+  return mechanisms::kPeers ? host_of(context).set->place().safe_frames : nullptr;
+}
 
 std::int32_t host_safe_frame(void* context, std::uint32_t index, std::int32_t descriptor, std::int64_t pause_ns) {
   SafeFrames* frames = frames_of(context);

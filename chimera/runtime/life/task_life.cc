@@ -72,7 +72,7 @@ SignalReport TaskLife::signal(std::span<const TaskId> tasks, Signal signal, Nano
   report.why = judge_.judge(tasks, signal);
   if (report.why != Refusal::kNone) return report;
   for (TaskId id : tasks) {
-    if (signal == Signal::kOff) set_.standbys().let_cool(id, true);
+    if (mechanisms::kStandbys && signal == Signal::kOff) set_.standbys().let_cool(id, true);
     report = carry_out(id, signal, now);
     if (signal != Signal::kOn || report.after == State::kOn) continue;
     if (report.why == Refusal::kNotYet) break;
@@ -118,7 +118,7 @@ SignalReport TaskLife::carry_out(TaskId id, Signal signal, Nanoseconds now) {
 
 // Other constants may have come into force since the task was initialised: it is re-initialised before `on`.
 bool TaskLife::follow_constants(Task& task, Nanoseconds now) {
-  if (!set_.constants().has_choice() || !set_.constants().uses_changed(task.id)) return true;
+  if (!mechanisms::kConstants || !set_.constants().has_choice() || !set_.constants().uses_changed(task.id)) return true;
   const std::uint64_t faults = task.faults.count;
   (void)advance(task, next(State::kOff, Signal::kReinit, false), now);
   if (task.state == State::kOff && task.faults.count == faults) return true;
@@ -240,7 +240,7 @@ Next TaskLife::conclude(Task& task, const StepRule& step, Answer answer, Nanosec
   progress.has_new_constants = false;
   if (answer == Answer::kOk) answer = after_ok(task, step, now);
   task.profile.add_call(step.method, progress.used + (read_clock(now) - began));
-  if (progress.has_new_constants && !progress.is_moved) reinit_users(task.id, now);
+  if (mechanisms::kConstants && progress.has_new_constants && !progress.is_moved) reinit_users(task.id, now);
   if (step.step == Step::kOn) task.standing = answer == Answer::kNotYet ? Standing::kHalfOn : Standing::kPlain;
   if (answer == Answer::kNotYet) {
     progress.report.is_accepted = false;

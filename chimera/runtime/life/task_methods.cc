@@ -2,6 +2,7 @@
 // Calls methods of components, and begins and ends their background.
 #include "chimera/runtime/life/task_methods.h"
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/runtime/life/stale_inputs.h"
 #include "chimera/runtime/making.h"
 #include "chimera/runtime/task_word.h"
@@ -31,12 +32,13 @@ Answer TaskMethods::call(Task& task, Method method, Nanoseconds now) { return ru
 
 Answer TaskMethods::run(Task& task, Method method, Nanoseconds now, JobThreads* threads) {
   if (method == Method::kKill) task.descriptor = -1;
-  if (method == Method::kKill && !end_background(task, now)) return Answer::kFault;
+  if (mechanisms::kBackground && method == Method::kKill && !end_background(task, now)) return Answer::kFault;
   const Answer answer = threads != nullptr ? threads->call(task, method, now) : call_method(task, method, now);
   const bool is_safe = (method == Method::kOff || method == Method::kKill) && answer == Answer::kOk;
-  if (is_safe && safe_frames_ != nullptr) safe_frames_->take_back(task.id);
+  if (mechanisms::kPeers && is_safe && safe_frames_ != nullptr) safe_frames_->take_back(task.id);
   if (method != Method::kInit || answer != Answer::kOk) return answer;
-  if (!begin_background(task, now)) return Answer::kFault;
+  if (mechanisms::kBackground && !begin_background(task, now)) return Answer::kFault;
+  if constexpr (!mechanisms::kServers) return answer;
   if (const chimera_event_source source = event_source_of(*task.component)) task.descriptor = source(task.instance);
   return answer;
 }

@@ -60,7 +60,7 @@ struct TaskMethodsTest : ::testing::Test {
     app.make();
     memories.push_back(*TaskMemory::create(app.tasks[0], *app.components[0], heap));
     EXPECT_TRUE(table.prepare(app.spec, {}, heap));
-    table.place_outputs(TaskId(0u), memories[0]);
+    table.place_outputs(TaskId(0u), memories[0], heap);
     task.spec = &app.tasks[0];
     task.component = app.components[0];
     task.id = TaskId(0u);

@@ -24,7 +24,7 @@ TaskSet::~TaskSet() {
   for (Task& task : tasks_) {
     TaskMemory& memory = memories_[task.id.index];
     if (!memory.is_planned()) continue;
-    (void)methods_.end_background(task, {});
+    if constexpr (mechanisms::kBackground) (void)methods_.end_background(task, {});
     memory.destroy(task);
   }
 }
@@ -43,14 +43,14 @@ Result<void> TaskSet::build(std::span<const chimera_component* const> components
   if (auto produced = check_producers(spec_); !produced) return produced;
   if (auto laid = table_.prepare(spec_, place_, memory_); !laid) return laid;
   for (const Task& task : tasks_)
-    if (is_mine(task.id)) table_.place_outputs(task.id, memories_[task.id.index]);
+    if (is_mine(task.id)) table_.place_outputs(task.id, memories_[task.id.index], memory_);
   prepare_parts();
   return {};
 }
 
 Result<void> TaskSet::plan_memories(std::span<const chimera_component* const> components) {
   for (std::size_t t = 0; t < spec_.tasks.size(); ++t) {
-    if (place_.rtpu.is_valid() && spec_.tasks[t].rtpu != place_.rtpu) continue;
+    if (mechanisms::kPeers && place_.rtpu.is_valid() && spec_.tasks[t].rtpu != place_.rtpu) continue;
     const auto planned = TaskMemory::create(spec_.tasks[t], *components[t], memory_);
     if (!planned) return planned.error();
     memories_[t] = *planned;
@@ -74,16 +74,16 @@ void TaskSet::prepare_task(std::size_t t, const chimera_component* component) {
 void TaskSet::prepare_parts() {
   methods_.prepare(memories_, {place_.at_edge, place_.making}, place_.safe_frames);
   slow_.prepare(tasks_, hosts_, methods_, place_.service, *place_.serving, memory_);
-  sent_.prepare(tasks_, memories_, place_.others);
+  sent_.prepare(tasks_, memories_, others());
   flag_.prepare(spec_.variables, tasks_, memory_);
   life_.prepare(spec_, memory_);
   standbys_.prepare(spec_, life_.judge().rivals(), memory_);
-  if (place_.others != nullptr) changes_.prepare(tasks_.size(), memory_);
-  constants_.prepare(spec_, table_, memories_, place_.others, memory_);
+  if (others() != nullptr) changes_.prepare(tasks_.size(), memory_);
+  constants_.prepare(spec_, table_, memories_, others(), memory_);
   for (const StaleSpec& stale : spec_.stale)
     if (TaskMemory& memory = memories_[stale.task.index]; memory.is_planned())
       hosts_[stale.task.index].stale = &StaleInputs::make(stale.after, memory, spec_.variables, memory_);
-  sources_.prepare(spec_, table_, tasks_, memories_, place_.others, place_.preemptive, memory_);
+  sources_.prepare(spec_, table_, tasks_, memories_, others(), place_.preemptive, memory_);
 }
 
 void TaskSet::judge_as(const TaskBits* target) noexcept {
@@ -101,7 +101,7 @@ bool TaskSet::counts_as_on(TaskId task) const noexcept {
 
 void TaskSet::on_set_changed() noexcept {
   for (const Task& task : tasks_)
-    states_[task.id.index] = is_mine(task.id) ? task.shown_state() : place_.others->state(task.id);
+    states_[task.id.index] = is_mine(task.id) ? task.shown_state() : others()->state(task.id);
   if (standbys_.n_groups() > 0) {
     JobClock* const clock = methods_.clock();
     standbys_.follow(states_, life_.judge().living(), clock == nullptr ? Nanoseconds{} : clock->now());

@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/base/result.h"
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/application_spec.h"
@@ -77,11 +78,11 @@ class TaskSet {
   std::span<Task> tasks() noexcept { return tasks_; }
   std::span<const Task> tasks() const noexcept { return tasks_; }
   TaskMemory& memory(TaskId task) noexcept { return memories_[task.index]; }
-  bool is_mine(TaskId task) const noexcept { return memories_[task.index].is_planned(); }
+  bool is_mine(TaskId task) const noexcept { return !mechanisms::kPeers || memories_[task.index].is_planned(); }
   /// The number of this context among those of the application: that of its rtpu; 0 when it is alone.
   std::uint32_t context() const noexcept { return place_.rtpu.is_valid() ? place_.rtpu.index : 0; }
   /// View of other contexts; null: there is none.
-  PeerView* others() const noexcept { return place_.others; }
+  PeerView* others() const noexcept { return mechanisms::kPeers ? place_.others : nullptr; }
   const ContextPlace& place() const noexcept { return place_; }
   const ApplicationSpec& spec() const noexcept { return spec_; }
   /// Where the set and its executors take their memory from. Context: setup.

@@ -50,6 +50,7 @@ void for_each_pair(const ApplicationSpec& spec, Act act) {
 }  // namespace
 
 void Rivals::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
+  if constexpr (!mechanisms::kRivals) return;
   std::size_t n = 0;
   for_each_pair(spec, [&](TaskId, TaskId, std::string_view) { ++n; });
   if (n == 0) return;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/application_spec.h"
 
@@ -17,7 +18,7 @@ class Rivals {
  public:
   /// The spec outlives this. Context: setup; O(tasks^2 * ports^2) over the tasks with resources.
   void prepare(const ApplicationSpec& spec, SetupMemory& memory);
-  bool is_any() const noexcept { return !pairs_.empty(); }
+  bool is_any() const noexcept { return mechanisms::kRivals && !pairs_.empty(); }
   /// O(pairs).
   bool are(TaskId a, TaskId b) const noexcept;
   /// The task has a rival, or uses a constant of a task that has one, or of such a one: while the rival is created, it

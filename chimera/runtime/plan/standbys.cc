@@ -7,6 +7,7 @@
 namespace chimera {
 
 void Standbys::prepare(const ApplicationSpec& spec, const Rivals& rivals, SetupMemory& memory) {
+  if constexpr (!mechanisms::kStandbys) return;
   tasks_ = spec.tasks;
   rivals_ = &rivals;
   is_covered_ = memory.take<bool>(spec.tasks.size());

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/application_spec.h"
 #include "chimera/runtime/plan/rivals.h"
@@ -25,7 +26,7 @@ class Standbys {
 
   /// The spec and the rivals outlive this. Context: setup.
   void prepare(const ApplicationSpec& spec, const Rivals& rivals, SetupMemory& memory);
-  std::size_t n_groups() const noexcept { return groups_.size(); }
+  std::size_t n_groups() const noexcept { return mechanisms::kStandbys ? groups_.size() : 0; }
 
   /// `states[t]` is that of task t, over all contexts, at `now`; `living` are the contexts whose processes live.
   void follow(std::span<const State> states, std::uint32_t living, Nanoseconds now) noexcept;
@@ -33,9 +34,9 @@ class Standbys {
   void follow_switch(const TaskBits& target) noexcept;
   /// The task has failed, and a standby that is OFF, or NOT-CREATED for its resource, may be ON within one period of
   /// its own: until then the task counts as ON where the illegal-configuration flag is judged.
-  bool is_covered(TaskId task) const noexcept { return is_covered_[task.index]; }
+  bool is_covered(TaskId task) const noexcept { return mechanisms::kStandbys && is_covered_[task.index]; }
   /// Some group lost the task that was ON, that task is still in ERROR, and no task took over in time.
-  bool is_any_uncovered() const noexcept { return is_any_uncovered_; }
+  bool is_any_uncovered() const noexcept { return mechanisms::kStandbys && is_any_uncovered_; }
   /// Some group waits for a task to take over.
   bool is_any_waiting() const noexcept { return is_any_waiting_; }
   /// When follow() gives another result although no state has changed; kNever: never.

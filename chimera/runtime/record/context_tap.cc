@@ -43,7 +43,8 @@ void ContextTap::append_row(const Task& task) noexcept {
   if (task.standing == Standing::kWarm) return;  // its publications are no values of variables
   if (task.group.sequence() == rows.last || task.group.sequence() == 0) return;
   rows.last = task.group.sequence();
-  if (mechanisms::kDigest && digest_ != nullptr) return digest_->add_publication(task);  // in virtual time no other reader wants rows
+  // With a digest no other reader wants rows.
+  if (mechanisms::kDigest && digest_ != nullptr) return digest_->add_publication(task);
   if (!is_on()) return;
   tap_->append_row(*task.group.published(), task.group.payload_bytes(), task.id, rtpu_, rows.count++);
 }

@@ -17,13 +17,13 @@ void ContextConstants::prepare(const ApplicationSpec& spec, const ContextTable& 
   others_ = others;
   store_ = ConstantStore(spec, memory);
   for (const ConstantSpec& constant : spec.constants) has_choice_ = has_choice_ || constant.producers.size() > 1;
-  in_force_ = set_of_start(spec);
-  plan_foreign(memory);
+  if constexpr (mechanisms::kSwitch) in_force_ = set_of_start(spec);
+  if constexpr (mechanisms::kPeers) plan_foreign(memory);
 }
 
 // The producers that count for the task do so until the next task is looked at.
 void ContextConstants::choose_for(TaskId task) noexcept {
-  if (!has_choice_) return;
+  if (!has_choice()) return;
   for (std::size_t c = 0; c < spec_->constants.size(); ++c)
     store_.choose(ConstantId(c), producer_for(*spec_, ConstantId(c), task, in_force_));
 }
@@ -76,18 +76,18 @@ void ContextConstants::read_foreign() noexcept {
 }
 
 bool ContextConstants::give(TaskId task, FixedString<160>& why) noexcept {
-  read_foreign();
+  if constexpr (mechanisms::kPeers) read_foreign();
   choose_for(task);
   return memories_[task.index].read_constants(store_, why) && lists_fit(task, why);
 }
 
 bool ContextConstants::collect(TaskId task, FixedString<160>& why) noexcept {
   TaskMemory& memory = memories_[task.index];
-  const int changed = memory.write_constants(store_, task);
+  const int changed = mechanisms::kConstants ? memory.write_constants(store_, task) : 0;
   choose_for(task);
   has_new_ = false;
   if (!memory.fix_extents(store_, why) || !lists_fit(task, why)) return false;
-  if (others_ != nullptr) publish(task);
+  if (mechanisms::kPeers && others_ != nullptr) publish(task);
   has_new_ = changed > 0;
   return true;
 }

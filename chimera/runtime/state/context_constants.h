@@ -7,6 +7,7 @@
 #include <span>
 
 #include "chimera/base/fixed.h"
+#include "chimera/base/mechanisms.h"
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/plan/constant_choice.h"
 #include "chimera/runtime/state/constant_store.h"
@@ -33,11 +34,11 @@ class ContextConstants final : public MadeConstants {
   /// False with `why` as give().
   bool collect(TaskId task, FixedString<160>& why) noexcept;
   /// True if the last collect() brought a new value.
-  bool has_new() const noexcept { return has_new_; }
+  bool has_new() const noexcept { return mechanisms::kConstants && has_new_; }
   /// True if a constant that the task was initialised with has a new value. Requires: it was constructed.
   bool uses_changed(TaskId task) noexcept;
   /// Some constant has several producers.
-  bool has_choice() const noexcept { return has_choice_; }
+  bool has_choice() const noexcept { return mechanisms::kConstants && has_choice_; }
   /// From now on the constants of that configuration are in force. This re-initialises no task.
   void put_in_force(std::uint32_t set) noexcept { in_force_ = set; }
   /// kNoSet: no configuration of the application is its start set.

@@ -67,7 +67,7 @@ struct ContextConstantsTest : ::testing::Test {
     }
     for (std::size_t t = 0; t < 2; ++t) {
       if (!memories[t].is_planned()) continue;
-      table.place_outputs(TaskId(t), memories[t]);
+      table.place_outputs(TaskId(t), memories[t], heap);
       tasks[t].id = TaskId(t);
       ASSERT_TRUE(memories[t].construct(tasks[t], {}));
     }

@@ -20,10 +20,12 @@ class ContextTable {
  public:
   /// Lays out the groups of the application and, of these, the groups of `place.rtpu`, in `place.table`. Operator
   /// variables are this context's where it is alone (they are the manager's otherwise), and are published with their
-  /// initial values. Refuses what PeerLayout refuses. The spec and the given bytes outlive this. Context: setup.
+  /// initial values. Refuses what PeerLayout refuses. The spec and the given bytes outlive this. A context that never
+  /// has others, and whose tasks read each other in place, needs no layout: each task places its own outputs. Context:
+  /// setup.
   Result<void> prepare(const ApplicationSpec& spec, const ContextPlace& place, SetupMemory& memory);
   /// Gives a task of this context its two groups of outputs. Context: setup.
-  void place_outputs(TaskId task, TaskMemory& memory) const noexcept;
+  void place_outputs(TaskId task, TaskMemory& its, SetupMemory& memory) const;
 
   /// The plan of all groups of the application, of other contexts too.
   const PeerLayout& everything() const noexcept { return everything_; }
@@ -47,6 +49,7 @@ class ContextTable {
   VariableReader reader_of(const PortOf& producer, std::uint32_t half) const noexcept;
 
  private:
+  void prepare_alone(const ApplicationSpec& spec, SetupMemory& memory);
   std::span<std::byte> group(GroupId group) const noexcept;
   GroupWriter writer(GroupId id) const noexcept { return GroupWriter(group(id), own_.place(id).payload_bytes); }
   GroupReader reader(GroupId id) const noexcept {
@@ -55,6 +58,7 @@ class ContextTable {
 
   PeerLayout everything_, own_;  // own_: of the groups of this context
   std::span<std::byte> table_;
+  std::span<std::span<std::byte>> own_operators_;  // their groups, where there is no layout
   std::span<GroupReader> operators_;
 };
 

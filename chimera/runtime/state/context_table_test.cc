@@ -36,7 +36,7 @@ TEST_F(ContextTableTest, HoldsTheOperatorVariablesOfAContextThatIsAlone) {
 TEST_F(ContextTableTest, FindsBothGroupsInWhichAVariableMayStand) {
   ASSERT_TRUE(table.prepare(app.spec, {}, heap));
   TaskMemory memory = *TaskMemory::create(app.tasks[0], *app.components[0], heap);
-  table.place_outputs(kMaker, memory);
+  table.place_outputs(kMaker, memory, heap);
   const PortOf b{kMaker, 1};
   const VariableReader readers[] = {table.reader_of(b, 0), table.reader_of(b, 1)};
   EXPECT_NE(readers[0].reader.published(), readers[1].reader.published());

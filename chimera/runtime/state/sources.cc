@@ -12,6 +12,7 @@ namespace {
 
 // A standby cycles beside its primary, unread, if it is hot.
 PortOf first_producer(const ApplicationSpec& spec, const Variable& variable) noexcept {
+  if constexpr (!mechanisms::kStandbys) return variable.producers[0];
   const auto is_standby = [&](const PortOf& port) {
     return std::any_of(spec.standbys.begin(), spec.standbys.end(),
                        [&](const StandbySpec& each) { return each.standby == port.task; });
@@ -42,6 +43,7 @@ void SourceCopies::prepare(const ApplicationSpec& spec, const ContextTable& tabl
   memories_ = memories;
   others_ = others;
   preemptive_ = preemptive;
+  if constexpr (!mechanisms::kCopies) return;
   std::size_t most = 0;  // a task that reads two variables of one group is counted twice
   for (const Variable& variable : spec.variables) {
     const auto is_copied = [this](const PortOf& producer) { return preemptive_ || !is_mine(producer.task); };
@@ -68,15 +70,21 @@ std::uint32_t SourceCopies::payload_of(const Source& source) const noexcept {
 
 GroupReader SourceCopies::reader_of(const Source& source) const noexcept {
   if (source.here.is_bound()) return source.here;
-  if (!source.task.is_valid() && !table_->operators().empty()) return table_->operators()[source.operator_index];
-  if (others_ == nullptr) return {};
+  const bool is_operators = mechanisms::kOperators && !source.task.is_valid();
+  if (is_operators && !table_->operators().empty()) return table_->operators()[source.operator_index];
+  if (!mechanisms::kPeers || others_ == nullptr) return {};
   return source.task.is_valid() ? others_->outputs(source.task) : others_->operator_variable(source.operator_index);
 }
 
 Source SourceCopies::source_from(const PortOf& producer) const noexcept {
-  const auto places = table_->everything().variables(table_->everything().outputs(producer.task, 0));
-  Source source{producer.task, 0, places[producer.index].offset, producer.index, {}};
-  if (is_mine(producer.task)) source.here = memories_[producer.task.index].reader();
+  Source source{producer.task, 0, 0, producer.index, {}};
+  if (is_mine(producer.task)) {
+    source.offset = memories_[producer.task.index].output_offset(producer.index);
+    source.here = memories_[producer.task.index].reader();
+  } else {
+    const PeerLayout& layout = table_->everything();
+    source.offset = layout.variables(layout.outputs(producer.task, 0))[producer.index].offset;
+  }
   return source;
 }
 
@@ -176,9 +184,12 @@ void Sources::prepare(const ApplicationSpec& spec, const ContextTable& table, st
   sources_ = memory.take<Source>(spec.variables.size());
   is_behind_ = memory.take<bool>(tasks.size());
   has_old_job_ = memory.take<bool>(tasks.size());
-  std::uint32_t largest = 0;
-  for (const GroupPlace& group : table.everything().table().groups()) largest = std::max(largest, group.payload_bytes);
-  scratch_ = memory.take_bytes(sizeof(chimera_slot) + largest, kCacheLine);
+  if constexpr (mechanisms::kCopies) {
+    std::uint32_t largest = 0;
+    for (const GroupPlace& group : table.everything().table().groups())
+      largest = std::max(largest, group.payload_bytes);
+    scratch_ = memory.take_bytes(sizeof(chimera_slot) + largest, kCacheLine);
+  }
   for (std::size_t v = 0; v < sources_.size(); ++v) {
     const Variable& variable = spec.variables[v];
     if (variable.is_given()) bind(VariableId(v), operator_source(variable));
@@ -189,7 +200,8 @@ void Sources::prepare(const ApplicationSpec& spec, const ContextTable& table, st
 
 // A job that is under way, or was released before the instant of a change.
 bool Sources::keeps(TaskId consumer) const noexcept {
-  return (preemptive_ && tasks_[consumer.index].is_busy) || has_old_job_[consumer.index];
+  return (mechanisms::kPreemptive && preemptive_ && tasks_[consumer.index].is_busy) ||
+         (mechanisms::kSwitch && has_old_job_[consumer.index]);
 }
 
 void Sources::bind(VariableId variable, const Source& source) noexcept {
@@ -202,9 +214,9 @@ void Sources::bind(VariableId variable, const Source& source) noexcept {
 }
 
 void Sources::bind_input(Input& input, TaskId consumer, const Source& source) noexcept {
-  const bool is_direct = source.here.is_bound() && !preemptive_;
-  input.group =
-      is_direct ? GroupInput::direct(source.here) : GroupInput::following(copies_.of(consumer, source));
+  const bool is_direct = !mechanisms::kCopies || (source.here.is_bound() && !preemptive_);
+  input.group = is_direct ? GroupInput::direct(copies_.reader_of(source))
+                          : GroupInput::following(copies_.of(consumer, source));
   input.offset = source.offset;
   input.bit = source.bit;
   input.sequence = 0;
@@ -213,7 +225,7 @@ void Sources::bind_input(Input& input, TaskId consumer, const Source& source) no
 void Sources::take_outputs_of(const Task& task) noexcept {
   for (std::uint32_t i = 0; i < task.outputs.size(); ++i)
     bind(task.outputs[i].spec->variable, copies_.source_from({task.id, i}));
-  copies_.forget(task.id);  // that was its last incarnation
+  if constexpr (mechanisms::kCopies) copies_.forget(task.id);  // that was its last incarnation
   everybody_follows();
 }
 
@@ -229,16 +241,16 @@ void Sources::read_ahead(TaskId consumer, std::span<const Handover> handovers,
     for (const Handover& handover : handovers)
       if (handover.variable == variable && is_armed(handover.to.task)) source = copies_.source_from(handover.to);
     bind_input(task.inputs[i], consumer, source);
-    copies_.follow_now(consumer, source);
+    if constexpr (mechanisms::kCopies) copies_.follow_now(consumer, source);
   }
-  copies_.list(consumer);
+  if constexpr (mechanisms::kCopies) copies_.list(consumer);
 }
 
 void Sources::hand_over(std::span<const bool> has_old_job) noexcept {
   std::copy(has_old_job.begin(), has_old_job.end(), has_old_job_.begin());
   for (const Handover& handover : handed_over_) {
     bind(handover.variable, copies_.source_from(handover.to));
-    copies_.forget(handover.to.task);
+    if constexpr (mechanisms::kCopies) copies_.forget(handover.to.task);
   }
   everybody_follows();
 }
@@ -265,7 +277,7 @@ bool Sources::is_handed_over(VariableId variable) const noexcept {
 }
 
 void Sources::follow_others() noexcept {
-  if (others_ == nullptr) return;
+  if (!mechanisms::kPeers || others_ == nullptr) return;
   for (std::size_t v = 0; v < sources_.size(); ++v) {
     if (is_handed_over(VariableId(v))) continue;
     const Variable& variable = spec_->variables[v];
@@ -280,6 +292,7 @@ void Sources::follow_others() noexcept {
 void Sources::adopt(TaskId consumer) noexcept {
   if (has_old_job_[consumer.index]) return;
   is_behind_[consumer.index] = false;
+  if constexpr (!mechanisms::kCopies) return;
   Task& task = tasks_[consumer.index];
   copies_.follow(consumer);
   for (std::uint32_t i = 0; preemptive_ && i < task.inputs.size(); ++i) {
@@ -295,6 +308,7 @@ void Sources::follow(TaskId consumer) noexcept {
 }
 
 void Sources::everybody_follows() noexcept {
+  if constexpr (!mechanisms::kCopies && !mechanisms::kSwitch) return;
   for (const Task& task : tasks_)
     if (is_mine(task.id)) follow(task.id);
 }
@@ -316,7 +330,7 @@ const chimera_slot* Sources::latest(VariableId variable) noexcept {
   const Source& source = sources_[variable.index];
   const GroupReader reader = copies_.reader_of(source);
   if (!reader.is_bound()) return nullptr;
-  if (source.here.is_bound() && !preemptive_) return reader.published();
+  if (!mechanisms::kCopies || (source.here.is_bound() && !preemptive_)) return reader.published();
   auto* slot = reinterpret_cast<chimera_slot*>(scratch_.data());
   return reader.try_read(slot) ? slot : nullptr;
 }

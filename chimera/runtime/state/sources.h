@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <span>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/plan/switch_plan.h"
 #include "chimera/runtime/state/context_table.h"
@@ -75,7 +76,7 @@ class SourceCopies {
     bool was_bound = false;  ///< its values are worth keeping
   };
 
-  bool is_mine(TaskId task) const noexcept { return memories_[task.index].is_planned(); }
+  bool is_mine(TaskId task) const noexcept { return !mechanisms::kPeers || memories_[task.index].is_planned(); }
   std::uint32_t payload_of(const Source& source) const noexcept;
   void plan(const Variable& variable, SetupMemory& memory);
   void plan(TaskId consumer, const Source& source, SetupMemory& memory);
@@ -141,7 +142,7 @@ class Sources {
   VariableView view(VariableId variable) const noexcept;
 
  private:
-  bool is_mine(TaskId task) const noexcept { return memories_[task.index].is_planned(); }
+  bool is_mine(TaskId task) const noexcept { return !mechanisms::kPeers || memories_[task.index].is_planned(); }
   void bind(VariableId variable, const Source& source) noexcept;
   void bind_input(Input& input, TaskId consumer, const Source& source) noexcept;
   bool keeps(TaskId consumer) const noexcept;

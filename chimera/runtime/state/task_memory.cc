@@ -12,12 +12,6 @@
 namespace chimera {
 namespace {
 
-constexpr std::uint32_t kValueAlignment = 8;
-
-std::uint32_t round_up(std::uint32_t bytes) noexcept {
-  return (bytes + kValueAlignment - 1) / kValueAlignment * kValueAlignment;
-}
-
 bool is_variable(std::uint32_t kind) noexcept { return kind == CHIMERA_IN_VAR || kind == CHIMERA_OUT_VAR; }
 
 bool is_constant(std::uint32_t kind) noexcept { return kind == CHIMERA_IN_CONST || kind == CHIMERA_OUT_CONST; }
@@ -81,12 +75,9 @@ Result<TaskMemory> TaskMemory::create(const TaskSpec& spec, const chimera_compon
   return made;
 }
 
-void TaskMemory::place(std::span<std::byte> first, std::span<std::byte> second, std::uint32_t payload_bytes,
-                       std::span<const VariablePlace> places) {
+void TaskMemory::place(std::span<std::byte> first, std::span<std::byte> second) {
   groups_[0] = first;
   groups_[1] = second;
-  payload_bytes_ = payload_bytes;
-  for (std::size_t i = 0; i < outputs_.size(); ++i) outputs_[i].offset = places[i].offset;
   make_fill();
   for (std::span<std::byte> group : groups_) {
     GroupWriter writer(group, payload_bytes_);
@@ -125,10 +116,11 @@ void TaskMemory::take_lists(SetupMemory& memory) {
     if (port.kind == CHIMERA_IN_VAR) {
       input_specs_[inputs++] = &port;
     } else if (port.kind == CHIMERA_OUT_VAR) {
-      outputs_[outputs++] = {nullptr, &port, 0, port.max_bytes()};
+      outputs_[outputs++] = {nullptr, &port, payload_bytes_, port.max_bytes()};  // as TableLayout places them
+      payload_bytes_ += round_to_value(port.max_bytes());
     } else if (is_constant(port.kind)) {
       constants_[constants++] = {nullptr, &port, &component_->ports[port.declared], nullptr};
-      constant_bytes_ += round_up(port.max_bytes());
+      constant_bytes_ += round_to_value(port.max_bytes());
     } else {
       const std::span<std::byte> text = memory.take_bytes(port.value.size() + 1, 1);  // a zero behind it
       std::copy(port.value.begin(), port.value.end(), text.begin());
@@ -213,7 +205,7 @@ void TaskMemory::wire(Task& task) noexcept {
     const bool can_be_given = constant.decl->kind == CHIMERA_OUT_CONST || constant.spec->constant.is_valid() ||
                               !constant.spec->value.empty();
     constant.port->value = can_be_given ? next : nullptr;
-    next += round_up(constant.spec->max_bytes());
+    next += round_to_value(constant.spec->max_bytes());
     if (!constant.spec->value.empty())
       std::memcpy(constant.local, constant.spec->value.data(), constant.spec->value.size());
   }

@@ -29,9 +29,8 @@ class TaskMemory {
   static Result<TaskMemory> create(const TaskSpec& spec, const chimera_component& component, SetupMemory& memory);
 
   /// Gives the task its places in the table: two groups, used in turn by its incarnations, with the never-written
-  /// fill and initial values published in both. `places` are those of the first one's variables.
-  void place(std::span<std::byte> first, std::span<std::byte> second, std::uint32_t payload_bytes,
-             std::span<const VariablePlace> places);
+  /// fill and initial values published in both. Requires: group_bytes() of reader().payload_bytes() each.
+  void place(std::span<std::byte> first, std::span<std::byte> second);
 
   /// Constructs the component anew in zeroed state and wires its ports: constants and resources to local memory,
   /// outputs to a group that no consumer of the previous incarnation is bound to.

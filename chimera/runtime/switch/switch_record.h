@@ -85,7 +85,7 @@ class StartDelays {
   Nanoseconds look(const Task& task) noexcept;
 
  private:
-  static constexpr std::uint64_t kNotBegun = UINT64_MAX;
+  static constexpr Count kNotBegun = ~Count{0};
   std::span<Spread> seen_;  // by task: its start_delay at the last look
 };
 
