@@ -24,8 +24,8 @@ FILE = re.compile(rf"(chimera/({'|'.join(FOLDERS)})|firmware/(shell|watch))/[^/]
 HOSTED = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"(chimera/\w+/hosted/[^"]+)"', re.MULTILINE)
 # Components that a microcontroller may take; the first three are compiled for x86-64, too.
 TAKEN = ("gain pid_joint tderiv accel brake car ccui control dashboard deadband display_manager engine join_mean "
-         "join_priority joint_trajectory limit lowpass motor notch position rate_limit select servo_axis signal_generator split_pm "
-         "split_pm_override unit_convert watchdog wheels")
+         "join_priority joint_trajectory limit lowpass motor notch position rate_limit select servo_axis "
+         "signal_generator split_pm split_pm_override unit_convert watchdog wheels")
 COMPONENTS = tuple(f"library/{name}/{name}.cc" for name in TAKEN.split())
 IN_C = ("tests/components/t_paper.c", "tests/components/t_parts.c", "tests/components/t_tderiv.c")
 FREESTANDING = ("-std=c++20", "-ffreestanding", "-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics",

@@ -76,7 +76,9 @@ class Built:
         call([self.tree / "bin" / "chimera", *words, "--for", self.image.duration, *acts], self.tree)
 
     def bake(self):
-        self._run("bake", self.image.application, "--target", self.target, "--out", self.out / "baked")
+        own = IMAGES / self.image.name / f"{self.target}.yaml"  # with the resources of this application
+        target = own if own.is_file() else self.target
+        self._run("bake", self.image.application, "--target", target, "--out", self.out / "baked")
 
     def link(self):
         self.elf = build.build(self.out / "baked", self.out, self.board(), self.image.folders)
