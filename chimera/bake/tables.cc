@@ -47,6 +47,11 @@ std::string extents_text(const ExtentSpec (&extents)[CHIMERA_MAX_EXTENTS]) {
   return is_default ? "" : "{" + all + "}";
 }
 
+/// A running task can have a fault whose text names the port.
+bool is_named_in_faults(const PortSpec& port) {
+  return port.safety || port.extent[0].constant.is_valid() || port.extent[1].constant.is_valid();
+}
+
 std::string port_of_text(const PortOf& port) {
   return Initialiser()
       .add_id("task", "TaskId", port.task)
@@ -120,6 +125,7 @@ class Tables {
         .add_text("max_step", all_.bytes(spec.max_step))
         .add("shared", spec.shared, none.shared)
         .add("intermittent", spec.intermittent, none.intermittent)
+        .add("name", is_named_in_faults(spec) ? spec.name : std::string_view(), none.name)
         .text();
   }
 
@@ -140,6 +146,7 @@ class Tables {
         .add_text("on_miss", enumerator("OnMiss", kOnMiss, spec.on_miss, none.on_miss))
         .add_text("on_overrun", enumerator("OnMiss", kOnMiss, spec.on_overrun, none.on_overrun))
         .add_text("on_fault", enumerator("OnFault", kOnFault, spec.on_fault, none.on_fault))
+        .add("has_events", spec.has_events, none.has_events)
         .add("max_consecutive", spec.max_consecutive, none.max_consecutive)
         .add("tolerated_misses", spec.tolerated_misses, none.tolerated_misses)
         .add("tolerated_of", spec.tolerated_of, none.tolerated_of)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The mechanisms that an image has. A host has all of them. The image of a microcontroller has those that its
-// application uses: the compiler is given -DCHIMERA_MECHANISMS='"mechanisms.h"', a header that `chimera bake` wrote
+// application uses: the compiler is given -DCHIMERA_MECHANISMS='<mechanisms.h>', a header that `chimera bake` wrote
 // with the same constants. Code asks with `if constexpr`; a linker that drops unused sections then leaves the rest out.
 #pragma once
 

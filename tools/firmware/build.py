@@ -17,7 +17,7 @@ NO_PRODUCT = re.compile(r"_(test|stress|fuzz)\.cc$")
 DESK = {"schedule/" + name for name in ("analysis.cc", "level.cc", "worst_window.cc", "response.cc", "data_age.cc",
                                         "transition.cc", "change_window.cc")}
 COMMON = ("-Os -ffreestanding -ffp-contract=off -fsigned-char -ffunction-sections -fdata-sections -g1 "
-          f"-ffile-prefix-map={ROOT}/= -DCHIMERA_BARE -Wall -Wextra -Werror -Wno-psabi")
+          f"-ffile-prefix-map={ROOT}/= -DCHIMERA_BARE -Wall -Wextra -Werror -Wno-psabi -Wno-nonnull")  # nonnull: what an image lacks is null
 CXX = ("-std=c++20 -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-asynchronous-unwind-tables "
        "-fno-unwind-tables")
 # QEMU's machine of each board that it simulates.
@@ -60,7 +60,7 @@ def write_if_new(path, text):
 def rules(baked, out, board, folders):
     """The text of build.ninja, and the components without a source."""
     cache = shutil.which("ccache") or ""
-    common = (f"@{baked}/cpu.flags {COMMON} -I{ROOT} -I{baked} -DCHIMERA_MECHANISMS='\"mechanisms.h\"' "
+    common = (f"@{baked}/cpu.flags {COMMON} -I{ROOT} -I{baked} -DCHIMERA_MECHANISMS='<mechanisms.h>' "
               f"-DCHIMERA_BOARD='\"firmware/boards/{board}/chip.h\"'"
               + (" -DCHIMERA_SIMULATED" if board in SIMULATED else ""))
     text = [f"rule cxx\n  command = {cache} arm-none-eabi-g++ {CXX} {common} $more -MD -MF $out.d -c $in -o $out",

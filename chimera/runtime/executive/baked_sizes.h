@@ -9,7 +9,7 @@
 
 namespace chimera::baked {
 
-inline constexpr std::size_t kTaskSpecBytes = 136, kPortSpecBytes = 112, kVariableBytes = 28, kPortOfBytes = 12;
+inline constexpr std::size_t kTaskSpecBytes = 136, kPortSpecBytes = 120, kVariableBytes = 28, kPortOfBytes = 12;
 inline constexpr std::size_t kConstantSpecBytes = 40, kGivenSpecBytes = 52, kNamedSetBytes = 40, kScriptActBytes = 48;
 inline constexpr std::size_t kApplicationSpecBytes = 112, kTaskIdBytes = 4;
 inline constexpr std::size_t kLivePortBytes = 48;  ///< the live half of a port, in the state of its component

@@ -77,7 +77,7 @@ void EventTasks::release(EventTask& one, Nanoseconds now) noexcept {
   const Nanoseconds at = one.next();
   parts_.queue.put_back({task.id, at, at + task.spec->deadline}, task.spec->budget);
   // The end of this job, or its drop, must lead to finish().
-  std::atomic<std::uint8_t>& left = parts_.records[task.id.index].left;
+  SharedWord<std::uint8_t>& left = parts_.records[task.id.index].left;
   left.store(static_cast<std::uint8_t>(left.load(std::memory_order_relaxed) | JobRecord::kSettle),
              std::memory_order_relaxed);
   one.is_ready = true;
