@@ -17,7 +17,8 @@ NO_PRODUCT = re.compile(r"_(test|stress|fuzz)\.cc$")
 DESK = {"schedule/" + name for name in ("analysis.cc", "level.cc", "worst_window.cc", "response.cc", "data_age.cc",
                                         "transition.cc", "change_window.cc")}
 COMMON = ("-Os -ffreestanding -ffp-contract=off -fsigned-char -ffunction-sections -fdata-sections -g1 "
-          f"-ffile-prefix-map={ROOT}/= -DCHIMERA_BARE -Wall -Wextra -Werror -Wno-psabi -Wno-nonnull")  # nonnull: what an image lacks is null
+          f"-ffile-prefix-map={ROOT}/= -DCHIMERA_BARE -Wall -Wextra -Werror -Wno-psabi "
+          "-Wno-nonnull")  # what an image lacks is null
 CXX = ("-std=c++20 -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-asynchronous-unwind-tables "
        "-fno-unwind-tables")
 # QEMU's machine of each board that it simulates.
