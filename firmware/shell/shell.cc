@@ -30,15 +30,15 @@ void Shell::receive(std::uint8_t byte) noexcept {
     lost_.store(lost_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     return;
   }
-  if (is_losing_) (void)in_.try_push(kLostMark);
+  if (is_losing_) in_.add(kLostMark);
   is_losing_ = false;
-  (void)in_.try_push(byte);
+  in_.add(byte);
 }
 
 bool Shell::has_work() const noexcept {
   if (is_sending_) return out_.free() > 0;
   switch (phase_) {
-    case Phase::kRead: return !in_.is_empty();
+    case Phase::kRead: return in_.size() > 0;
     case Phase::kAct: return parts_.listener.is_done();
     case Phase::kSwitch: return parts_.listener.is_switch_over();
     default: return true;
@@ -67,9 +67,9 @@ void Shell::step(Nanoseconds now) noexcept {
 bool Shell::say(std::string_view line) noexcept {
   const bool is_amid = is_sending_ && sent_ > 0;
   if (is_amid || out_.free() < line.size() + 2) return false;
-  for (const char c : line) (void)out_.try_push(static_cast<std::uint8_t>(c));
-  (void)out_.try_push('\r');
-  (void)out_.try_push('\n');
+  for (const char c : line) out_.add(static_cast<std::uint8_t>(c));
+  out_.add('\r');
+  out_.add('\n');
   return true;
 }
 
@@ -77,7 +77,7 @@ void Shell::send() noexcept {
   const std::size_t n = line_.size();
   for (int i = 0; i < kBytesSent && sent_ < n + 2; ++i, ++sent_) {
     const char c = sent_ < n ? line_.view()[sent_] : sent_ == n ? '\r' : '\n';
-    if (!out_.try_push(static_cast<std::uint8_t>(c))) return;
+    if (!out_.add(static_cast<std::uint8_t>(c))) return;
   }
   if (sent_ < n + 2) return;
   is_sending_ = false;
@@ -86,9 +86,11 @@ void Shell::send() noexcept {
 }
 
 void Shell::read() noexcept {
-  std::uint8_t byte = 0;
-  for (int i = 0; i < kBytesRead && in_.try_pop(byte); ++i)
-    if (reader_.add(byte)) return begin_line();
+  for (int i = 0; i < kBytesRead; ++i) {
+    const int byte = in_.take();
+    if (byte < 0) return;
+    if (reader_.add(static_cast<std::uint8_t>(byte))) return begin_line();
+  }
 }
 
 void Shell::begin_line() noexcept {

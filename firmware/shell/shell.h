@@ -13,8 +13,8 @@
 #include <span>
 #include <string_view>
 
+#include "chimera/platform/bare/byte_ring.h"
 #include "chimera/runtime/cycle/releases.h"
-#include "firmware/shell/byte_ring.h"
 #include "firmware/shell/command_line.h"
 #include "firmware/shell/line_reader.h"
 #include "firmware/shell/shell_listener.h"
@@ -48,8 +48,8 @@ class Shell {
 
   /// A byte arrived. Bytes that do not fit are counted, and the line that they belong to is refused.
   void receive(std::uint8_t byte) noexcept;
-  /// The next byte to send. False: there is none.
-  [[nodiscard]] bool next_byte(std::uint8_t& byte) noexcept { return out_.try_pop(byte); }
+  /// The next byte to send; -1: there is none.
+  int next_byte() noexcept { return out_.take(); }
 
   // For the thread of the cycle boundaries, while no job is ready. Context: between jobs; wait-free.
 
@@ -91,8 +91,8 @@ class Shell {
   void answer() noexcept;
 
   ShellParts parts_;
-  ByteRing<128> in_;
-  ByteRing<256> out_;
+  bare::ByteRing<128> in_;
+  bare::ByteRing<256> out_;
   std::atomic<std::uint32_t> lost_{0};  // written by receive() only; relaxed, pairs with nothing
   std::uint32_t lost_told_ = 0;
   bool is_losing_ = false;           // by receive() only

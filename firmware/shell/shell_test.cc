@@ -130,7 +130,8 @@ TEST(Shell, SkipsEmptyLines) {
 
 TEST(Shell, SetsOperatorVariablesInTheirUnit) {
   ShellScene scene;
-  EXPECT_EQ(scene.ask("get k"), "k = 2 N.s/m, age 0.001 s\nok\n");
+  scene.run(10);
+  EXPECT_EQ(scene.ask("get k"), "k = 2 N.s/m, age 0.010 s\nok\n");
   EXPECT_EQ(scene.ask("set k 2.5 N.s/m"), "ok\n");
   EXPECT_EQ(scene.value("k"), 2.5);
   EXPECT_EQ(scene.ask("set k -1e-3"), "ok\n");
@@ -151,7 +152,7 @@ TEST(Shell, GetsValuesWithUnitAndAge) {
   scene.run(41);
   EXPECT_EQ(scene.ask("get y"), "y = 10.25 m/s, age 0.000 s\nok\n");
   EXPECT_EQ(scene.ask("get u").substr(0, 4), "u = ");
-  EXPECT_EQ(scene.ask("get list"), "list = [0.5 0.5 0.5] rad, age 0.000 s\nok\n");
+  EXPECT_EQ(scene.ask("get list"), "list = [0 0.5 1] rad, age 0.000 s\nok\n");
   EXPECT_EQ(scene.ask("get late"), "no: late has no value\n");
 }
 
@@ -180,8 +181,10 @@ TEST(Shell, ReportsASwitchThatIsAborted) {
 TEST(Shell, EventsShowsEachEventOnce) {
   ShellScene scene;
   scene.run(5);
-  EXPECT_EQ(scene.ask("events"), "0.000 s wave: NOT-CREATED -> ON\n0.000 s spare: NOT-CREATED -> OFF\n"
-                                 "0.000 s gain: NOT-CREATED -> ON\nok\n");
+  const std::string first = scene.ask("events");  // those of one instant come in any order
+  for (const char* line : {"wave: NOT-CREATED -> ON", "spare: NOT-CREATED -> OFF", "gain: NOT-CREATED -> ON"})
+    EXPECT_TRUE(first.find("0.000 s " + std::string(line) + "\n") != std::string::npos) << first;
+  EXPECT_EQ(std::ranges::count(first, '\n'), 4) << first;
   EXPECT_EQ(scene.ask("events"), "ok\n");
   orders.gain_faults = true;
   scene.run(3);
@@ -251,14 +254,13 @@ TEST(Shell, RefusesALineThatLostBytes) {
   scene.type("help\n");
   scene.run(3);
   scene.is_hasty = true;
-  scene.type(std::string(120, ' ') + "off gain\n");  // 129 bytes
+  scene.type(std::string(121, ' ') + "off gain\n");  // 130 bytes
   scene.run(1);
   EXPECT_EQ(scene.shell().lost_bytes(), 2u);
   scene.sends = true;
   scene.is_hasty = false;
-  scene.type("status\n");
-  const std::string said = scene.run(20);
-  EXPECT_TRUE(said.ends_with("no: 2 bytes of this line or before it were lost: wait for each answer\n")) << said;
+  EXPECT_TRUE(scene.run(20).ends_with("ok\n")) << "the answer to help";
+  EXPECT_EQ(scene.ask("status"), "no: 2 bytes of this line or before it were lost: wait for each answer\n");
   EXPECT_EQ(scene.state(kGain), State::kOn);
   EXPECT_TRUE(scene.ask("status").ends_with("input: 2 bytes lost\nok\n"));
 }
@@ -320,7 +322,8 @@ TEST(Shell, AMegabyteOfNoiseChangesNoDigest) {
   std::string bytes;
   while (bytes.size() < 1'000'000) bytes += static_cast<char>(noise.below(256));
   const std::vector<DigestLine> quiet = digest_with("", false);
-  ASSERT_EQ(quiet.size(), 6u);
+  const auto is_of_gain = [](const DigestLine& line) { return line.task == kGain; };
+  ASSERT_EQ(std::ranges::count_if(quiet, is_of_gain), 3) << "one line for each second";
   expect_equal(digest_with(bytes, false), quiet);
   expect_equal(digest_with(bytes, true), quiet);
 }
