@@ -12,19 +12,19 @@
 namespace chimera::firmware {
 
 enum class Verb : std::uint8_t {
-  kStatus, kSpawn, kOn, kOff, kKill, kClear, kReinit, kSwitch, kGet, kSet, kProfile, kEvents, kHelp
+  kSpawn, kOn, kOff, kKill, kClear, kReinit, kSwitch, kGet, kSet, kProfile, kStatus, kEvents, kHelp
 };
 
 /// The kind of thing that the first operand names.
 enum class Operand : std::uint8_t { kNone, kTask, kConfiguration, kVariable };
 
-/// One command.
+/// One command. Texts end with a zero, because an image has little flash.
 struct CommandSpec {
-  std::string_view name;
+  const char* name = nullptr;
   Verb verb = Verb::kHelp;
   Operand operand = Operand::kNone;
   std::uint8_t most = 0;  ///< operands; at least one where `operand` is not kNone, two for `set`
-  std::string_view operands, help;
+  const char* operands = "";
 };
 
 /// In the order in which `help` lists them. Context: any; wait-free.

@@ -71,10 +71,12 @@ class Shell {
   void begin_line() noexcept;
   bool refuse_line() noexcept;
   void find() noexcept;
-  std::string_view name_at(std::size_t i) const noexcept;
-  std::size_t n_names() const noexcept;
+  const std::string_view* name_at(std::size_t i) const noexcept;
   bool found(std::size_t i) noexcept;
   void begin_command() noexcept;
+  bool is_given(std::uint32_t variable) const noexcept;
+  /// Of the value that the operator or the first producer gives; 0 bytes: there is neither.
+  ValueShape shape_of(std::uint32_t variable) const noexcept;
   void begin_set() noexcept;
   void read_typed() noexcept;
   void end_act() noexcept;
@@ -87,7 +89,6 @@ class Shell {
   bool make_help_row() noexcept;
   bool make_value_row(Nanoseconds now) noexcept;
   bool make_switch_row() noexcept;
-  bool refuse() noexcept;
   void answer() noexcept;
 
   ShellParts parts_;

@@ -63,7 +63,7 @@ void ShellListener::carry_out_signal(BoundarySignals& signals, Nanoseconds now) 
   const std::span<const TaskId> tasks(act_->tasks.begin(), act_->tasks.size());
   for (const TaskId id : tasks) {
     if (signals.may_touch(id)) continue;
-    refusal_ << set_.spec().tasks[id.index].name << " has a job under way: try again";
+    refusal_.put("%s has a job under way: try again", set_.spec().tasks[id.index].name);
     return;
   }
   SignalReport report = signals.operate(tasks, act_->signal, now);
@@ -77,7 +77,7 @@ void ShellListener::carry_out_signal(BoundarySignals& signals, Nanoseconds now) 
 
 void ShellListener::order_switch(BoundarySignals& signals, Nanoseconds now) noexcept {
   if (receipts_ == nullptr || !may_request(set_.spec())) {
-    refusal_ << "this application has no switches";
+    refusal_.put("this application has no switches");
     return;
   }
   ScriptAct act;
@@ -87,7 +87,7 @@ void ShellListener::order_switch(BoundarySignals& signals, Nanoseconds now) noex
   const std::span<const SwitchReceipt> all = receipts_->all();
   const bool is_kept = !all.empty() && all.back().asked == now && all.back().cause == SwitchCause::kScript;
   if (!is_kept) {
-    refusal_ << "another switch is under way";
+    refusal_.put("another switch is under way");
     return;
   }
   ordered_ = &all.back();
