@@ -47,7 +47,7 @@ CommandLine parse(std::string_view line) noexcept {
   }
   if (parsed.words.empty()) return parsed;
   for (const CommandSpec& each : kCommands)
-    if (parsed.words[0] == each.name) parsed.command = &each;
+    if (parsed.words.begin()[0] == each.name) parsed.command = &each;
   if (parsed.command == nullptr) {
     parsed.fault = LineFault::kUnknown;
   } else if (parsed.fault == LineFault::kNone) {

@@ -43,7 +43,7 @@ struct CommandLine {
   std::string_view after_first;  ///< behind the first operand, without blanks around it; for texts with blanks
 
   std::size_t n_operands() const noexcept { return words.size() - 1; }
-  std::string_view operand(std::size_t i) const noexcept { return words[i + 1]; }
+  std::string_view operand(std::size_t i) const noexcept { return words.begin()[i + 1]; }
 };
 
 /// Requires: at most LineReader::kMost bytes. A line of blanks has no words and no fault. Context: any; wait-free.

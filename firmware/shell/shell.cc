@@ -95,7 +95,7 @@ void Shell::begin_line() noexcept {
   if (refuse_line()) return;
   command_ = parse(reader_.line());
   switch (command_.fault) {
-    case LineFault::kUnknown: why_.put("no command '%s': try help", command_.words[0]); return;
+    case LineFault::kUnknown: why_.put("no command '%s': try help", command_.words.begin()[0]); return;
     case LineFault::kTooManyWords: why_.put("a line has at most %u words", kMostWords); return;
     case LineFault::kTooFew:
     case LineFault::kTooMany:
@@ -197,19 +197,17 @@ bool Shell::is_given(std::uint32_t variable) const noexcept {
   return parts_.set.spec().variables[variable].is_given();
 }
 
-ValueShape Shell::shape_of(std::uint32_t index) const noexcept {
+ValueShape Shell::shape_of(std::uint32_t index, const PortSpec* port) const noexcept {
   const ApplicationSpec& spec = parts_.set.spec();
   const Variable& variable = spec.variables[index];
   ValueShape shape{variable.name, "1"};
-  const PortSpec* port = nullptr;
   if (variable.is_given()) {
     const GivenSpec& given = spec.operators[variable.operator_index];
     shape.type = given.type;
     shape.element_bytes = given.element_bytes;
     shape.count = given.extent[0].max * given.extent[1].max;
     if (!variable.consumers.empty()) port = spec.port(CHIMERA_IN_VAR, variable.consumers[0]);
-  } else if (!variable.producers.empty()) {
-    port = spec.port(CHIMERA_OUT_VAR, variable.producers[0]);
+  } else if (port != nullptr) {
     shape.type = port->type;
     shape.element_bytes = port->element_bytes;
   }
@@ -218,7 +216,7 @@ ValueShape Shell::shape_of(std::uint32_t index) const noexcept {
 }
 
 void Shell::begin_set() noexcept {
-  const ValueShape shape = shape_of(index_);
+  const ValueShape shape = shape_of(index_, nullptr);
   phase_ = Phase::kAnswer;
   if (!is_given(index_)) {
     why_.put("%s is no operator variable", shape.name);

@@ -75,8 +75,8 @@ class Shell {
   bool found(std::size_t i) noexcept;
   void begin_command() noexcept;
   bool is_given(std::uint32_t variable) const noexcept;
-  /// Of the value that the operator or the first producer gives; 0 bytes: there is neither.
-  ValueShape shape_of(std::uint32_t variable) const noexcept;
+  /// Of the value that the operator gives, or else `port`; 0 bytes: there is neither.
+  ValueShape shape_of(std::uint32_t variable, const PortSpec* port) const noexcept;
   void begin_set() noexcept;
   void read_typed() noexcept;
   void end_act() noexcept;
@@ -91,27 +91,27 @@ class Shell {
   bool make_switch_row() noexcept;
   void answer() noexcept;
 
-  ShellParts parts_;
-  bare::ByteRing<128> in_;
-  bare::ByteRing<256> out_;
-  std::atomic<std::uint32_t> lost_{0};  // written by receive() only; relaxed, pairs with nothing
-  std::uint32_t lost_told_ = 0;
-  bool is_losing_ = false;           // by receive() only
-
-  LineReader reader_;
-  CommandLine command_;
+  // Small members first: code for near members is small.
   Phase phase_ = Phase::kRead;
-  TextLine line_;              // being made, or being sent
-  std::size_t sent_ = 0;       // bytes of line_ and its end
   bool is_sending_ = false;
-  TextLine why_;               // the line is refused; empty: it is not
+  bool is_losing_ = false;     // by receive() only
+  std::size_t sent_ = 0;       // bytes of line_ and its end
   std::size_t operand_ = 0;    // whose name is looked up
   std::size_t at_ = 0;         // next name, row or element
   std::uint32_t index_ = 0;    // of the variable or task that was found
+  std::atomic<std::uint32_t> lost_{0};  // written by receive() only; relaxed, pairs with nothing
+  std::uint32_t lost_told_ = 0;
+  ShellParts parts_;
+  CommandLine command_;
   StackScan scan_{Stack()};
   ShellAct act_;
   std::array<std::byte, kMostValueBytes> value_{};
   TypedValue typed_{{}, {}, {}, value_};
+  LineReader reader_;
+  TextLine line_;              // being made, or being sent
+  TextLine why_;               // the line is refused; empty: it is not
+  bare::ByteRing<128> in_;
+  bare::ByteRing<256> out_;
 };
 
 }  // namespace chimera::firmware

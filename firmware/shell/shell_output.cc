@@ -89,17 +89,18 @@ bool Shell::make_help_row() noexcept {
 
 // An element a step. The elements of a long value may be of several cycles.
 bool Shell::make_value_row(Nanoseconds now) noexcept {
-  const ValueShape shape = shape_of(index_);
   const Sources& sources = parts_.set.sources();
+  const Source& source = sources.source(VariableId(index_));
   VariableView view;
-  if (is_given(index_) || sources.source(VariableId(index_)).here.is_bound()) view = sources.view(VariableId(index_));
+  if (is_given(index_) || (source.task.is_valid() && source.here.is_bound())) view = sources.view(VariableId(index_));
+  const ValueShape shape = shape_of(index_, view.spec);
   if (at_ > 0 && at_ >= view.count) return false;
   if (view.value == nullptr || !view.is_valid || view.count == 0 || shape.element_bytes == 0) {
     why_.put("%s has no value", shape.name);
     return false;
   }
   if (shape.type > CHIMERA_STRING) {
-    why_.put("%s is a struct, which is not shown here", shape.name);
+    why_.put("%s is a struct", shape.name);
     return false;
   }
   const bool is_list = view.count > 1;

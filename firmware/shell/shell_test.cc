@@ -140,8 +140,8 @@ TEST(Shell, SetsOperatorVariablesInTheirUnit) {
   EXPECT_TRUE(scene.ask("get n").starts_with("n = -9223372036854775808, age "));
   EXPECT_EQ(scene.ask("set k 3 m"), "no: k is in N.s/m, not in 'm'\n");
   EXPECT_EQ(scene.ask("set k 3 4"), "no: k has 1 element, not 2\n");
-  EXPECT_EQ(scene.ask("set k 1e400"), "no: '1e400' is not a number of float64\n");
-  EXPECT_EQ(scene.ask("set n 1.5"), "no: '1.5' is not a whole number of 64 bits\n");
+  EXPECT_EQ(scene.ask("set k 1e400"), "no: '1e400' is no float64\n");
+  EXPECT_EQ(scene.ask("set n 1.5"), "no: '1.5' is no int64\n");
   EXPECT_EQ(scene.ask("set n one"), "no: n has no unit, and 'one' is no number\n");
   EXPECT_EQ(scene.ask("set y 1"), "no: y is no operator variable\n");
   EXPECT_EQ(scene.value("k"), -1e-3);

@@ -50,8 +50,8 @@ class TextLine {
   void put_digits(std::uint64_t rest, int least) noexcept;
   void put_thousandths(std::int64_t count, const char* unit) noexcept;
 
+  std::size_t size_ = 0;  // first, because code for near members is small
   char bytes_[kMost];
-  std::size_t size_ = 0;
 };
 
 }  // namespace chimera::firmware

@@ -31,19 +31,17 @@ bool is_value(std::uint32_t type, std::string_view word) noexcept {
   return begins_number(word) || (type == CHIMERA_BOOL && is_one_of(word, "true", "false"));
 }
 
-/// A whole number of the type; none: the word is none, or does not fit.
+/// A whole number, at most 19 digits; none: the word is none, or does not fit.
 std::optional<std::int64_t> whole(std::string_view word, std::uint64_t most) noexcept {
   const bool is_negative = word.starts_with('-');
   if (is_negative) word.remove_prefix(1);
-  const std::uint64_t limit = most + (is_negative ? 1 : 0);
-  if (word.empty()) return std::nullopt;
+  if (word.empty() || word.size() > 19) return std::nullopt;
   std::uint64_t value = 0;
   for (const char c : word) {
     if (c < '0' || c > '9') return std::nullopt;
-    const auto digit = static_cast<std::uint64_t>(c - '0');
-    if (value > (limit - digit) / 10) return std::nullopt;
-    value = value * 10 + digit;
+    value = value * 10 + static_cast<std::uint64_t>(c - '0');
   }
+  if (value > most + (is_negative ? 1 : 0)) return std::nullopt;
   return static_cast<std::int64_t>(is_negative ? 0 - value : value);
 }
 
@@ -71,9 +69,7 @@ bool read_floating(std::uint32_t type, std::string_view word, std::byte* to) noe
   return true;
 }
 
-// By type.
-constexpr const char* kWanted[] = {"0, 1, true or false", "a whole number of 32 bits", "a whole number of 64 bits",
-                                   "a number of float32", "a number of float64"};
+constexpr const char* kTypeNames[] = {"bool: true, false, 1 or 0", "int32", "int64", "float32", "float64"};
 static_assert(CHIMERA_BOOL == 0 && CHIMERA_INT32 == 1 && CHIMERA_INT64 == 2 && CHIMERA_FLOAT32 == 3 &&
               CHIMERA_FLOAT64 == 4);
 
@@ -81,7 +77,7 @@ static_assert(CHIMERA_BOOL == 0 && CHIMERA_INT32 == 1 && CHIMERA_INT64 == 2 && C
 
 bool TypedValue::begin_text(TextLine& why) noexcept {
   if (shape_.count != 1 || shape_.element_bytes > kMostValueBytes) {
-    why.put("%s has a shape that cannot be typed", shape_.name);
+    why.put("%s does not fit in a line", shape_.name);
     return false;
   }
   if (text_.size() >= shape_.element_bytes) {
@@ -96,7 +92,7 @@ bool TypedValue::begin_text(TextLine& why) noexcept {
 bool TypedValue::begin(TextLine& why) noexcept {
   if (shape_.type == CHIMERA_STRING) return begin_text(why);
   if (shape_.type > CHIMERA_FLOAT64) {
-    why.put("%s is a struct, which cannot be typed", shape_.name);
+    why.put("%s is a struct", shape_.name);
     return false;
   }
   n_words_ = words_.size();
@@ -113,7 +109,7 @@ bool TypedValue::begin(TextLine& why) noexcept {
     return false;
   }
   if (std::size_t{shape_.count} * shape_.element_bytes <= kMostValueBytes) return true;
-  why.put("%s has %u elements, too many for a line", shape_.name, shape_.count);
+  why.put("%s does not fit in a line", shape_.name);
   return false;
 }
 
@@ -123,7 +119,7 @@ bool TypedValue::read_next(TextLine& why) noexcept {
   ++n_read_;
   const bool is_floating = shape_.type == CHIMERA_FLOAT32 || shape_.type == CHIMERA_FLOAT64;
   if (is_floating ? read_floating(shape_.type, word, to) : read_whole(shape_.type, word, to)) return true;
-  why.put("'%s' is not %z", word, kWanted[shape_.type]);
+  why.put("'%s' is no %z", word, kTypeNames[shape_.type]);
   return false;
 }
 
