@@ -75,7 +75,7 @@ class Shell {
   bool found(std::size_t i) noexcept;
   void begin_command() noexcept;
   bool is_given(std::uint32_t variable) const noexcept;
-  /// Of the value that the operator gives, or else `port`; 0 bytes: there is neither.
+  /// The shape of the value that the operator gives, or else `port`; 0 bytes: there is neither.
   ValueShape shape_of(std::uint32_t variable, const PortSpec* port) const noexcept;
   void begin_set() noexcept;
   void read_typed() noexcept;

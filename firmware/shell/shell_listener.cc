@@ -8,7 +8,6 @@
 #include "chimera/runtime/cycle/boundary_signals.h"
 #include "chimera/runtime/cycle/releases.h"
 #include "chimera/runtime/life/refusal_words.h"
-#include "firmware/shell/shell_rows.h"
 
 namespace chimera::firmware {
 namespace {
@@ -56,7 +55,7 @@ void ShellListener::carry_out_signal(BoundarySignals& signals, Nanoseconds now) 
   const std::span<const TaskId> tasks(act_->tasks.begin(), act_->tasks.size());
   for (const TaskId id : tasks) {
     if (signals.may_touch(id)) continue;
-    refusal_.put("%s has a job under way: try again", task_name(set_.spec(), id));
+    refusal_.put("%s has a job under way: try again", set_.spec().tasks[id.index].name);
     return;
   }
   SignalReport report = signals.operate(tasks, act_->signal, now);

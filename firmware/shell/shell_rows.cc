@@ -54,14 +54,10 @@ void put_task_number(TextLine& line, std::uint32_t task, std::span<const TaskSpe
 
 }  // namespace
 
-const std::string_view& task_name(const ApplicationSpec& spec, TaskId task) noexcept {
-  return spec.tasks[task.index].name;
-}
-
 void put_end(TextLine& line, SwitchEnd end, NoSwitch why, TaskId task, const ApplicationSpec& spec) noexcept {
   line.put("%z", end_word(end));
   if (why != NoSwitch::kNone) line.put(", %z", reason_word(why));
-  if (task.is_valid()) line.put(", task %s", task_name(spec, task));
+  if (task.is_valid()) line.put(", task %s", spec.tasks[task.index].name);
 }
 
 void put_head(TextLine& line, TaskSet& set, Nanoseconds now) noexcept {
@@ -115,7 +111,7 @@ void put_event(TextLine& line, const ShellEvent& event, const ApplicationSpec& s
     line.put(", cycles lost: %u", event.lost);
     return;
   }
-  line.put("%s: ", task_name(spec, event.task));
+  line.put("%s: ", spec.tasks[event.task.index].name);
   if (event.kind == ShellEventKind::kState) {
     line.put("%z -> %z", state_name(event.before), state_name(event.after));
   } else if (event.kind == ShellEventKind::kFault) {
@@ -124,7 +120,7 @@ void put_event(TextLine& line, const ShellEvent& event, const ApplicationSpec& s
   } else {
     line.put("deadlines missed");
     if (event.count > 0) line.put(": %u", event.count);  // 0: known from its cause alone
-    if (event.other.is_valid()) line.put(", time used by %s", task_name(spec, event.other));
+    if (event.other.is_valid()) line.put(", time used by %s", spec.tasks[event.other.index].name);
   }
 }
 

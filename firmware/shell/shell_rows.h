@@ -15,7 +15,6 @@
 // Context of everything: between jobs; wait-free.
 namespace chimera::firmware {
 
-const std::string_view& task_name(const ApplicationSpec& spec, TaskId task) noexcept;
 /// The first row of `status`; `now` counts from the start of the run. O(tasks).
 void put_head(TextLine& line, TaskSet& set, Nanoseconds now) noexcept;
 /// The row of a task in `status`.
