@@ -6,19 +6,19 @@ namespace chimera::firmware {
 namespace {
 
 constexpr CommandSpec kCommands[] = {
-    {"status", Verb::kStatus, Operand::kNone, 0, "", "the flag, the tasks, the stacks"},
-    {"spawn", Verb::kSpawn, Operand::kTask, 1, "TASK", "initialise a task: NOT-CREATED to OFF"},
-    {"on", Verb::kOn, Operand::kTask, 8, "TASK...", "turn tasks ON together"},
-    {"off", Verb::kOff, Operand::kTask, 8, "TASK...", "turn tasks OFF together"},
-    {"kill", Verb::kKill, Operand::kTask, 1, "TASK", "end a task: to NOT-CREATED"},
-    {"clear", Verb::kClear, Operand::kTask, 1, "TASK", "clear an error: ERROR to OFF"},
-    {"reinit", Verb::kReinit, Operand::kTask, 1, "TASK", "read the constants of a task again"},
-    {"switch", Verb::kSwitch, Operand::kConfiguration, 1, "CONFIGURATION", "switch to a configuration"},
-    {"get", Verb::kGet, Operand::kVariable, 1, "VARIABLE", "show a variable"},
-    {"set", Verb::kSet, Operand::kVariable, 10, "VARIABLE VALUE... [UNIT]", "give an operator variable its values"},
-    {"profile", Verb::kProfile, Operand::kTask, 1, "TASK", "show times, losses and the last fault of a task"},
-    {"events", Verb::kEvents, Operand::kNone, 0, "", "show the events since the last time"},
-    {"help", Verb::kHelp, Operand::kNone, 0, "", "show the commands"},
+    {"status", Verb::kStatus, Operand::kNone, 0, ""},
+    {"spawn", Verb::kSpawn, Operand::kTask, 1, "TASK"},
+    {"on", Verb::kOn, Operand::kTask, 8, "TASK..."},
+    {"off", Verb::kOff, Operand::kTask, 8, "TASK..."},
+    {"kill", Verb::kKill, Operand::kTask, 1, "TASK"},
+    {"clear", Verb::kClear, Operand::kTask, 1, "TASK"},
+    {"reinit", Verb::kReinit, Operand::kTask, 1, "TASK"},
+    {"switch", Verb::kSwitch, Operand::kConfiguration, 1, "CONFIGURATION"},
+    {"get", Verb::kGet, Operand::kVariable, 1, "VARIABLE"},
+    {"set", Verb::kSet, Operand::kVariable, 10, "VARIABLE VALUE... [UNIT]"},
+    {"profile", Verb::kProfile, Operand::kTask, 1, "TASK"},
+    {"events", Verb::kEvents, Operand::kNone, 0, ""},
+    {"help", Verb::kHelp, Operand::kNone, 0, ""},
 };
 
 bool is_blank(char c) noexcept { return c == ' ' || c == '\t'; }
@@ -47,7 +47,7 @@ CommandLine parse(std::string_view line) noexcept {
   }
   if (parsed.words.empty()) return parsed;
   for (const CommandSpec& each : kCommands)
-    if (each.name == parsed.words[0]) parsed.command = &each;
+    if (parsed.words.begin()[0] == each.name) parsed.command = &each;
   if (parsed.command == nullptr) {
     parsed.fault = LineFault::kUnknown;
   } else if (parsed.fault == LineFault::kNone) {

@@ -12,19 +12,19 @@
 namespace chimera::firmware {
 
 enum class Verb : std::uint8_t {
-  kStatus, kSpawn, kOn, kOff, kKill, kClear, kReinit, kSwitch, kGet, kSet, kProfile, kEvents, kHelp
+  kSpawn, kOn, kOff, kKill, kClear, kReinit, kSwitch, kGet, kSet, kProfile, kStatus, kEvents, kHelp
 };
 
 /// The kind of thing that the first operand names.
 enum class Operand : std::uint8_t { kNone, kTask, kConfiguration, kVariable };
 
-/// One command.
+/// One command. Texts end with a zero, because an image has little flash.
 struct CommandSpec {
-  std::string_view name;
+  const char* name = nullptr;
   Verb verb = Verb::kHelp;
   Operand operand = Operand::kNone;
   std::uint8_t most = 0;  ///< operands; at least one where `operand` is not kNone, two for `set`
-  std::string_view operands, help;
+  const char* operands = "";
 };
 
 /// In the order in which `help` lists them. Context: any; wait-free.
@@ -43,7 +43,7 @@ struct CommandLine {
   std::string_view after_first;  ///< behind the first operand, without blanks around it; for texts with blanks
 
   std::size_t n_operands() const noexcept { return words.size() - 1; }
-  std::string_view operand(std::size_t i) const noexcept { return words[i + 1]; }
+  std::string_view operand(std::size_t i) const noexcept { return words.begin()[i + 1]; }
 };
 
 /// Requires: at most LineReader::kMost bytes. A line of blanks has no words and no fault. Context: any; wait-free.

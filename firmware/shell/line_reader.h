@@ -27,7 +27,7 @@ class LineReader {
   /// True if the byte ends a line; call restart() after use. Empty lines are passed over.
   bool add(std::uint8_t byte) noexcept;
   /// Begins the next line.
-  void restart() noexcept { *this = LineReader(); }
+  void restart() noexcept { length_ = 0, fault_ = Fault::kNone, bad_byte_ = 0; }
 
   /// Requires: fault() is kNone.
   std::string_view line() const noexcept { return {bytes_, length_}; }
@@ -37,10 +37,10 @@ class LineReader {
   std::uint8_t bad_byte() const noexcept { return bad_byte_; }
 
  private:
-  char bytes_[kMost];
   std::size_t length_ = 0;
   Fault fault_ = Fault::kNone;
   std::uint8_t bad_byte_ = 0;
+  char bytes_[kMost];
 };
 
 }  // namespace chimera::firmware

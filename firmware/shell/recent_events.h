@@ -33,13 +33,6 @@ struct ShellEvent {
   std::uint32_t lost = 0;      ///< kSwitch: cycles
   std::uint32_t count = 1;
   FixedString<kText> text;     ///< kFault: its beginning
-
-  /// Both are about the same thing, so that one line can show both.
-  bool is_like(const ShellEvent& other_one) const noexcept {
-    const bool can_join = kind == ShellEventKind::kFault || kind == ShellEventKind::kMissed;
-    return can_join && kind == other_one.kind && task == other_one.task && method == other_one.method &&
-           code == other_one.code;
-  }
 };
 
 /// Context of everything: cycle boundary, or between jobs; wait-free.
@@ -47,20 +40,28 @@ class RecentEvents {
  public:
   static constexpr std::uint32_t kKept = 16;
 
-  /// Adds the event, or its count to one like it that was not shown yet. Without room the oldest one goes.
-  void note(const ShellEvent& event) noexcept {
-    for (std::uint32_t n = shown_; n != made_; ++n) {
+  /// An event of now, for the caller to complete: a fault or missed deadlines that were noted before and not shown yet,
+  /// counted `count` more times, or else a new one. Without room the oldest one goes.
+  ShellEvent& note(Nanoseconds at, ShellEventKind kind, TaskId task, std::uint32_t count = 1,
+                   Method method = Method::kCycle, std::int32_t code = 0) noexcept {
+    const bool can_join = kind == ShellEventKind::kFault || kind == ShellEventKind::kMissed;
+    for (std::uint32_t n = shown_; can_join && n != made_; ++n) {
       ShellEvent& each = events_[n % kKept];
-      if (!each.is_like(event)) continue;
-      const std::uint32_t count = each.count + event.count;
-      const TaskId other = event.other.is_valid() ? event.other : each.other;
-      each = event;
-      each.count = count;
-      each.other = other;
-      return;
+      if (each.kind != kind || each.task != task || each.method != method || each.code != code) continue;
+      each.at = at;
+      each.count += count;
+      return each;
     }
     if (made_ - shown_ == kKept) ++shown_, ++lost_;
-    events_[made_++ % kKept] = event;
+    ShellEvent& made = events_[made_++ % kKept];
+    made = {};
+    made.at = at;
+    made.kind = kind;
+    made.method = method;
+    made.task = task;
+    made.code = code;
+    made.count = count;
+    return made;
   }
   /// The oldest event that was not shown yet, which is shown now; null: there is none. Its memory is good until note().
   const ShellEvent* take() noexcept {

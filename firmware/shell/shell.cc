@@ -2,24 +2,19 @@
 // Takes lines apart, looks names up, and hands acts to the cycle boundary. One piece of work a step.
 #include "firmware/shell/shell.h"
 
-#include <algorithm>
-
 namespace chimera::firmware {
 namespace {
 
 constexpr int kBytesRead = 32, kBytesSent = 64;
 constexpr std::size_t kNamesLookedAt = 16;
 
-Signal signal_of(Verb verb) noexcept {
-  switch (verb) {
-    case Verb::kSpawn: return Signal::kSpawn;
-    case Verb::kOn: return Signal::kOn;
-    case Verb::kKill: return Signal::kKill;
-    case Verb::kClear: return Signal::kClear;
-    case Verb::kReinit: return Signal::kReinit;
-    default: return Signal::kOff;
-  }
-}
+// The first verbs have the numbers of their signals.
+static_assert(static_cast<int>(Verb::kSpawn) == static_cast<int>(Signal::kSpawn));
+static_assert(static_cast<int>(Verb::kOn) == static_cast<int>(Signal::kOn));
+static_assert(static_cast<int>(Verb::kOff) == static_cast<int>(Signal::kOff));
+static_assert(static_cast<int>(Verb::kKill) == static_cast<int>(Signal::kKill));
+static_assert(static_cast<int>(Verb::kClear) == static_cast<int>(Signal::kClear));
+static_assert(static_cast<int>(Verb::kReinit) == static_cast<int>(Signal::kReinit));
 
 }  // namespace
 
@@ -30,15 +25,15 @@ void Shell::receive(std::uint8_t byte) noexcept {
     lost_.store(lost_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
     return;
   }
-  if (is_losing_) (void)in_.try_push(kLostMark);
+  if (is_losing_) in_.add(kLostMark);
   is_losing_ = false;
-  (void)in_.try_push(byte);
+  in_.add(byte);
 }
 
 bool Shell::has_work() const noexcept {
   if (is_sending_) return out_.free() > 0;
   switch (phase_) {
-    case Phase::kRead: return !in_.is_empty();
+    case Phase::kRead: return in_.size() > 0;
     case Phase::kAct: return parts_.listener.is_done();
     case Phase::kSwitch: return parts_.listener.is_switch_over();
     default: return true;
@@ -67,9 +62,9 @@ void Shell::step(Nanoseconds now) noexcept {
 bool Shell::say(std::string_view line) noexcept {
   const bool is_amid = is_sending_ && sent_ > 0;
   if (is_amid || out_.free() < line.size() + 2) return false;
-  for (const char c : line) (void)out_.try_push(static_cast<std::uint8_t>(c));
-  (void)out_.try_push('\r');
-  (void)out_.try_push('\n');
+  for (const char c : line) out_.add(static_cast<std::uint8_t>(c));
+  out_.add('\r');
+  out_.add('\n');
   return true;
 }
 
@@ -77,7 +72,7 @@ void Shell::send() noexcept {
   const std::size_t n = line_.size();
   for (int i = 0; i < kBytesSent && sent_ < n + 2; ++i, ++sent_) {
     const char c = sent_ < n ? line_.view()[sent_] : sent_ == n ? '\r' : '\n';
-    if (!out_.try_push(static_cast<std::uint8_t>(c))) return;
+    if (!out_.add(static_cast<std::uint8_t>(c))) return;
   }
   if (sent_ < n + 2) return;
   is_sending_ = false;
@@ -86,9 +81,11 @@ void Shell::send() noexcept {
 }
 
 void Shell::read() noexcept {
-  std::uint8_t byte = 0;
-  for (int i = 0; i < kBytesRead && in_.try_pop(byte); ++i)
-    if (reader_.add(byte)) return begin_line();
+  for (int i = 0; i < kBytesRead; ++i) {
+    const int byte = in_.take();
+    if (byte < 0) return;
+    if (reader_.add(static_cast<std::uint8_t>(byte))) return begin_line();
+  }
 }
 
 void Shell::begin_line() noexcept {
@@ -98,12 +95,12 @@ void Shell::begin_line() noexcept {
   if (refuse_line()) return;
   command_ = parse(reader_.line());
   switch (command_.fault) {
-    case LineFault::kUnknown: why_ << "no command '" << command_.words[0] << "': try help"; return;
-    case LineFault::kTooManyWords: why_ << "a line has at most " << kMostWords << " words"; return;
+    case LineFault::kUnknown: why_.put("no command '%s': try help", command_.words.begin()[0]); return;
+    case LineFault::kTooManyWords: why_.put("a line has at most %u words", kMostWords); return;
     case LineFault::kTooFew:
     case LineFault::kTooMany:
-      why_ << command_.command->name << " takes "
-           << (command_.command->operands.empty() ? std::string_view("no operand") : command_.command->operands);
+      why_.put("%z takes %z", command_.command->name,
+               command_.command->operand == Operand::kNone ? "no operand" : command_.command->operands);
       return;
     case LineFault::kNone: break;
   }
@@ -119,53 +116,45 @@ bool Shell::refuse_line() noexcept {
   switch (reader_.fault()) {
     case LineReader::Fault::kNone: return false;
     case LineReader::Fault::kTooLong:
-      why_ << "a line has at most " << LineReader::kMost << " bytes, not " << reader_.length();
+      why_.put("a line has at most %u bytes, not %u", LineReader::kMost, reader_.length());
       return true;
-    case LineReader::Fault::kBadByte:
-      why_ << "byte " << reader_.bad_byte() << " is no character of a command";
-      return true;
-    case LineReader::Fault::kLost: {
-      const std::uint32_t lost = lost_bytes();
-      if (lost == lost_told_) why_ << "byte 0 is no character of a command";
-      else why_ << lost - lost_told_ << " bytes of this line or before it were lost: wait for each answer";
-      lost_told_ = lost;
-      return true;
-    }
+    case LineReader::Fault::kLost:
+      if (const std::uint32_t lost = lost_bytes() - lost_told_; lost != 0) {
+        why_.put("%u bytes of this line or before it were lost: wait for each answer", lost);
+        lost_told_ += lost;
+        return true;
+      }
+      break;  // a zero that was sent
+    case LineReader::Fault::kBadByte: break;
   }
-  return false;
+  why_.put("byte %u is no character of a command", reader_.bad_byte());
+  return true;
 }
 
-std::string_view Shell::name_at(std::size_t i) const noexcept {
+const std::string_view* Shell::name_at(std::size_t i) const noexcept {
+  const auto at = [i](auto all) { return i < all.size() ? &all[i].name : nullptr; };
   const ApplicationSpec& spec = parts_.set.spec();
   switch (command_.command->operand) {
-    case Operand::kTask: return spec.tasks[i].name;
-    case Operand::kConfiguration: return spec.sets[i].name;
-    default: return spec.variables[i].name;
-  }
-}
-
-std::size_t Shell::n_names() const noexcept {
-  const ApplicationSpec& spec = parts_.set.spec();
-  switch (command_.command->operand) {
-    case Operand::kTask: return spec.tasks.size();
-    case Operand::kConfiguration: return spec.sets.size();
-    default: return spec.variables.size();
+    case Operand::kTask: return at(spec.tasks);
+    case Operand::kConfiguration: return at(spec.sets);
+    default: return at(spec.variables);
   }
 }
 
 void Shell::find() noexcept {
   const std::string_view name = command_.operand(operand_);
-  const std::size_t n = n_names(), end = std::min(n, at_ + kNamesLookedAt);
-  for (; at_ < end; ++at_) {
-    if (name_at(at_) != name) continue;
+  for (const std::size_t end = at_ + kNamesLookedAt; at_ < end; ++at_) {
+    const std::string_view* const each = name_at(at_);
+    if (each == nullptr) {
+      static constexpr const char* kKinds[] = {"", "task", "configuration", "variable"};
+      why_.put("no %z '%s'", kKinds[static_cast<std::size_t>(command_.command->operand)], name);
+      phase_ = Phase::kAnswer;
+      return;
+    }
+    if (*each != name) continue;
     if (!found(at_)) phase_ = Phase::kAnswer;
     return;
   }
-  if (at_ < n) return;
-  const Operand kind = command_.command->operand;
-  why_ << (kind == Operand::kTask ? "no task '" : kind == Operand::kVariable ? "no variable '" : "no configuration '")
-       << name << "'";
-  phase_ = Phase::kAnswer;
 }
 
 // False: the line is refused.
@@ -178,7 +167,7 @@ bool Shell::found(std::size_t i) noexcept {
   }
   for (const TaskId id : act_.tasks) {
     if (id.index != index_) continue;
-    why_ << "task '" << command_.operand(operand_) << "' is named twice";
+    why_.put("task '%s' is named twice", command_.operand(operand_));
     return false;
   }
   (void)act_.tasks.try_push(TaskId(i));
@@ -197,26 +186,42 @@ void Shell::begin_command() noexcept {
       break;
     default:
       act_.kind = ShellAct::Kind::kSignal;
-      act_.signal = signal_of(command_.command->verb);
+      act_.signal = static_cast<Signal>(command_.command->verb);
       break;
   }
   parts_.listener.ask(act_);
   phase_ = Phase::kAct;
 }
 
-void Shell::begin_set() noexcept {
+bool Shell::is_given(std::uint32_t variable) const noexcept {
+  return parts_.set.spec().variables[variable].is_given();
+}
+
+ValueShape Shell::shape_of(std::uint32_t index, const PortSpec* port) const noexcept {
   const ApplicationSpec& spec = parts_.set.spec();
-  const Variable& variable = spec.variables[index_];
+  const Variable& variable = spec.variables[index];
+  ValueShape shape{variable.name, "1"};
+  if (variable.is_given()) {
+    const GivenSpec& given = spec.operators[variable.operator_index];
+    shape.type = given.type;
+    shape.element_bytes = given.element_bytes;
+    shape.count = given.extent[0].max * given.extent[1].max;
+    if (!variable.consumers.empty()) port = spec.port(CHIMERA_IN_VAR, variable.consumers[0]);
+  } else if (port != nullptr) {
+    shape.type = port->type;
+    shape.element_bytes = port->element_bytes;
+  }
+  if (port != nullptr) shape.unit = port->unit;
+  return shape;
+}
+
+void Shell::begin_set() noexcept {
+  const ValueShape shape = shape_of(index_, nullptr);
   phase_ = Phase::kAnswer;
-  if (!variable.is_given()) {
-    why_ << variable.name << " is no operator variable";
+  if (!is_given(index_)) {
+    why_.put("%s is no operator variable", shape.name);
     return;
   }
-  const GivenSpec& given = spec.operators[variable.operator_index];
-  const PortSpec* const port =
-      variable.consumers.empty() ? nullptr : spec.port(CHIMERA_IN_VAR, variable.consumers[0]);
-  const ValueShape shape{variable.name, port == nullptr ? std::string_view("1") : port->unit, given.type,
-                         given.element_bytes, given.extent[0].max * given.extent[1].max};
   const std::span<const std::string_view> words(command_.words.begin() + 2, command_.words.size() - 2);
   typed_ = TypedValue(shape, words, command_.after_first, value_);
   if (typed_.begin(why_)) phase_ = Phase::kTyped;
@@ -235,14 +240,13 @@ void Shell::read_typed() noexcept {
 }
 
 void Shell::end_act() noexcept {
-  why_ << parts_.listener.refusal().view();
+  why_ = parts_.listener.refusal();
   const bool is_awaited = act_.kind == ShellAct::Kind::kSwitch && why_.size() == 0;
   phase_ = is_awaited ? Phase::kSwitch : Phase::kAnswer;
 }
 
 void Shell::answer() noexcept {
-  if (why_.size() == 0) line_ << "ok";
-  else line_ << "no: " << why_.view();
+  line_.put("%z%s", why_.size() == 0 ? "ok" : "no: ", why_.view());
   is_sending_ = true;
   why_.clear();
   reader_.restart();

@@ -13,8 +13,8 @@
 #include <span>
 #include <string_view>
 
+#include "chimera/platform/bare/byte_ring.h"
 #include "chimera/runtime/cycle/releases.h"
-#include "firmware/shell/byte_ring.h"
 #include "firmware/shell/command_line.h"
 #include "firmware/shell/line_reader.h"
 #include "firmware/shell/shell_listener.h"
@@ -48,8 +48,8 @@ class Shell {
 
   /// A byte arrived. Bytes that do not fit are counted, and the line that they belong to is refused.
   void receive(std::uint8_t byte) noexcept;
-  /// The next byte to send. False: there is none.
-  [[nodiscard]] bool next_byte(std::uint8_t& byte) noexcept { return out_.try_pop(byte); }
+  /// The next byte to send; -1: there is none.
+  int next_byte() noexcept { return out_.take(); }
 
   // For the thread of the cycle boundaries, while no job is ready. Context: between jobs; wait-free.
 
@@ -71,10 +71,12 @@ class Shell {
   void begin_line() noexcept;
   bool refuse_line() noexcept;
   void find() noexcept;
-  std::string_view name_at(std::size_t i) const noexcept;
-  std::size_t n_names() const noexcept;
+  const std::string_view* name_at(std::size_t i) const noexcept;
   bool found(std::size_t i) noexcept;
   void begin_command() noexcept;
+  bool is_given(std::uint32_t variable) const noexcept;
+  /// The shape of the value that the operator gives, or else `port`; 0 bytes: there is neither.
+  ValueShape shape_of(std::uint32_t variable, const PortSpec* port) const noexcept;
   void begin_set() noexcept;
   void read_typed() noexcept;
   void end_act() noexcept;
@@ -87,30 +89,29 @@ class Shell {
   bool make_help_row() noexcept;
   bool make_value_row(Nanoseconds now) noexcept;
   bool make_switch_row() noexcept;
-  bool refuse() noexcept;
   void answer() noexcept;
 
-  ShellParts parts_;
-  ByteRing<128> in_;
-  ByteRing<256> out_;
-  std::atomic<std::uint32_t> lost_{0};  // written by receive() only; relaxed, pairs with nothing
-  std::uint32_t lost_told_ = 0;
-  bool is_losing_ = false;           // by receive() only
-
-  LineReader reader_;
-  CommandLine command_;
+  // Small members first: code for near members is small.
   Phase phase_ = Phase::kRead;
-  TextLine line_;              // being made, or being sent
-  std::size_t sent_ = 0;       // bytes of line_ and its end
   bool is_sending_ = false;
-  TextLine why_;               // the line is refused; empty: it is not
+  bool is_losing_ = false;     // by receive() only
+  std::size_t sent_ = 0;       // bytes of line_ and its end
   std::size_t operand_ = 0;    // whose name is looked up
   std::size_t at_ = 0;         // next name, row or element
   std::uint32_t index_ = 0;    // of the variable or task that was found
+  std::atomic<std::uint32_t> lost_{0};  // written by receive() only; relaxed, pairs with nothing
+  std::uint32_t lost_told_ = 0;
+  ShellParts parts_;
+  CommandLine command_;
   StackScan scan_{Stack()};
   ShellAct act_;
   std::array<std::byte, kMostValueBytes> value_{};
   TypedValue typed_{{}, {}, {}, value_};
+  LineReader reader_;
+  TextLine line_;              // being made, or being sent
+  TextLine why_;               // the line is refused; empty: it is not
+  bare::ByteRing<128> in_;
+  bare::ByteRing<256> out_;
 };
 
 }  // namespace chimera::firmware

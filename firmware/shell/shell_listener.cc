@@ -19,14 +19,6 @@ bool is_over(const SwitchReceipt& receipt) noexcept {
   return receipt.end != SwitchEnd::kRefused || receipt.why != NoSwitch::kNone;
 }
 
-ShellEvent event_of(const Task& task, ShellEventKind kind, Nanoseconds at) noexcept {
-  ShellEvent event;
-  event.kind = kind;
-  event.at = at;
-  event.task = task.id;
-  return event;
-}
-
 }  // namespace
 
 ShellListener::ShellListener(TaskSet& set, SetupMemory& memory)
@@ -63,7 +55,7 @@ void ShellListener::carry_out_signal(BoundarySignals& signals, Nanoseconds now) 
   const std::span<const TaskId> tasks(act_->tasks.begin(), act_->tasks.size());
   for (const TaskId id : tasks) {
     if (signals.may_touch(id)) continue;
-    refusal_ << set_.spec().tasks[id.index].name << " has a job under way: try again";
+    refusal_.put("%s has a job under way: try again", set_.spec().tasks[id.index].name);
     return;
   }
   SignalReport report = signals.operate(tasks, act_->signal, now);
@@ -77,7 +69,7 @@ void ShellListener::carry_out_signal(BoundarySignals& signals, Nanoseconds now) 
 
 void ShellListener::order_switch(BoundarySignals& signals, Nanoseconds now) noexcept {
   if (receipts_ == nullptr || !may_request(set_.spec())) {
-    refusal_ << "this application has no switches";
+    refusal_.put("this application has no switches");
     return;
   }
   ScriptAct act;
@@ -87,7 +79,7 @@ void ShellListener::order_switch(BoundarySignals& signals, Nanoseconds now) noex
   const std::span<const SwitchReceipt> all = receipts_->all();
   const bool is_kept = !all.empty() && all.back().asked == now && all.back().cause == SwitchCause::kScript;
   if (!is_kept) {
-    refusal_ << "another switch is under way";
+    refusal_.put("another switch is under way");
     return;
   }
   ordered_ = &all.back();
@@ -107,10 +99,8 @@ void ShellListener::show(const Task& task) noexcept { note_news(task, std::max(n
 
 void ShellListener::missed(TaskId task, const MissCause::Verdict& verdict, Nanoseconds now) noexcept {
   note_news(set_.tasks()[task.index], now);
-  ShellEvent event = event_of(set_.tasks()[task.index], ShellEventKind::kMissed, now);
-  event.other = verdict.culprit;
-  event.count = 0;
-  events_.note(event);
+  ShellEvent& event = events_.note(now, ShellEventKind::kMissed, task, 0);
+  if (verdict.culprit.is_valid()) event.other = verdict.culprit;
 }
 
 void ShellListener::look(Nanoseconds now) noexcept {
@@ -127,28 +117,22 @@ void ShellListener::note_news(const Task& task, Nanoseconds now) noexcept {
   Seen& seen = seen_[task.id.index];
   const auto faults = static_cast<std::uint32_t>(task.faults.count);
   if (faults != seen.faults) {
-    ShellEvent event = event_of(task, ShellEventKind::kFault, task.faults.at);
-    event.method = task.faults.method;
-    event.code = task.faults.last.code;
-    event.text.assign(task.faults.last.text);
-    event.count = faults - seen.faults;
-    events_.note(event);
+    const FaultRecord& log = task.faults;
+    events_.note(log.at, ShellEventKind::kFault, task.id, faults - seen.faults, log.method, log.last.code)
+        .text.assign(log.last.text);
     seen.faults = faults;
   }
   const auto missed = static_cast<std::uint32_t>(task.profile.missed);
   if (missed != seen.missed) {
-    ShellEvent event = event_of(task, ShellEventKind::kMissed, now);
-    event.count = missed - seen.missed;  // a new incarnation counts from 0
-    if (missed < seen.missed) event.count = missed;
-    if (event.count != 0) events_.note(event);
+    const std::uint32_t news = missed < seen.missed ? missed : missed - seen.missed;  // a new incarnation counts from 0
+    if (news != 0) events_.note(now, ShellEventKind::kMissed, task.id, news);
     seen.missed = missed;
   }
   const State state = task.shown_state();
   if (state == seen.state) return;
-  ShellEvent event = event_of(task, ShellEventKind::kState, now);
+  ShellEvent& event = events_.note(now, ShellEventKind::kState, task.id);
   event.before = seen.state;
   event.after = state;
-  events_.note(event);
   seen.state = state;
 }
 
@@ -158,16 +142,13 @@ void ShellListener::note_switch(Nanoseconds now) noexcept {
   if (last.number == noted_switch_ || !is_over(last)) return;
   noted_switch_ = last.number;
   if (last.end == SwitchEnd::kNothingToDo) return;
-  ShellEvent event;
-  event.kind = ShellEventKind::kSwitch;
-  event.at = last.ended == kNever ? now : last.ended;
+  ShellEvent& event =
+      events_.note(last.ended == kNever ? now : last.ended, ShellEventKind::kSwitch, last.task);
   event.end = last.end;
   event.why = last.why;
-  event.task = last.task;
   event.from = last.before;
   event.to = last.after;
   for (const TaskPart& part : last.tasks) event.lost += static_cast<std::uint32_t>(part.lost);
-  events_.note(event);
 }
 
 }  // namespace chimera::firmware

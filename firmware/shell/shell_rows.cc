@@ -3,6 +3,7 @@
 #include "firmware/shell/shell_rows.h"
 
 #include <cstring>
+#include <iterator>
 
 #include "chimera/runtime/plan/switch_words.h"
 
@@ -16,156 +17,161 @@ T load(const std::byte* at) noexcept {
   return value;
 }
 
-void put_spread(TextLine& line, std::string_view what, const Spread& spread) noexcept {
-  line << what << ": ";
-  if (spread.count == 0) {
-    line << "none yet";
-    return;
-  }
-  line.put_us(spread.min) << " to ";
-  line.put_us(spread.max) << ", mean ";
-  line.put_us(spread.mean());
+/// One number of a profile and its name.
+struct Counter {
+  const char* name;
+  std::uint64_t Profile::*count;
+};
+
+constexpr Counter kCounters[] = {{"cycles", &Profile::cycles},     {"missed", &Profile::missed},
+                                 {"dropped", &Profile::dropped},   {"overrun", &Profile::overrun},
+                                 {"aborted", &Profile::aborted},   {"held", &Profile::held},
+                                 {"rejected", &Profile::rejected}, {"events lost", &Profile::events_lost}};
+
+/// "missed 0 dropped 2 ", from number `first` on and before `end`.
+void put_counters(TextLine& line, const Profile& profile, std::size_t first, std::size_t end) noexcept {
+  for (std::size_t i = first; i < end; ++i)
+    line.put("%z %l ", kCounters[i].name, static_cast<std::int64_t>(profile.*kCounters[i].count));
 }
 
-void put_set_name(TextLine& line, std::uint32_t set, const ApplicationSpec& spec) noexcept {
-  if (set < spec.sets.size()) line << spec.sets[set].name;
-  else line << "other tasks";
+void put_name_and_state(TextLine& line, const Task& task) noexcept {
+  line.put("%s %z ", task.spec->name, state_name(task.shown_state()));
 }
 
-void put_switch(TextLine& line, const ShellEvent& event, const ApplicationSpec& spec) noexcept {
-  line << "switch from ";
-  put_set_name(line, event.from, spec);
-  line << " to ";
-  put_set_name(line, event.to, spec);
-  line << ": " << end_word(event.end);
-  if (event.why != NoSwitch::kNone) line << ", " << reason_word(event.why);
-  if (event.task.is_valid()) line << ", task " << spec.tasks[event.task.index].name;
-  if (event.end == SwitchEnd::kDone) line << ", " << event.lost << " cycles lost";
+void put_spread(TextLine& line, const char* what, const Spread& spread) noexcept {
+  if (spread.count == 0) line.put("%z: none yet", what);
+  else line.put("%z: %m to %m, mean %m", what, spread.min, spread.max, spread.mean());
 }
 
-void put_hex(TextLine& line, std::uint32_t value) noexcept {
-  line << "0x";
-  for (int shift = 28; shift >= 0; shift -= 4) line << "0123456789abcdef"[value >> shift & 15u];
+std::string_view set_name(std::uint32_t set, const ApplicationSpec& spec) noexcept {
+  return set < spec.sets.size() ? spec.sets[set].name : std::string_view("other tasks");
 }
 
 void put_task_number(TextLine& line, std::uint32_t task, std::span<const TaskSpec> tasks) noexcept {
   if (task < tasks.size()) line << tasks[task].name;
-  else line << "number " << task;
+  else line.put("number %u", task);
 }
 
 }  // namespace
+
+void put_end(TextLine& line, SwitchEnd end, NoSwitch why, TaskId task, const ApplicationSpec& spec) noexcept {
+  line.put("%z", end_word(end));
+  if (why != NoSwitch::kNone) line.put(", %z", reason_word(why));
+  if (task.is_valid()) line.put(", task %s", spec.tasks[task.index].name);
+}
 
 void put_head(TextLine& line, TaskSet& set, Nanoseconds now) noexcept {
   const ApplicationSpec& spec = set.spec();
   std::uint32_t n_on = 0;
   for (const Task& task : set.tasks()) n_on += task.shown_state() == State::kOn ? 1 : 0;
-  line << spec.name << " at " << now << ": " << n_on << " of " << set.tasks().size() << " tasks ON, flag "
-       << (set.flag().is_up() ? "up" : "down");
+  line.put("%s at %t: %u of %u tasks ON, flag %z", spec.name, now, n_on, set.tasks().size(),
+           set.flag().is_up() ? "up" : "down");
   const std::uint32_t configuration = set.flag().configuration();
-  if (configuration < spec.sets.size()) line << ", configuration " << spec.sets[configuration].name;
+  if (configuration < spec.sets.size()) line.put(", configuration %s", spec.sets[configuration].name);
 }
 
 void put_task(TextLine& line, const Task& task) noexcept {
-  const Profile& profile = task.profile;
-  line << task.spec->name << ' ' << state_name(task.shown_state()) << " cycles " << profile.cycles << " missed "
-       << profile.missed << " dropped " << profile.dropped << " faults " << task.faults.count;
+  put_name_and_state(line, task);
+  put_counters(line, task.profile, 0, 3);
+  line.put("faults %l", static_cast<std::int64_t>(task.faults.count));
 }
 
 bool put_profile(TextLine& line, const Task& task, std::size_t row, Nanoseconds origin) noexcept {
   const Profile& profile = task.profile;
   switch (row) {
     case 0:
-      line << task.spec->name << ' ' << state_name(task.shown_state()) << " cycles " << profile.cycles
-           << (task.spec->aperiodic ? " at most every " : " every ");
-      line.put_us(task.spec->period);
+      put_name_and_state(line, task);
+      put_counters(line, profile, 0, 1);
+      line.put("%zevery %m", task.spec->aperiodic ? "at most " : "", task.spec->period);
       return true;
     case 1: put_spread(line, "cycle", profile.execution[CHIMERA_CYCLE]); return true;
     case 2: put_spread(line, "response", profile.response); return true;
     case 3: put_spread(line, "start delay", profile.start_delay); return true;
     case 4:
-      line << "missed " << profile.missed << " dropped " << profile.dropped << " overrun " << profile.overrun
-           << " aborted " << profile.aborted << " held " << profile.held << " rejected " << profile.rejected
-           << " events lost " << profile.events_lost;
+      put_counters(line, profile, 1, std::size(kCounters));
+      line.put("faults %l", static_cast<std::int64_t>(task.faults.count));
       return true;
     case 5:
-      line << "faults " << task.faults.count;
-      if (task.faults.count != 0)
-        line << ", the last at " << task.faults.at - origin << " in " << method_name(task.faults.method) << ", code "
-             << task.faults.last.code << ':';
+      if (task.faults.count == 0) return false;
+      line.put("the last at %t in %z, code %d:", task.faults.at - origin, method_name(task.faults.method),
+               task.faults.last.code);
       return true;
     case 6:
-      if (task.faults.count != 0) line << task.faults.last.text;
+      line.put("%z", task.faults.last.text);
       return task.faults.count != 0;
     default: return false;
   }
 }
 
 void put_event(TextLine& line, const ShellEvent& event, const ApplicationSpec& spec, Nanoseconds origin) noexcept {
-  line << event.at - origin << ' ';
-  if (event.kind == ShellEventKind::kSwitch) return put_switch(line, event, spec);
-  line << spec.tasks[event.task.index].name << ": ";
-  switch (event.kind) {
-    case ShellEventKind::kState: line << state_name(event.before) << " -> " << state_name(event.after); break;
-    case ShellEventKind::kMissed:
-      if (event.count > 0) line << event.count << ' ';  // 0: known from its cause alone
-      line << (event.count == 1 ? "deadline missed" : "deadlines missed");
-      if (event.other.is_valid()) line << ", time used by " << spec.tasks[event.other.index].name;
-      break;
-    default:
-      line << "fault in " << method_name(event.method) << ", code " << event.code << ": " << event.text.view();
-      if (event.count > 1) line << " (" << event.count << " times)";
-      break;
+  line.put("%t ", event.at - origin);
+  if (event.kind == ShellEventKind::kSwitch) {
+    line.put("switch from %s to %s: ", set_name(event.from, spec), set_name(event.to, spec));
+    put_end(line, event.end, event.why, event.task, spec);
+    line.put(", cycles lost: %u", event.lost);
+    return;
+  }
+  line.put("%s: ", spec.tasks[event.task.index].name);
+  if (event.kind == ShellEventKind::kState) {
+    line.put("%z -> %z", state_name(event.before), state_name(event.after));
+  } else if (event.kind == ShellEventKind::kFault) {
+    line.put("fault in %z, code %d: %s", method_name(event.method), event.code, event.text.view());
+    if (event.count > 1) line.put(" (%u times)", event.count);
+  } else {
+    line.put("deadlines missed");
+    if (event.count > 0) line.put(": %u", event.count);  // 0: known from its cause alone
+    if (event.other.is_valid()) line.put(", time used by %s", spec.tasks[event.other.index].name);
   }
 }
 
 void put_element(TextLine& line, std::uint32_t type, std::uint32_t bytes, const std::byte* at) noexcept {
   switch (type) {
-    case CHIMERA_BOOL: line << (load<std::uint8_t>(at) != 0 ? "true" : "false"); break;
-    case CHIMERA_INT32: line << load<std::int32_t>(at); break;
-    case CHIMERA_INT64: line << load<std::int64_t>(at); break;
-    case CHIMERA_FLOAT32: line << static_cast<double>(load<float>(at)); break;
-    case CHIMERA_FLOAT64: line << load<double>(at); break;
+    case CHIMERA_BOOL: line.put("%z", load<std::uint8_t>(at) != 0 ? "true" : "false"); break;
+    case CHIMERA_INT32: line.put("%d", load<std::int32_t>(at)); break;
+    case CHIMERA_INT64: line.put("%l", load<std::int64_t>(at)); break;
+    case CHIMERA_FLOAT32: line.put("%g", static_cast<double>(load<float>(at))); break;
+    case CHIMERA_FLOAT64: line.put("%g", load<double>(at)); break;
     default: {
       const char* const text = reinterpret_cast<const char*>(at);
       std::size_t n = 0;
       while (n < bytes && text[n] != '\0') ++n;
-      line << '\'' << std::string_view(text, n) << '\'';
+      line.put("'%s'", std::string_view(text, n));
       break;
     }
   }
 }
 
 void put_unit(TextLine& line, std::string_view unit) noexcept {
-  if (unit != "1" && !unit.empty()) line << ' ' << unit;
+  if (unit != "1" && !unit.empty()) line.put(" %s", unit);
 }
 
 void put_vital(TextLine& line, const VitalAnswer& answer, std::span<const TaskSpec> tasks) noexcept {
-  line << vital_word(answer.fault);
+  line.put("%z", vital_word(answer.fault));
   if (answer.is_healthy()) return;
-  line << ": ";
-  if (answer.fault == VitalFault::kGuard) line << "stack " << answer.stack;
+  line.put(": ");
+  if (answer.fault == VitalFault::kGuard) line.put("stack %u", answer.stack);
   else put_task_number(line, answer.task.index, tasks);
 }
 
 void put_boot(TextLine& line, const Boot& boot, std::span<const TaskSpec> tasks) noexcept {
   if (!boot.is_warm) {
-    line << "cold boot";
+    line.put("cold boot");
     return;
   }
-  line << "warm boot " << boot.warm_boots << ": " << cause_word(boot.cause);
+  line.put("warm boot %u: %s", boot.warm_boots, cause_word(boot.cause));
   if (boot.running.method < CHIMERA_METHODS) {
-    line << " in " << method_name(static_cast<Method>(boot.running.method)) << " of task ";
+    line.put(" in %z of task ", method_name(static_cast<Method>(boot.running.method)));
     put_task_number(line, boot.running.task, tasks);
   }
   if (boot.pc != 0) {
-    line << " at ";
-    put_hex(line, boot.pc);
+    line.put(" at 0x");
+    for (int shift = 28; shift >= 0; shift -= 4) line << "0123456789abcdef"[boot.pc >> shift & 15u];
   }
   if (boot.vital != VitalFault::kNone) {
-    line << ", ";
+    line.put(", ");
     put_vital(line, {boot.vital, TaskId(boot.vital_number), boot.vital_number}, tasks);
   }
-  if (boot.starts_off) line << "; everything starts OFF";
+  if (boot.starts_off) line.put("; everything starts OFF");
 }
 
 }  // namespace chimera::firmware

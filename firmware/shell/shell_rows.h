@@ -21,6 +21,8 @@ void put_head(TextLine& line, TaskSet& set, Nanoseconds now) noexcept;
 void put_task(TextLine& line, const Task& task) noexcept;
 /// Rows of `profile`, by number from 0. False: there are no more.
 bool put_profile(TextLine& line, const Task& task, std::size_t row, Nanoseconds origin) noexcept;
+/// "aborted, on-failed, task spare": the end of a switch, and why.
+void put_end(TextLine& line, SwitchEnd end, NoSwitch why, TaskId task, const ApplicationSpec& spec) noexcept;
 /// The row of an event.
 void put_event(TextLine& line, const ShellEvent& event, const ApplicationSpec& spec, Nanoseconds origin) noexcept;
 /// An element of a value. Requires: no struct.

@@ -130,7 +130,8 @@ TEST(Shell, SkipsEmptyLines) {
 
 TEST(Shell, SetsOperatorVariablesInTheirUnit) {
   ShellScene scene;
-  EXPECT_EQ(scene.ask("get k"), "k = 2 N.s/m, age 0.001 s\nok\n");
+  scene.run(10);
+  EXPECT_EQ(scene.ask("get k"), "k = 2 N.s/m, age 0.010 s\nok\n");
   EXPECT_EQ(scene.ask("set k 2.5 N.s/m"), "ok\n");
   EXPECT_EQ(scene.value("k"), 2.5);
   EXPECT_EQ(scene.ask("set k -1e-3"), "ok\n");
@@ -139,8 +140,8 @@ TEST(Shell, SetsOperatorVariablesInTheirUnit) {
   EXPECT_TRUE(scene.ask("get n").starts_with("n = -9223372036854775808, age "));
   EXPECT_EQ(scene.ask("set k 3 m"), "no: k is in N.s/m, not in 'm'\n");
   EXPECT_EQ(scene.ask("set k 3 4"), "no: k has 1 element, not 2\n");
-  EXPECT_EQ(scene.ask("set k 1e400"), "no: '1e400' is not a number of float64\n");
-  EXPECT_EQ(scene.ask("set n 1.5"), "no: '1.5' is not a whole number of 64 bits\n");
+  EXPECT_EQ(scene.ask("set k 1e400"), "no: '1e400' is no float64\n");
+  EXPECT_EQ(scene.ask("set n 1.5"), "no: '1.5' is no int64\n");
   EXPECT_EQ(scene.ask("set n one"), "no: n has no unit, and 'one' is no number\n");
   EXPECT_EQ(scene.ask("set y 1"), "no: y is no operator variable\n");
   EXPECT_EQ(scene.value("k"), -1e-3);
@@ -151,7 +152,7 @@ TEST(Shell, GetsValuesWithUnitAndAge) {
   scene.run(41);
   EXPECT_EQ(scene.ask("get y"), "y = 10.25 m/s, age 0.000 s\nok\n");
   EXPECT_EQ(scene.ask("get u").substr(0, 4), "u = ");
-  EXPECT_EQ(scene.ask("get list"), "list = [0.5 0.5 0.5] rad, age 0.000 s\nok\n");
+  EXPECT_EQ(scene.ask("get list"), "list = [0 0.5 1] rad, age 0.000 s\nok\n");
   EXPECT_EQ(scene.ask("get late"), "no: late has no value\n");
 }
 
@@ -160,7 +161,7 @@ TEST(Shell, SwitchesAndShowsTheReceipt) {
   scene.run(20);
   const std::string said = scene.ask("switch reserve");
   EXPECT_TRUE(said.starts_with("changed after ")) << said;
-  EXPECT_TRUE(said.find(" us, 0 cycles lost\ny moves by ") != std::string::npos) << said;
+  EXPECT_TRUE(said.find(" us, cycles lost: 0\ny moves by ") != std::string::npos) << said;
   EXPECT_TRUE(said.ends_with(" m/s\nok\n")) << said;
   EXPECT_EQ(scene.state(kWave), State::kOff);
   EXPECT_EQ(scene.state(kSpare), State::kOn);
@@ -180,8 +181,10 @@ TEST(Shell, ReportsASwitchThatIsAborted) {
 TEST(Shell, EventsShowsEachEventOnce) {
   ShellScene scene;
   scene.run(5);
-  EXPECT_EQ(scene.ask("events"), "0.000 s wave: NOT-CREATED -> ON\n0.000 s spare: NOT-CREATED -> OFF\n"
-                                 "0.000 s gain: NOT-CREATED -> ON\nok\n");
+  const std::string first = scene.ask("events");  // those of one instant come in any order
+  for (const char* line : {"wave: NOT-CREATED -> ON", "spare: NOT-CREATED -> OFF", "gain: NOT-CREATED -> ON"})
+    EXPECT_TRUE(first.find("0.000 s " + std::string(line) + "\n") != std::string::npos) << first;
+  EXPECT_EQ(std::ranges::count(first, '\n'), 4) << first;
   EXPECT_EQ(scene.ask("events"), "ok\n");
   orders.gain_faults = true;
   scene.run(3);
@@ -192,7 +195,7 @@ TEST(Shell, EventsShowsEachEventOnce) {
   scene.ask("switch reserve");
   const std::string said = scene.ask("events");
   EXPECT_TRUE(said.find("gain: ERROR -> OFF\n") != std::string::npos) << said;
-  EXPECT_TRUE(said.find(" s switch from other tasks to reserve: done, 0 cycles lost\n") != std::string::npos) << said;
+  EXPECT_TRUE(said.find(" s switch from other tasks to reserve: done, cycles lost: 0\n") != std::string::npos) << said;
 }
 
 TEST(Shell, CountsFaultsOfOneKindInOneEvent) {
@@ -210,7 +213,7 @@ TEST(Shell, CountsEventsThatWentBeforeTheyWereShown) {
   for (int i = 0; i < 10; ++i) scene.ask(i % 2 == 0 ? "off gain" : "on gain"), scene.ask("reinit gain");
   for (int i = 0; i < 10; ++i) scene.ask(i % 2 == 0 ? "off gain" : "on gain");
   const std::string said = scene.ask("events");
-  EXPECT_TRUE(said.starts_with("4 older events are lost\n")) << said;
+  EXPECT_TRUE(said.starts_with("older events lost: 4\n")) << said;
   EXPECT_EQ(std::ranges::count(said, '\n'), 18);
 }
 
@@ -219,12 +222,12 @@ TEST(Shell, ProfileShowsTimesAndTheLastFault) {
   scene.run(3);
   EXPECT_EQ(scene.ask("profile spare"),
             "spare OFF cycles 0 every 1000.000 us\ncycle: none yet\nresponse: none yet\nstart delay: none yet\n"
-            "missed 0 dropped 0 overrun 0 aborted 0 held 0 rejected 0 events lost 0\nfaults 0\nok\n");
+            "missed 0 dropped 0 overrun 0 aborted 0 held 0 rejected 0 events lost 0 faults 0\nok\n");
   orders.gain_faults = true;
   scene.run(2);
   const std::string said = scene.ask("profile gain");
   EXPECT_TRUE(said.find("cycle: 0.000 us to 0.000 us, mean 0.000 us\n") != std::string::npos) << said;
-  EXPECT_TRUE(said.ends_with("in cycle, code 42:\nthe gain?is broken\nok\n")) << said;
+  EXPECT_TRUE(said.ends_with(" in cycle, code 42:\nthe gain?is broken\nok\n")) << said;
 }
 
 TEST(Shell, HelpShowsEveryCommand) {
@@ -248,17 +251,16 @@ TEST(Shell, LineThatCameTooEarlyWaits) {
 TEST(Shell, RefusesALineThatLostBytes) {
   ShellScene scene;
   scene.sends = false;  // no row leaves, so that the shell stops in the middle of an answer
-  scene.type("help\n");
+  scene.type("status\nhelp\n");
   scene.run(3);
   scene.is_hasty = true;
-  scene.type(std::string(120, ' ') + "off gain\n");  // 129 bytes
+  scene.type(std::string(121, ' ') + "off gain\n");  // 130 bytes
   scene.run(1);
   EXPECT_EQ(scene.shell().lost_bytes(), 2u);
   scene.sends = true;
   scene.is_hasty = false;
-  scene.type("status\n");
-  const std::string said = scene.run(20);
-  EXPECT_TRUE(said.ends_with("no: 2 bytes of this line or before it were lost: wait for each answer\n")) << said;
+  EXPECT_TRUE(scene.run(20).ends_with("ok\n")) << "the answer to help";
+  EXPECT_EQ(scene.ask("status"), "no: 2 bytes of this line or before it were lost: wait for each answer\n");
   EXPECT_EQ(scene.state(kGain), State::kOn);
   EXPECT_TRUE(scene.ask("status").ends_with("input: 2 bytes lost\nok\n"));
 }
@@ -269,7 +271,7 @@ TEST(Shell, SaysLinesOfTheImageBetweenItsRows) {
   EXPECT_TRUE(scene.shell().say("warm boot 1: watchdog"));
   EXPECT_EQ(scene.ask("get k").substr(0, 22), "warm boot 1: watchdog\n");
   scene.sends = false;
-  scene.type("help\n");
+  scene.type("status\nhelp\n");  // more than waits to be sent
   scene.run(1);
   EXPECT_FALSE(scene.shell().say("digest"));
 }
@@ -320,7 +322,8 @@ TEST(Shell, AMegabyteOfNoiseChangesNoDigest) {
   std::string bytes;
   while (bytes.size() < 1'000'000) bytes += static_cast<char>(noise.below(256));
   const std::vector<DigestLine> quiet = digest_with("", false);
-  ASSERT_EQ(quiet.size(), 6u);
+  const auto is_of_gain = [](const DigestLine& line) { return line.task == kGain; };
+  ASSERT_EQ(std::ranges::count_if(quiet, is_of_gain), 3) << "one line for each second";
   expect_equal(digest_with(bytes, false), quiet);
   expect_equal(digest_with(bytes, true), quiet);
 }

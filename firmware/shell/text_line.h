@@ -6,8 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <type_traits>
 
 #include "chimera/base/time.h"
+#include "firmware/shell/row_format.h"
 
 namespace chimera::firmware {
 
@@ -18,35 +20,38 @@ class TextLine {
   static constexpr std::size_t kMost = 159;
 
   TextLine& operator<<(std::string_view text) noexcept;
-  TextLine& operator<<(const char* text) noexcept;
   TextLine& operator<<(char c) noexcept;
-  template <std::integral Number>
-    requires(!std::same_as<Number, bool> && !std::same_as<Number, char>)
-  TextLine& operator<<(Number number) noexcept {
-    if constexpr (sizeof number > 4) return put_whole(number < 0, static_cast<std::uint64_t>(number));
-    else if constexpr (std::signed_integral<Number>) return put_int(number);
-    else return put_uint(number);
+  /// Adds the text with the values in its gaps: RowFormat. Numbers as printf("%g"); times as "12.345 s" and
+  /// "1.250 us", kNever in seconds as "never".
+  template <class... Values>
+  void put(RowFormat<std::type_identity_t<Values>...> format, const Values&... values) noexcept {
+    put_all(format.text(), passed(values)...);
   }
-  /// Six digits, as printf("%g").
-  TextLine& operator<<(double number) noexcept;
-  /// "12.345 s"; kNever is "never".
-  TextLine& operator<<(Nanoseconds time) noexcept;
-  /// "1.250 us"
-  TextLine& put_us(Nanoseconds time) noexcept;
 
   std::string_view view() const noexcept { return {bytes_, size_}; }
   std::size_t size() const noexcept { return size_; }
   void clear() noexcept { size_ = 0; }
 
  private:
-  TextLine& put_whole(bool is_negative, std::uint64_t bits) noexcept;
-  TextLine& put_int(std::int32_t number) noexcept;
-  TextLine& put_uint(std::uint32_t number) noexcept;
-  TextLine& put_digits(std::uint64_t rest, int least) noexcept;
-  TextLine& put_thousandths(std::int64_t count) noexcept;
+  static const std::string_view* passed(const std::string_view& text) noexcept { return &text; }
+  static const char* passed(const char* text) noexcept { return text; }
+  static double passed(double number) noexcept { return number; }
+  static long long passed(Nanoseconds time) noexcept { return time.count; }
+  template <std::integral Number>
+  static auto passed(Number number) noexcept {
+    if constexpr (std::unsigned_integral<Number>) return static_cast<unsigned>(number);
+    else if constexpr (sizeof number <= 4) return static_cast<int>(number);
+    else return static_cast<long long>(number);
+  }
 
+  // One function for all rows: a call passes the values alone. RowFormat has judged their types.
+  void put_all(const char* format, ...) noexcept;
+  void put_whole(std::int64_t number) noexcept;
+  void put_digits(std::uint64_t rest, int least) noexcept;
+  void put_thousandths(std::int64_t count, const char* unit) noexcept;
+
+  std::size_t size_ = 0;  // first, because code for near members is small
   char bytes_[kMost];
-  std::size_t size_ = 0;
 };
 
 }  // namespace chimera::firmware

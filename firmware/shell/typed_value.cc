@@ -17,36 +17,39 @@ void store(std::byte* to, T value) noexcept {
   std::memcpy(to, &value, sizeof value);
 }
 
+// One call of a function where each == would be code of its own.
+[[gnu::noinline]] bool is_one_of(std::string_view word, const char* a, const char* b) noexcept {
+  return word == a || word == b;
+}
+
 bool begins_number(std::string_view word) noexcept {
   if (word.starts_with('-')) word.remove_prefix(1);
   return !word.empty() && ((word[0] >= '0' && word[0] <= '9') || word[0] == '.');
 }
 
 bool is_value(std::uint32_t type, std::string_view word) noexcept {
-  return begins_number(word) || (type == CHIMERA_BOOL && (word == "true" || word == "false"));
+  return begins_number(word) || (type == CHIMERA_BOOL && is_one_of(word, "true", "false"));
 }
 
-/// A whole number of the type; none: the word is none, or does not fit.
+/// A whole number, at most 19 digits; none: the word is none, or does not fit.
 std::optional<std::int64_t> whole(std::string_view word, std::uint64_t most) noexcept {
   const bool is_negative = word.starts_with('-');
   if (is_negative) word.remove_prefix(1);
-  const std::uint64_t limit = most + (is_negative ? 1 : 0);
-  if (word.empty()) return std::nullopt;
+  if (word.empty() || word.size() > 19) return std::nullopt;
   std::uint64_t value = 0;
   for (const char c : word) {
     if (c < '0' || c > '9') return std::nullopt;
-    const auto digit = static_cast<std::uint64_t>(c - '0');
-    if (value > (limit - digit) / 10) return std::nullopt;
-    value = value * 10 + digit;
+    value = value * 10 + static_cast<std::uint64_t>(c - '0');
   }
+  if (value > most + (is_negative ? 1 : 0)) return std::nullopt;
   return static_cast<std::int64_t>(is_negative ? 0 - value : value);
 }
 
 bool read_whole(std::uint32_t type, std::string_view word, std::byte* to) noexcept {
   if (type == CHIMERA_BOOL) {
-    const bool is_true = word == "true" || word == "1";
+    const bool is_true = is_one_of(word, "true", "1");
     store(to, static_cast<std::uint8_t>(is_true ? 1 : 0));
-    return is_true || word == "false" || word == "0";
+    return is_true || is_one_of(word, "false", "0");
   }
   const bool is_short = type == CHIMERA_INT32;
   const auto value = whole(word, is_short ? INT32_MAX : INT64_MAX);
@@ -66,25 +69,19 @@ bool read_floating(std::uint32_t type, std::string_view word, std::byte* to) noe
   return true;
 }
 
-std::string_view wanted(std::uint32_t type) noexcept {
-  switch (type) {
-    case CHIMERA_BOOL: return "0, 1, true or false";
-    case CHIMERA_INT32: return "a whole number of 32 bits";
-    case CHIMERA_INT64: return "a whole number of 64 bits";
-    case CHIMERA_FLOAT32: return "a number of float32";
-    default: return "a number of float64";
-  }
-}
+constexpr const char* kTypeNames[] = {"bool: true, false, 1 or 0", "int32", "int64", "float32", "float64"};
+static_assert(CHIMERA_BOOL == 0 && CHIMERA_INT32 == 1 && CHIMERA_INT64 == 2 && CHIMERA_FLOAT32 == 3 &&
+              CHIMERA_FLOAT64 == 4);
 
 }  // namespace
 
 bool TypedValue::begin_text(TextLine& why) noexcept {
   if (shape_.count != 1 || shape_.element_bytes > kMostValueBytes) {
-    why << shape_.name << " has a shape that cannot be typed";
+    why.put("%s does not fit in a line", shape_.name);
     return false;
   }
   if (text_.size() >= shape_.element_bytes) {
-    why << shape_.name << " takes a text of " << shape_.element_bytes - 1 << " bytes, not " << text_.size();
+    why.put("%s takes a text of %u bytes, not %u", shape_.name, shape_.element_bytes - 1, text_.size());
     return false;
   }
   std::memset(to_.data(), 0, shape_.element_bytes);
@@ -95,26 +92,24 @@ bool TypedValue::begin_text(TextLine& why) noexcept {
 bool TypedValue::begin(TextLine& why) noexcept {
   if (shape_.type == CHIMERA_STRING) return begin_text(why);
   if (shape_.type > CHIMERA_FLOAT64) {
-    why << shape_.name << " is a struct, which cannot be typed";
+    why.put("%s is a struct", shape_.name);
     return false;
   }
   n_words_ = words_.size();
   if (n_words_ > 0 && !is_value(shape_.type, words_[n_words_ - 1])) {
     const std::string_view unit = words_[--n_words_];
     if (unit != shape_.unit) {
-      why << shape_.name;
-      if (shape_.unit == "1") why << " has no unit, and '" << unit << "' is no number";
-      else why << " is in " << shape_.unit << ", not in '" << unit << "'";
+      if (shape_.unit == "1") why.put("%s has no unit, and '%s' is no number", shape_.name, unit);
+      else why.put("%s is in %s, not in '%s'", shape_.name, shape_.unit, unit);
       return false;
     }
   }
   if (n_words_ != shape_.count) {
-    why << shape_.name << " has " << shape_.count << (shape_.count == 1 ? " element" : " elements") << ", not "
-        << n_words_;
+    why.put("%s has %u element%z, not %u", shape_.name, shape_.count, shape_.count == 1 ? "" : "s", n_words_);
     return false;
   }
   if (std::size_t{shape_.count} * shape_.element_bytes <= kMostValueBytes) return true;
-  why << shape_.name << " has " << shape_.count << " elements, too many for a line";
+  why.put("%s does not fit in a line", shape_.name);
   return false;
 }
 
@@ -124,7 +119,7 @@ bool TypedValue::read_next(TextLine& why) noexcept {
   ++n_read_;
   const bool is_floating = shape_.type == CHIMERA_FLOAT32 || shape_.type == CHIMERA_FLOAT64;
   if (is_floating ? read_floating(shape_.type, word, to) : read_whole(shape_.type, word, to)) return true;
-  why << "'" << word << "' is not " << wanted(shape_.type);
+  why.put("'%s' is no %z", word, kTypeNames[shape_.type]);
   return false;
 }
 

@@ -39,8 +39,9 @@ class StackScan {
 
   /// Looks at `most` words more. True: the scan is complete.
   bool go_on(std::size_t most) noexcept {
-    for (; most > 0 && unused_ < words_.size() && words_[unused_] == kStackPaint; --most) ++unused_;
-    return unused_ == words_.size() || words_[unused_] != kStackPaint;
+    for (; most > 0 && unused_ < words_.size(); --most, ++unused_)
+      if (words_[unused_] != kStackPaint) return true;
+    return unused_ == words_.size();
   }
   /// The greatest depth so far, in bytes. Requires: the scan is complete.
   std::size_t used_bytes() const noexcept { return (words_.size() - unused_) * sizeof(std::uint32_t); }

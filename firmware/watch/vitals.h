@@ -22,10 +22,11 @@ enum class VitalFault : std::uint8_t {
   kGuard,     ///< the guard of stack number `stack` is overwritten
 };
 
+inline constexpr const char* kVitalWords[] = {"healthy", "silent", "unheard event", "critical error", "stack guard"};
+
 /// "silent" for kSilent. Context: any; wait-free.
 constexpr const char* vital_word(VitalFault fault) noexcept {
-  constexpr const char* kWords[] = {"healthy", "silent", "unheard event", "critical error", "stack guard"};
-  return kWords[static_cast<std::uint8_t>(fault)];
+  return kVitalWords[static_cast<std::uint8_t>(fault)];
 }
 
 /// One answer of the decision.

@@ -9,8 +9,8 @@
 
 namespace chimera::bare {
 
-/// One side adds, the other side takes; one of them may be an interrupt of the same processor.
-/// Context of everything: any; wait-free.
+/// One side adds, the other side takes: two threads, or an interrupt and the program. Needs no compare-and-swap, which
+/// a Cortex-M0+ does not have. Context of everything: any; wait-free.
 template <std::size_t kBytes>
 class ByteRing {
   static_assert(kBytes != 0 && (kBytes & (kBytes - 1)) == 0, "a power of two");
@@ -18,28 +18,30 @@ class ByteRing {
  public:
   /// False if the ring is full.
   bool add(std::uint8_t byte) noexcept {
-    const std::uint32_t end = end_;
-    if (end - begin_ == kBytes) return false;
+    const std::uint32_t end = end_.load(std::memory_order_relaxed);
+    if (end - begin_.load(std::memory_order_acquire) == kBytes) return false;
     bytes_[end % kBytes] = byte;
-    std::atomic_signal_fence(std::memory_order_seq_cst);
-    end_ = end + 1;
+    end_.store(end + 1, std::memory_order_release);  // pairs with take()
     return true;
   }
   /// The oldest byte; -1 if the ring is empty.
   int take() noexcept {
-    const std::uint32_t begin = begin_;
-    if (begin == end_) return -1;
+    const std::uint32_t begin = begin_.load(std::memory_order_relaxed);
+    if (begin == end_.load(std::memory_order_acquire)) return -1;
     const std::uint8_t byte = bytes_[begin % kBytes];
-    std::atomic_signal_fence(std::memory_order_seq_cst);
-    begin_ = begin + 1;
+    begin_.store(begin + 1, std::memory_order_release);  // pairs with add()
     return byte;
   }
-  std::size_t size() const noexcept { return end_ - begin_; }
-  /// Bytes that fit in now.
+  /// Bytes that can be taken now: for the side that takes, at least as many.
+  std::size_t size() const noexcept {
+    const std::uint32_t begin = begin_.load(std::memory_order_acquire);
+    return end_.load(std::memory_order_acquire) - begin;
+  }
+  /// Bytes that fit in now: for the side that adds, at least as many.
   std::size_t free() const noexcept { return kBytes - size(); }
 
  private:
-  volatile std::uint32_t begin_ = 0, end_ = 0;  // they only grow; the ring index is the remainder
+  std::atomic<std::uint32_t> begin_{0}, end_{0};  // they only grow; the ring index is the remainder
   std::array<std::uint8_t, kBytes> bytes_{};
 };
 

@@ -52,6 +52,7 @@ struct Gain {
   Outcome cycle(Cycle) {
     if (orders.gain_faults) return fault("the gain\nis broken", 42);
     *u = *k * *y + static_cast<double>(*n);
+    for (std::size_t i = 0; i < 3; ++i) list[i] = 0.5 * static_cast<double>(i);
     return ok();
   }
   bool error(Cycle) { return orders.gain_recovers; }
@@ -172,7 +173,7 @@ class ShellScene : private Clock, private JobClock, private DigestLines {
   }
   std::size_t send() {
     std::size_t sent = 0;
-    for (std::uint8_t byte = 0; sends && shell_->next_byte(byte); ++sent) output_ += static_cast<char>(byte);
+    for (int byte = 0; sends && (byte = shell_->next_byte()) >= 0; ++sent) output_ += static_cast<char>(byte);
     return sent;
   }
   void take(const DigestLine& line) noexcept override { lines_.push_back(line); }
