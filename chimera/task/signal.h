@@ -33,20 +33,17 @@ enum class Method : std::uint32_t {
   kClear = CHIMERA_CLEAR,
 };
 
-// Outside of their functions, where a compiler would copy them to the stack for each call.
-inline constexpr const char* kMethodNames[CHIMERA_METHODS] = {"init", "reinit", "on",    "cycle", "sync",
-                                                              "off",  "kill",   "error", "clear"};
-inline constexpr const char* kSignalNames[CHIMERA_SIGNALS] = {"spawn", "on",     "off",   "kill",
-                                                              "clear", "reinit", "wakeup"};
-
 /// "cycle" for kCycle. Context: any; wait-free.
 constexpr const char* method_name(Method method) noexcept {
-  return kMethodNames[static_cast<std::uint32_t>(method)];
+  constexpr const char* kNames[CHIMERA_METHODS] = {"init", "reinit", "on",    "cycle", "sync",
+                                                   "off",  "kill",   "error", "clear"};
+  return kNames[static_cast<std::uint32_t>(method)];
 }
 
 /// "reinit" for kReinit. Context: any; wait-free.
 constexpr const char* signal_name(Signal signal) noexcept {
-  return kSignalNames[static_cast<std::uint32_t>(signal)];
+  constexpr const char* kNames[CHIMERA_SIGNALS] = {"spawn", "on", "off", "kill", "clear", "reinit", "wakeup"};
+  return kNames[static_cast<std::uint32_t>(signal)];
 }
 
 }  // namespace chimera

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The four memory functions that the compiler calls without being asked. There is no C library to bring them.
+// The functions of <cstring> that the runtime and the compiler call. There is no C library to bring them.
 #include <cstddef>
 #include <cstdint>
 
@@ -44,6 +44,30 @@ int memcmp(const void* a, const void* b, std::size_t size) {
   for (; size != 0; --size, ++x, ++y)
     if (*x != *y) return *x - *y;
   return 0;
+}
+
+std::size_t strlen(const char* text) {
+  std::size_t size = 0;
+  while (text[size] != '\0') ++size;
+  return size;
+}
+
+int strcmp(const char* a, const char* b) {
+  for (; *a != '\0' && *a == *b; ++a, ++b) {
+  }
+  return static_cast<unsigned char>(*a) - static_cast<unsigned char>(*b);
+}
+
+char* strcpy(char* to, const char* from) {
+  memcpy(to, from, strlen(from) + 1);
+  return to;
+}
+
+char* strncpy(char* to, const char* from, std::size_t size) {
+  std::size_t i = 0;
+  for (; i < size && from[i] != '\0'; ++i) to[i] = from[i];
+  for (; i < size; ++i) to[i] = '\0';
+  return to;
 }
 
 }  // extern "C"

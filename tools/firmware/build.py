@@ -18,7 +18,8 @@ DESK = {"schedule/" + name for name in ("analysis.cc", "level.cc", "worst_window
                                         "transition.cc", "change_window.cc")}
 COMMON = ("-Os -ffreestanding -ffp-contract=off -fsigned-char -ffunction-sections -fdata-sections -g1 "
           f"-ffile-prefix-map={ROOT}/= -DCHIMERA_BARE -Wall -Wextra -Werror -Wno-psabi "
-          "-Wno-nonnull")  # what an image lacks is null
+          "-Wno-nonnull "  # what an image lacks is null
+          "-Wno-missing-field-initializers")  # tables name what differs from the default
 CXX = ("-std=c++20 -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-asynchronous-unwind-tables "
        "-fno-unwind-tables")
 # QEMU's machine of each board that it simulates.

@@ -20,22 +20,14 @@ void put_refusal(TaskSet& set, const SignalReport& report, Put put) {
   if (report.why == Refusal::kIllegalSet)
     return put_set_fault(set.spec().variables, judge.wanted(), set.spec().tasks, put);
   const Task& task = set.tasks()[report.task.index];
-  // A digit of the form is a gap for a value. In an image this takes less memory than a call for each part.
-  std::string_view values[4] = {signal_name(report.signal), task.spec->name};
-  const char* form = "0 is not legal for 1 in state 2";
-  if (report.why == Refusal::kFault) {
-    form = "0: 1: 2";
-    values[2] = task.faults.last.text;
-  } else if (report.why == Refusal::kNotYet) {
-    form = "0: 1 is not ready yet";
-  } else if (const TaskId rival = judge.find_rival(report.task); report.why == Refusal::kRival && rival.is_valid()) {
-    form = "1 has the resource '2' of 3, which is created";
-    values[2] = judge.rivals().resource(report.task, rival);
-    values[3] = set.spec().tasks[rival.index].name;
-  } else {
-    values[2] = state_name(report.before);
-  }
-  for (; *form != '\0'; ++form) put(*form >= '0' && *form <= '3' ? values[*form - '0'] : std::string_view(form, 1));
+  const std::string_view name = task.spec->name, signal = signal_name(report.signal);
+  const auto put_all = [&put](auto... parts) { (put(std::string_view(parts)), ...); };
+  if (report.why == Refusal::kFault) return put_all(signal, ": ", name, ": ", task.faults.last.text);
+  if (report.why == Refusal::kNotYet) return put_all(signal, ": ", name, " is not ready yet");
+  if (const TaskId rival = judge.find_rival(report.task); report.why == Refusal::kRival && rival.is_valid())
+    return put_all(name, " has the resource '", judge.rivals().resource(report.task, rival), "' of ",
+                   set.spec().tasks[rival.index].name, ", which is created");
+  put_all(signal, " is not legal for ", name, " in state ", state_name(report.before));
 }
 
 }  // namespace chimera
