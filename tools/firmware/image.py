@@ -15,7 +15,7 @@ import sizes
 import yaml
 
 IMAGES = build.ROOT / "firmware" / "images"
-KEYS = {"application", "targets", "for", "at", "components"}
+KEYS = {"application", "targets", "for", "at", "components", "instruction_ns"}
 
 
 class ImageError(Exception):
@@ -31,6 +31,7 @@ class Image:
     duration: str                   # "60 s"
     acts: list                      # as of --at
     folders: list                   # of components, beside library/
+    instruction_ns: int             # time of an instruction in QEMU
 
     @staticmethod
     def read(name):
@@ -39,9 +40,10 @@ class Image:
             raise ImageError(f"no image {name}; there are: {', '.join(names())}")
         keys = yaml.safe_load(path.read_text())
         if not isinstance(keys, dict) or not {"application", "targets", "for"} <= set(keys) <= KEYS:
-            raise ImageError(f"{path}: has application, targets and for, and can have at and components")
+            raise ImageError(f"{path}: has application, targets and for; it can have at, components, instruction_ns")
         return Image(name, (path.parent / keys["application"]).resolve(), keys["targets"], keys["for"],
-                     keys.get("at", []), [(path.parent / each).resolve() for each in keys.get("components", [])])
+                     keys.get("at", []), [(path.parent / each).resolve() for each in keys.get("components", [])],
+                     keys.get("instruction_ns", qemu.INSTRUCTION_NS))
 
     def components(self):
         """The names of the components of the application."""
@@ -110,7 +112,7 @@ class Built:
 
     def run(self, limit_s=qemu.LIMIT_S):
         """The lines of the image. Raises ImageError if it does not end by itself."""
-        lines, code = qemu.run(self.machine(), self.elf, limit_s)
+        lines, code = qemu.run(self.machine(), self.elf, limit_s, self.image.instruction_ns)
         (self.out / "output.txt").write_text("\n".join(lines) + "\n")
         if code != 0 or not lines or lines[-1] != "end time":
             raise ImageError(f"{self.elf}: exit {code}, its last lines:\n  " + "\n  ".join(lines[-5:]))
