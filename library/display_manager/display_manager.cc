@@ -14,20 +14,21 @@ using library::EditedValue, library::Keys, library::Menu, library::MenuBoard, li
 namespace {
 
 constexpr std::size_t kKeys = 16, kBytes = 64;
+constexpr std::uint32_t kEdited = 8;  // a component has 64 ports
 static_assert(kBytes >= library::Picture::kLeast);
 
 struct Menus {
   Many<In<Any[]>> shown{"shown*", "X", "[n...<=64]", type = "T", doc = "Of the lines `show`: the first element."};
   In<Text<kKeys + 1>> keys{"keys", "1", initial = "", doc = "Bytes of the keyboard, at most 16 a cycle."};
-  Many<Out<double>> edited{"edited*", "Y", initial = 0.0, doc = "Values of the lines `edit`."};
+  Many<Out<double>, kEdited> edited{"edited*", "Y", initial = 0.0, doc = "Values of the lines `edit`."};
   Out<Text<kBytes + 1>> output{"output", "1", initial = "", doc = "Bytes for the terminal, new in each cycle."};
   Out<std::int64_t> sent{"sent", "1", initial = 0, doc = "Bytes of all outputs so far."};
   InConst<Text<32>[]> screen{"screen", "1", "[screens<=8]", doc = "Titles of the screens."};
   InConst<MenuItem[]> item{"item", "1", "[items<=32]", doc = "The lines, from top to bottom."};
-  Many<InConst<double>> preset{"preset*", "Y", doc = "Of each edited value, until it is edited."};
-  Many<InConst<double>> minimum{"minimum*", "Y", doc = "Of each edited value."};
-  Many<InConst<double>> maximum{"maximum*", "Y", doc = "Of each edited value."};
-  Many<InConst<double>> step{"step*", "Y", doc = "Of each edited value, for an arrow key."};
+  Many<InConst<double>, kEdited> preset{"preset*", "Y", doc = "Of each edited value, until it is edited."};
+  Many<InConst<double>, kEdited> minimum{"minimum*", "Y", doc = "Of each edited value."};
+  Many<InConst<double>, kEdited> maximum{"maximum*", "Y", doc = "Of each edited value."};
+  Many<InConst<double>, kEdited> step{"step*", "Y", doc = "Of each edited value, for an arrow key."};
 
   Outcome init() {
     keys_ = {};
