@@ -38,9 +38,14 @@ inline double sound_number(const chimera_port_decl& port) {
   return std::min(std::max({port.min, 0.5, port.type == CHIMERA_INT32 ? 1.0 : 0.0}), port.max);
 }
 
-/// All structs of the library have only float64 members. The orientation of a pose starts with element 3.
+/// All structs of the library but a line of a menu have only float64 members. The orientation of a pose starts with
+/// element 3.
 inline std::array<double, 64> sound_struct(const chimera_port_decl& port) {
-  std::array<double, 64> numbers;
+  std::array<double, 64> numbers{};
+  if (std::string_view(port.type_name) == "menu_item") {
+    std::memcpy(reinterpret_cast<char*>(numbers.data()) + port.fields[1].offset, "text", 4);  // its kind
+    return numbers;
+  }
   numbers.fill(0.1);
   if (std::string_view(port.type_name) == "Pose") numbers = {0.3, 0.2, 0.1, 1};
   return numbers;
@@ -49,9 +54,9 @@ inline std::array<double, 64> sound_struct(const chimera_port_decl& port) {
 /// Sets an element of up to 512 bytes.
 template <std::size_t kWords = 1>
 void put_bytes(Rig& rig, const chimera_port_decl& port, std::uint32_t e, std::uint32_t instance, const char* bytes) {
-  if constexpr (kWords <= 64) {
-    if (port.element_size != 8 * kWords) return put_bytes<kWords + 1>(rig, port, e, instance, bytes);
-    struct alignas(8) Element { char bytes[8 * kWords]; } element;
+  if constexpr (kWords <= 128) {
+    if (port.element_size != 4 * kWords) return put_bytes<kWords + 1>(rig, port, e, instance, bytes);
+    struct alignas(4) Element { char bytes[4 * kWords]; } element;
     std::memcpy(element.bytes, bytes, sizeof element);
     rig.set(port.name, element, e, instance);
   } else {

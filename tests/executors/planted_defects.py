@@ -62,7 +62,7 @@ DEFECTS = (
     ("an aborted switch leaves tasks armed", "switch/switching.cc", "  const std::size_t n = undoes ? next_armed_ :",
      "  const std::size_t n = undoes ? 0 :"),
     ("a job released before a switch reads the new producer", "job/job_threads.h",
-     "    return tasks_[task.index].is_busy || queue_->has_waiting(task, at);",
+     "    return mechanisms::kSwitch && (tasks_[task.index].is_busy || queue_->has_waiting(task, at));",
      "    return (void)task, (void)at, false;"),
     ("a thread's job released before a switch reads the new producer", "state/sources.cc",
      "  if (has_old_job_[consumer.index]) return;\n", ""),

@@ -72,7 +72,7 @@ def receipt_complaints(root):
     document = sources.text(root, RECEIPT)
     yield from (f"{RECEIPT}: does not say what `{word}` is" for word in words_of(schema) if f"`{word}`" not in document)
     reasons = {word for word in schema["properties"]["reason"]["enum"] if word}
-    code = sources.text(root, "chimera/control/receipt/switch_reason.cc")
+    code = sources.text(root, "chimera/runtime/plan/switch_words.h")
     named = set(re.findall(r'case NoSwitch::k\w+: return "([a-z-]+)";', code)) - {"none"}
     yield from (f"{RECEIPT}: the code has no reason `{word}`" for word in sorted(reasons - named))
     rows = set(re.findall(r"^\| `([a-z]+(?:-[a-z]+)*)` \|", document.split("| reason |", 1)[-1], re.MULTILINE))
@@ -100,9 +100,9 @@ _TABLE = "outputs take more than\n4 MiB.\n"
 def _tree(**other):
     files = {"README.md": _README, REFUSALS: _CODE, "chimera/verify/rules/rule_room.cc": _ROOM,
              "docs/formats/table.md": _TABLE, "docs/formats/run.schema.json": _SCHEMA, RECEIPT: _RECEIPT,
-             "chimera/control/receipt/switch_reason.cc": _REASONS}
+             "chimera/runtime/plan/switch_words.h": _REASONS}
     names = {"readme": "README.md", "code": REFUSALS, "table": "docs/formats/table.md", "receipt": RECEIPT,
-             "reasons": "chimera/control/receipt/switch_reason.cc"}
+             "reasons": "chimera/runtime/plan/switch_words.h"}
     return files | {names[key]: text for key, text in other.items()}
 
 

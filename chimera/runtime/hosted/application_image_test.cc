@@ -162,7 +162,7 @@ TEST(ApplicationImage, StrangersAreRefusedByName) {
   bytes[0] = std::byte{'X'};
   EXPECT_EQ(refusal(bytes), "not an application image");
   bytes = good;
-  bytes[kVersionAt] = std::byte{12};
+  bytes[kVersionAt] = std::byte{13};
   EXPECT_EQ(refusal(bytes), "image version 13, this program reads 12");
   bytes = good;
   bytes.pop_back();
@@ -195,7 +195,8 @@ TEST(ApplicationImage, RefusesSpecificationsThatVerificationNeverMakes) {
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].server->capacity = Nanoseconds{11}; }), disordered));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].server->period = Nanoseconds{11}; }), disordered));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[0].aperiodic = false; }), disordered));
-  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[1].aperiodic = false; }), "events of a periodic task"));
+  const char* no_events = "events of a periodic task, or behind a server";
+  EXPECT_TRUE(says(refusal_of([](Sample& s) { s.tasks[1].aperiodic = !(s.tasks[1].has_events = true); }), no_events));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.ports[0].type = CHIMERA_ANY; }), "a type that does not exist"));
   EXPECT_TRUE(says(refusal_of([](Sample& s) { s.ports[0].kind = 99; }), "a port that cannot be declared"));
   const char* unfilled = "a value that does not fill its variable";
