@@ -19,9 +19,9 @@ static_assert(kBytes >= library::Picture::kLeast);
 
 struct Menus {
   Many<In<Any[]>> shown{"shown*", "X", "[n...<=64]", type = "T", doc = "Of the lines `show`: the first element."};
-  In<Text<kKeys + 1>> keys{"keys", "1", initial = "", doc = "Bytes of the keyboard, at most 16 a cycle."};
+  In<Text<kKeys + 4>> keys{"keys", "1", initial = "", doc = "Bytes of the keyboard, at most 16 a cycle."};
   Many<Out<double>, kEdited> edited{"edited*", "Y", initial = 0.0, doc = "Values of the lines `edit`."};
-  Out<Text<kBytes + 1>> output{"output", "1", initial = "", doc = "Bytes for the terminal, new in each cycle."};
+  Out<Text<kBytes + 4>> output{"output", "1", initial = "", doc = "Bytes for the terminal, new in each cycle."};
   Out<std::int64_t> sent{"sent", "1", initial = 0, doc = "Bytes of all outputs so far."};
   InConst<Text<32>[]> screen{"screen", "1", "[screens<=8]", doc = "Titles of the screens."};
   InConst<MenuItem[]> item{"item", "1", "[items<=32]", doc = "The lines, from top to bottom."};
@@ -74,7 +74,7 @@ struct Menus {
     }
     std::array<char, kBytes> bytes;
     const std::size_t n = menu_.draw(item.span(), screen[menu_.board().screen].view(), bytes);
-    *output = Text<kBytes + 1>(std::string_view(bytes.data(), n));
+    *output = Text<kBytes + 4>(std::string_view(bytes.data(), n));
     *sent += static_cast<std::int64_t>(n);
     for (std::size_t i = 0; i < edited.size(); ++i) *edited[i] = menu_.board().edited[i].value;
   }
