@@ -68,8 +68,9 @@ std::optional<MemoryRange> read_memory(const Node& node, const std::string& what
   const auto bytes =
       size != nullptr ? read_bytes(*size, 1024, kAddresses / 2, "'size' of " + what, report) : std::nullopt;
   if (!first || !bytes) return std::nullopt;
-  if (bytes->value % 4 == 0 && *first + bytes->value <= kAddresses)
-    return MemoryRange{*first, static_cast<std::uint32_t>(bytes->value), node.at};
+  const std::uint32_t from = first.value_or(0);  // GCC 12 warns of *first
+  if (bytes->value % 4 == 0 && from + bytes->value <= kAddresses)
+    return MemoryRange{from, static_cast<std::uint32_t>(bytes->value), node.at};
   report.add({.rule = "number-bad",
               .at = node.at,
               .message = what + " has " + std::to_string(bytes->value) + " bytes from " + written(*address) +
