@@ -11,7 +11,8 @@ using library::Debounce, library::InputPin;
 namespace {
 
 struct Button {
-  Resource pin{"pin", doc = "On Linux a file that begins with 0 or 1; on a target the name of a pin."};
+  Resource pin{"pin", safe_state, shared,
+               doc = "On Linux a file that begins with 0 or 1; on a target the name of a pin."};
   InConst<double> debounce{"debounce", "s", range(0, 10), initial = 0.02,
                            doc = "A new level counts when it has lasted for this time."};
   InConst<bool> active_low{"active_low", "1", initial = false, doc = "True: 0 is pressed."};

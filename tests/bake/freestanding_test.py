@@ -11,7 +11,7 @@ import tempfile
 ARM = "arm-none-eabi-g++"
 FLAGS = ("-std=c++20", "-Os", "-mthumb", "-ffreestanding", "-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics",
          "-ffp-contract=off", "-fsigned-char", "-ffunction-sections", "-fdata-sections", "-DCHIMERA_BARE", "-Wall",
-         "-Wextra", "-Werror")
+         "-Wextra", "-Wno-missing-field-initializers", "-Werror")
 CORES = ("cortex-m0plus", "cortex-m3", "cortex-m4")
 NOT_CONSTANT = re.compile(r"\.(data(?!\.rel\.ro)|bss|init_array|ctors|text)")
 
