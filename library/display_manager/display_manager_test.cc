@@ -83,7 +83,7 @@ struct Car {
   }
   void cycle() {
     ASSERT_TRUE(rig.cycle());
-    const auto output = rig.get<Text<65>>("output");
+    const auto output = rig.get<Text<68>>("output");
     told += static_cast<std::int64_t>(output.view().size());
     EXPECT_EQ(rig.get<std::int64_t>("sent"), told);
     terminal.take(output.view());
@@ -91,10 +91,10 @@ struct Car {
   /// Cycles until nothing is left to tell.
   void settle() {
     do cycle();
-    while (!rig.get<Text<65>>("output").empty() && told < 100'000);
+    while (!rig.get<Text<68>>("output").empty() && told < 100'000);
   }
   void press(std::string_view keys) {
-    rig.set("keys", Text<17>(keys));
+    rig.set("keys", Text<20>(keys));
     settle();
   }
   double wanted() { return rig.get<double>("edited"); }
@@ -105,8 +105,8 @@ TEST(DisplayManager, ShowsItsFirstScreenPieceByPiece) {
   ASSERT_TRUE(car.rig.init());
   ASSERT_TRUE(car.rig.on());
   car.cycle();
-  EXPECT_EQ(car.rig.get<Text<65>>("output").view().substr(0, 4), "\x1b[2J");
-  EXPECT_LE(car.rig.get<Text<65>>("output").view().size(), 64u);
+  EXPECT_EQ(car.rig.get<Text<68>>("output").view().substr(0, 4), "\x1b[2J");
+  EXPECT_LE(car.rig.get<Text<68>>("output").view().size(), 64u);
   EXPECT_EQ(car.terminal.row(1), ">speed                  21.5");
   car.settle();
   EXPECT_EQ(car.terminal.row(0), "cruise control");
@@ -114,7 +114,7 @@ TEST(DisplayManager, ShowsItsFirstScreenPieceByPiece) {
   EXPECT_EQ(car.terminal.row(2), " settings                      >");
   EXPECT_EQ(car.terminal.row(3), "");
   car.cycle();
-  EXPECT_TRUE(car.rig.get<Text<65>>("output").empty()) << "nothing has changed";
+  EXPECT_TRUE(car.rig.get<Text<68>>("output").empty()) << "nothing has changed";
 }
 
 TEST(DisplayManager, TellsOnlyWhatHasChanged) {
@@ -122,7 +122,7 @@ TEST(DisplayManager, TellsOnlyWhatHasChanged) {
   car.start();
   car.rig.set("shown", 21.7);
   car.cycle();
-  EXPECT_EQ(car.rig.get<Text<65>>("output").view(), "\x1b[2;28H7");
+  EXPECT_EQ(car.rig.get<Text<68>>("output").view(), "\x1b[2;28H7");
   EXPECT_EQ(car.terminal.row(1), ">speed                  21.7 m/s");
 }
 
@@ -167,9 +167,9 @@ TEST(DisplayManager, ALoneEscapeCancelsAndAnArrowMayComeInTwoPieces) {
   Car car;
   car.start();
   car.press("j\r\r3");
-  car.rig.set("keys", Text<17>("\x1b"));
+  car.rig.set("keys", Text<20>("\x1b"));
   car.cycle();
-  car.rig.set("keys", Text<17>("[C"));
+  car.rig.set("keys", Text<20>("[C"));
   car.cycle();
   EXPECT_EQ(car.wanted(), 20.5);
   car.press("\x1b");
@@ -241,7 +241,7 @@ TEST(DisplayManager, NoiseNeverLeavesTheLimits) {
       const auto any = static_cast<char>(1 + (random >> 9 & 126));
       keys += random >> 31 != 0 ? "\r\x1b[ABCDj+-.01234"[random >> 8 & 15] : any;
     }
-    car.rig.set("keys", Text<17>(keys));
+    car.rig.set("keys", Text<20>(keys));
     car.cycle();
     ASSERT_GE(car.wanted(), 0);
     ASSERT_LE(car.wanted(), 40);
