@@ -79,15 +79,6 @@ void print_what_waits(ArmRig& rig) {
   ::dup2(figures, STDOUT_FILENO);
 }
 
-std::vector<ComponentCase> to_people() {
-  return {{"csv_log", "copy of a row of 7", [](ArmRig& rig) { give_six(rig), rig.resource("file", "/dev/null"); },
-           copy_rows, write_what_waits, 9000},
-          {"display", "copy of a row of 7", [](ArmRig& rig) { give_six(rig), rig.set("title", Text<32>("")); },
-           copy_rows, print_what_waits, 60},
-          {"button", "pread of a byte", [](ArmRig& rig) { rig.resource("pin", kPin); }, read_pin},
-          {"display_manager", "seven numbers as text", give_menu, draw_seven}};
-}
-
 /// Reads the level of a pin, as a loop without components does.
 void read_pin(std::uint64_t n) {
   static const int pin = ::open(kPin, O_RDONLY | O_CLOEXEC);
@@ -96,6 +87,15 @@ void read_pin(std::uint64_t n) {
     if (::pread(pin, &level, 1, 0) != 1) throw std::runtime_error("the pin cannot be read");
     bench::keep(level);
   }
+}
+
+std::vector<ComponentCase> to_people() {
+  return {{"csv_log", "copy of a row of 7", [](ArmRig& rig) { give_six(rig), rig.resource("file", "/dev/null"); },
+           copy_rows, write_what_waits, 9000},
+          {"display", "copy of a row of 7", [](ArmRig& rig) { give_six(rig), rig.set("title", Text<32>("")); },
+           copy_rows, print_what_waits, 60},
+          {"button", "pread of a byte", [](ArmRig& rig) { rig.resource("pin", kPin); }, read_pin},
+          {"display_manager", "seven numbers as text", give_menu, draw_seven}};
 }
 
 /// The law of a ball: six deflections, a step and a turn of the reference.
