@@ -43,7 +43,10 @@ inline double sound_number(const chimera_port_decl& port) {
 inline std::array<double, 64> sound_struct(const chimera_port_decl& port) {
   std::array<double, 64> numbers{};
   if (std::string_view(port.type_name) == "menu_item") {
-    std::memcpy(reinterpret_cast<char*>(numbers.data()) + port.fields[1].offset, "text", 4);  // its kind
+    const std::int32_t digits = 1;
+    auto* const bytes = reinterpret_cast<char*>(numbers.data());
+    std::memcpy(bytes + port.fields[1].offset, "text", 4);  // its kind
+    std::memcpy(bytes + port.fields[4].offset, &digits, sizeof digits);
     return numbers;
   }
   numbers.fill(0.1);
