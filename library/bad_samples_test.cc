@@ -142,8 +142,8 @@ class Sample {
   bool has_faulted_ = false, has_recovered_ = false;
 };
 
-// Without a device, or faulty on purpose.
-const std::set<std::string> kNotTried{"modbus_io", "serial_frame", "udp_frame", "faulty"};
+// Without a device, faulty on purpose, or with a text that must be given.
+const std::set<std::string> kNotTried{"modbus_io", "serial_frame", "udp_frame", "faulty", "display_manager"};
 
 TEST(AnyComponent, NoBadSampleSpoilsItForEver) {
   const std::filesystem::path before = std::filesystem::current_path();
