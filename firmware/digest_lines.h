@@ -4,7 +4,7 @@
 
 #include "chimera/runtime/application_spec.h"
 #include "chimera/runtime/record/digest.h"
-#include "firmware/line.h"
+#include "firmware/serial_text.h"
 
 namespace chimera::firmware {
 
@@ -13,10 +13,10 @@ class DigestLinesOut final : public DigestLines {
  public:
   explicit DigestLinesOut(const ApplicationSpec& spec) noexcept : spec_(spec) {}
   void take(const DigestLine& line) noexcept override {
-    Line text;
-    text << "digest " << static_cast<std::uint64_t>(line.second) << " " << spec_.tasks[line.task.index].name << " "
+    Message text;
+    text << "digest " << line.second << " " << spec_.tasks[line.task.index].name << " "
          << line.publications << " " << line.faults << " ";
-    send(text.hex(line.hash));
+    send_line(add_hex(text, line.hash, 16));
   }
 
  private:

@@ -7,13 +7,14 @@
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/executive/baked.h"
 #include "chimera/runtime/executive/executive.h"
+#include "chimera/runtime/life/refusal_words.h"
 #include "firmware/boards/board.h"
 #include "firmware/boot/stacks.h"
 #include "firmware/boot/stop.h"
 #include "firmware/digest_lines.h"
-#include "firmware/line.h"
+#include "firmware/serial_text.h"
 
-extern "C" std::byte image_rest_begin[], image_rest_end[];  // of the linker script: RAM without variables and stacks
+extern "C" std::byte image_rest_begin[], image_rest_end[];  // from the linker script: RAM without variables and stacks
 
 namespace chimera::firmware {
 namespace {
@@ -37,23 +38,29 @@ const char* end_word(RunEnd end) {
 void print_tasks(const TaskSet& set) {
   for (const Task& task : set.tasks()) {
     const Profile& profile = task.profile;
-    send(Line() << "task " << task.spec->name << " cycles " << profile.cycles << " missed " << profile.missed
-                << " dropped " << profile.dropped << " faults " << task.faults.count << " response "
-                << static_cast<std::uint64_t>(profile.cycles == 0 ? 0 : profile.response.max.count));
+    send_line(Message() << "task " << task.spec->name << " cycles " << profile.cycles << " missed " << profile.missed
+                        << " dropped " << profile.dropped << " faults " << task.faults.count << " response "
+                        << (profile.cycles == 0 ? 0 : profile.response.max.count));
   }
 }
 
-void print_stacks() {
-  const StackUse program = program_stack(), handlers = handler_stack();
-  send(Line() << "stack " << program.used << " of " << program.size << " handlers " << handlers.used << " of "
-              << handlers.size);
+std::size_t used_of(const Stack& stack) noexcept {
+  StackScan scan(stack);
+  (void)scan.go_on(stack.words.size());
+  return scan.used_bytes();
 }
 
-int refused(const TaskSet& set, const SignalReport& report) {
-  const Task& task = set.tasks()[report.task.index];
-  send(Line() << "refused " << signal_name(report.signal) << " " << task.spec->name << " reason "
-              << static_cast<unsigned>(report.why) << " " << task.faults.last.text);
-  send(Line() << "end refused");
+void print_stacks() {
+  const Stack program = program_stack(), handlers = handler_stack();
+  send_line(Message() << "stack " << used_of(program) << " of " << program.words.size_bytes() << " handlers "
+                      << used_of(handlers) << " of " << handlers.words.size_bytes());
+}
+
+int refused(TaskSet& set, const SignalReport& report) {
+  Message text("refused ");
+  put_refusal(set, report, [&text](std::string_view piece) { text << piece; });
+  send_line(text);
+  send_line(Message("end refused"));
   return 1;
 }
 
@@ -75,7 +82,7 @@ int run_application() {
     return clock.now();
   };
   if (const SignalReport started = set.life().start(clock.now(), wait); !started) return refused(set, started);
-  send(Line() << "memory setup " << memory.used() << " of " << rest.size());
+  send_line(Message() << "memory setup " << memory.used() << " of " << rest.size());
   // The grid of releases begins at a tick, so that every release is at a tick.
   clock.wait_until(clock.last_tick() + clock.tick());
   executive.start(clock.last_tick());
@@ -83,8 +90,8 @@ int run_application() {
   options.digest->end();
   print_tasks(set);
   print_stacks();
-  if (uart().lost_out() != 0) send(Line() << "lost " << uart().lost_out());
-  send(Line() << "end " << end_word(end));
+  if (uart().lost_out() != 0) send_line(Message() << "lost " << uart().lost_out());
+  send_line(Message() << "end " << end_word(end));
   return 0;
 }
 

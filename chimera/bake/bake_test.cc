@@ -141,11 +141,11 @@ TEST(Bake, RefusesBackgroundWork) {
             "needs a thread of Linux [not-built]\n  use a component without 'background: true'\n");
 }
 
-TEST(Bake, RefusesAnEventSourceWithoutAnInterrupt) {
+TEST(Bake, RefusesEventsOfInterrupts) {
   EXPECT_EQ(refusal({.text = "tasks: {waiter: {}, sink: {}}\n"}),
-            "s.yaml:3:9: error: the events of task 'waiter' come from a descriptor of Linux, and the target names no "
-            "interrupt for them [not-built]\n  write 'events: {waiter: INTERRUPT}' in the target\n");
-  EXPECT_EQ(refusal({.text = "tasks: {waiter: {}, sink: {}}\n", .target = "events: {waiter: timer0}\n"}), "");
+            "s.yaml:3:9: error: the events of task 'waiter' come from a descriptor of Linux, and interrupts "
+            "release no jobs in an image yet [not-built]\n"
+            "  use a component whose sync looks for events at the rate of the task\n");
 }
 
 TEST(Bake, RefusesAResourceWithoutATextInTheTarget) {
@@ -170,8 +170,8 @@ TEST(Bake, RefusesUnknownLinesOfTheTarget) {
             "t.yaml:9:24: error: the target has no pin 'led1' [word-unknown]\n  did you mean 'led0'?\n"
             "t.yaml:9:31: error: the description has no task 'kee' [word-unknown]\n  did you mean 'key'?\n"
             "t.yaml:9:53: error: task 'sink' has no resource port 'tty' [word-unknown]\n  its resource ports: none\n"
-            "t.yaml:10:10: error: task 'sink' takes no events: its component 'sink' has no method sync [port-kind]\n"
-            "  take the line out of 'events'\n");
+            "t.yaml:10:10: error: interrupts release no jobs in an image yet, and the target gives task 'sink' the "
+            "interrupt 'timer0' [not-built]\n  take the line out of 'events'\n");
 }
 
 TEST(Bake, RefusesAWrongNumberOfResourceTexts) {
@@ -238,6 +238,12 @@ TEST(Bake, LeavesBudgetsOutWithoutAProfile) {
   EXPECT_NE(result.notes[1].find("left out: 'source'"), std::string::npos) << result.notes[1];
 }
 
+TEST(Bake, NamesTheKeysOfTheTargetThatHaveNoEffect) {
+  const BakeResult result = baked({.target = "watchdog: 1 s\n"});
+  ASSERT_FALSE(result.notes.empty());
+  EXPECT_NE(result.notes[0].find("'watchdog'"), std::string::npos) << result.notes[0];
+}
+
 TEST(Bake, TurnsOnTheMechanismsThatAreUsed) {
   const auto used = [](const Case& of) {
     std::set<std::string> names;
@@ -249,8 +255,7 @@ TEST(Bake, TurnsOnTheMechanismsThatAreUsed) {
   EXPECT_EQ(used({.text = "tasks: {source: {on_fault: {restart: 2, within: 1 s, then: error}}, sink: {on_miss: hold}}\n"
                           "configurations: {all: [source, sink], one: [source]}\nstart: all\n",
                   .target = "watchdog: 1 s\nuart: {address: 64, interrupt: timer0, baud: 9600}\n"}),
-            (std::set<std::string>{"kSignals", "kSwitch", "kSlowSwitch", "kRestart", "kReactions", "kShell",
-                                   "kWatchdog"}));
+            (std::set<std::string>{"kSignals", "kSwitch", "kRestart", "kReactions"}));
 }
 
 }  // namespace chimera::bake::bake_test

@@ -6,7 +6,7 @@
 
 namespace chimera::bake {
 
-std::vector<Mechanism> mechanisms(const ApplicationSpec& spec, const baked::Run& run, const Target& target) {
+std::vector<Mechanism> mechanisms(const ApplicationSpec& spec, const baked::Run& run) {
   const auto any_task = [&](auto is) { return std::ranges::any_of(spec.tasks, is); };
   const bool switches =
       spec.sets.size() > 1 ||
@@ -29,7 +29,6 @@ std::vector<Mechanism> mechanisms(const ApplicationSpec& spec, const baked::Run&
           {"kTap", false},
           {"kBlame", false},
           {"kSwitch", switches},
-          {"kSlowSwitch", switches},
           {"kConstants", has_constants},
           {"kOperators", !spec.operators.empty()},
           {"kEvents", any_task([](const TaskSpec& task) { return task.aperiodic; })},
@@ -37,9 +36,7 @@ std::vector<Mechanism> mechanisms(const ApplicationSpec& spec, const baked::Run&
           {"kSignals", true},
           {"kReactions", reacts},
           {"kBudgets", any_task([](const TaskSpec& task) { return task.budget.count > 0; })},
-          {"kDigest", run.duration != kNever},
-          {"kShell", target.uart.has_value()},
-          {"kWatchdog", target.watchdog.count > 0}};
+          {"kDigest", run.duration != kNever}};
 }
 
 std::string mechanisms_text(const std::vector<Mechanism>& mechanisms) {

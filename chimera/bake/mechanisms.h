@@ -6,7 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "chimera/bake/target.h"
 #include "chimera/runtime/application_spec.h"
 #include "chimera/runtime/executive/baked.h"
 
@@ -19,7 +18,7 @@ struct Mechanism {
 
 /// Every constant of chimera/base/mechanisms.h, in its order. What the methods of a component send is not known before
 /// they run, so kSignals is always used. Context: setup.
-std::vector<Mechanism> mechanisms(const ApplicationSpec& spec, const baked::Run& run, const Target& target);
+std::vector<Mechanism> mechanisms(const ApplicationSpec& spec, const baked::Run& run);
 /// The text of mechanisms.h. Context: setup.
 std::string mechanisms_text(const std::vector<Mechanism>& mechanisms);
 

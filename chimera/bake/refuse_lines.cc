@@ -70,12 +70,10 @@ class UnknownLines {
   }
 
   void judge(const EventLine& each) {
-    const ConfiguredTask* const of = task(each.task);
-    if (of == nullptr || of->is_aperiodic) return;
-    report_.add({.rule = "port-kind",
+    report_.add({.rule = "not-built",
                  .at = each.task.at,
-                 .message = "task " + in_quotes(of->name) + " takes no events: its component " +
-                            in_quotes(of->component) + " has no method sync",
+                 .message = "interrupts release no jobs in an image yet, and the target gives task " +
+                            in_quotes(each.task.text) + " the interrupt " + in_quotes(each.interrupt.text),
                  .remedy = "take the line out of 'events'"});
   }
 
@@ -109,13 +107,12 @@ void refuse_unserved(const Configuration& configuration, const Target& target, R
                     .remedy = example(task.name, declared_name(port)),
                     .task = task.name,
                     .port = port.name});
-    const auto serves = [&](const EventLine& each) { return each.task.text == task.name; };
-    if (task.has_event_source && std::ranges::none_of(target.events, serves))
+    if (task.has_event_source)
       report.add({.rule = "not-built",
                   .at = task.at,
                   .message = "the events of task " + in_quotes(task.name) +
-                             " come from a descriptor of Linux, and the target names no interrupt for them",
-                  .remedy = "write 'events: {" + task.name + ": INTERRUPT}' in the target",
+                             " come from a descriptor of Linux, and interrupts release no jobs in an image yet",
+                  .remedy = "use a component whose sync looks for events at the rate of the task",
                   .task = task.name});
   }
 }

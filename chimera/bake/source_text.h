@@ -54,6 +54,13 @@ class Definitions {
  public:
   /// Adds `constexpr TYPE NAME[] = {items};` and returns the name; "" without items.
   std::string array(const std::string& type, const std::string& name, std::span<const std::string> items);
+  /// As array(), of the texts that `item(element, index)` gives for each element.
+  template <class Items, class Item>
+  std::string list(const char* type, const char* name, const Items& items, Item item) {
+    std::vector<std::string> texts;
+    for (std::size_t i = 0; i < items.size(); ++i) texts.push_back(item(items[i], i));
+    return array(type, name, texts);
+  }
   /// Adds an array of bytes that is aligned for every element type, and returns its name; "" without bytes.
   std::string bytes(std::span<const std::byte> bytes);
   void add(const std::string& line) { text_ += line; }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "chimera/bake/source_text.h"
+#include "chimera/bake/target_table.h"
 #include "chimera/base/hosted/wording.h"
 
 namespace chimera::bake {
@@ -72,7 +73,7 @@ class Tables {
   std::string take() {
     const std::string spec = application();
     const std::string run = run_text();
-    const std::string target = target_text();
+    const std::string target = target_table(spec_, target_, all_);
     std::vector<std::string> components;
     for (const TaskSpec& task : spec_.tasks) components.push_back("&chimera_component_" + std::string(task.component));
     const std::string by_task = all_.array("const chimera_component* const", "kComponentOf", components);
@@ -211,14 +212,6 @@ class Tables {
         .text();
   }
 
-  /// The items of one list of the application, as an array; `item(element, index)` is the text of one.
-  template <class Items, class Item>
-  std::string list(const char* type, const char* name, const Items& items, Item item) {
-    std::vector<std::string> texts;
-    for (std::size_t i = 0; i < items.size(); ++i) texts.push_back(item(items[i], i));
-    return all_.array(type, name, texts);
-  }
-
   std::string application() {
     const auto rtpu = [](const RtpuSpec& spec, std::size_t) {
       return Initialiser()
@@ -240,21 +233,22 @@ class Tables {
     };
     return Initialiser()
         .add("name", spec_.name, {})
-        .add_text("rtpus", list("RtpuSpec", "kRtpus", spec_.rtpus, rtpu))
-        .add_text("tasks", list("TaskSpec", "kTasks", spec_.tasks, [&](auto& a, auto i) { return task(a, i); }))
+        .add_text("rtpus", all_.list("RtpuSpec", "kRtpus", spec_.rtpus, rtpu))
+        .add_text("tasks", all_.list("TaskSpec", "kTasks", spec_.tasks, [&](auto& a, auto i) { return task(a, i); }))
         .add_text("variables",
-                  list("Variable", "kVariables", spec_.variables, [&](auto& a, auto i) { return variable(a, i); }))
+                  all_.list("Variable", "kVariables", spec_.variables, [&](auto& a, auto i) { return variable(a, i); }))
         .add_text("constants",
-                  list("ConstantSpec", "kConstants", spec_.constants, [&](auto& a, auto i) { return constant(a, i); }))
+                  all_.list("ConstantSpec", "kConstants", spec_.constants,
+                            [&](auto& a, auto i) { return constant(a, i); }))
         .add_text("operators",
-                  list("GivenSpec", "kOperators", spec_.operators, [&](auto& a, auto) { return given(a); }))
+                  all_.list("GivenSpec", "kOperators", spec_.operators, [&](auto& a, auto) { return given(a); }))
         .add_text("init_order", ids("kInitOrder", spec_.init_order))
         .add_text("start", ids("kStart", spec_.start))
         .add_text("on_order", ids("kOnOrder", spec_.on_order))
         .add_text("end_order", ids("kEndOrder", spec_.end_order))
-        .add_text("sets", list("NamedSet", "kSets", spec_.sets, [&](auto& a, auto i) { return set(a, i); }))
-        .add_text("restarts", list("RestartSpec", "kRestarts", spec_.restarts, restart))
-        .add_text("stale", list("StaleSpec", "kStale", spec_.stale, stale))
+        .add_text("sets", all_.list("NamedSet", "kSets", spec_.sets, [&](auto& a, auto i) { return set(a, i); }))
+        .add_text("restarts", all_.list("RestartSpec", "kRestarts", spec_.restarts, restart))
+        .add_text("stale", all_.list("StaleSpec", "kStale", spec_.stale, stale))
         .text();
   }
 
@@ -283,50 +277,7 @@ class Tables {
         .add_text("policy", enumerator("Policy", kPolicies, run_.policy, Policy::kEdf))
         .add("tick", run_.tick, {})
         .add("duration", run_.duration, kNever)
-        .add_text("acts", list("ScriptAct", "kActs", run_.acts, [&](auto& a, auto i) { return act(a, i); }))
-        .text();
-  }
-
-  std::string target_text() {
-    const auto memory = [](const MemoryRange& range) {
-      return "{" + std::to_string(range.address) + "u, " + std::to_string(range.bytes) + "u}";
-    };
-    const auto write = [](const SafeWrite& each, std::size_t) {
-      return "{" + std::to_string(each.address) + "u, " + std::to_string(each.value) + "u}";
-    };
-    const auto pin = [](const NamedPin& each, std::size_t) {
-      return "{" + literal(each.name.text) + ", " + std::to_string(each.address) + "u, " + std::to_string(each.bit) +
-             "u, " + literal(each.is_output) + "}";
-    };
-    const auto interrupt = [](const NamedInterrupt& each, std::size_t) {
-      return "{" + literal(each.name.text) + ", " + std::to_string(each.number) + "u}";
-    };
-    const auto event = [&](const EventLine& each, std::size_t) {
-      std::size_t task = 0;
-      while (task < spec_.tasks.size() && spec_.tasks[task].name != each.task.text) ++task;
-      return "{TaskId(" + std::to_string(task) + "u), " +
-             std::to_string(target_.interrupt(each.interrupt.text).value_or(0)) + "u}";
-    };
-    const std::string uart =
-        !target_.uart ? ""
-                      : "{" + std::to_string(target_.uart->address) + "u, " +
-                            std::to_string(target_.interrupt(target_.uart->interrupt.text).value_or(0)) + "u, " +
-                            std::to_string(target_.uart->baud) + "u}";
-    return Initialiser()
-        .add_text("name", literal(target_.name))
-        .add_text("board", literal(target_.board))
-        .add_text("cpu", literal(target_.cpu))
-        .add("clock_hz", target_.clock_hz, std::uint32_t{0})
-        .add_text("flash", memory(target_.flash))
-        .add_text("ram", memory(target_.ram))
-        .add("stack_bytes", target_.stack_bytes, std::uint32_t{0})
-        .add("handler_stack_bytes", target_.handler_stack_bytes, std::uint32_t{0})
-        .add_text("uart", uart)
-        .add("watchdog", target_.watchdog, {})
-        .add_text("safe_writes", list("RegisterWrite", "kSafeWrites", target_.safe_writes, write))
-        .add_text("pins", list("TargetPin", "kPins", target_.pins, pin))
-        .add_text("interrupts", list("Interrupt", "kInterrupts", target_.interrupts, interrupt))
-        .add_text("events", list("TaskEvent", "kEvents", target_.events, event))
+        .add_text("acts", all_.list("ScriptAct", "kActs", run_.acts, [&](auto& a, auto i) { return act(a, i); }))
         .text();
   }
 

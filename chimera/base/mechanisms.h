@@ -18,7 +18,6 @@ inline constexpr bool kRestart = true;     ///< the reaction `restart` of on_fau
 inline constexpr bool kTap = true;         ///< the trace
 inline constexpr bool kBlame = true;       ///< the cause of a missed deadline
 inline constexpr bool kSwitch = true;      ///< switches among configurations
-inline constexpr bool kSlowSwitch = true;  ///< switches in which one task goes after the other
 inline constexpr bool kConstants = true;   ///< constants that tasks produce
 inline constexpr bool kOperators = true;   ///< variables that an operator sets
 inline constexpr bool kEvents = true;      ///< aperiodic tasks
@@ -27,8 +26,6 @@ inline constexpr bool kSignals = true;     ///< signals and requests that tasks 
 inline constexpr bool kReactions = true;   ///< on_miss or on_overrun other than continue, tolerate, max_consecutive
 inline constexpr bool kBudgets = true;     ///< budgets of execution time
 inline constexpr bool kDigest = true;      ///< hashes of what is published
-inline constexpr bool kShell = true;       ///< commands that come over a serial line
-inline constexpr bool kWatchdog = true;    ///< a watchdog that a healthy context strokes
 
 }  // namespace chimera::mechanisms
 #endif

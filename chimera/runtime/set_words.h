@@ -11,7 +11,7 @@
 namespace chimera {
 
 /// "speed would have two producers: a and b; torque would have no producer"; nothing for a legal set. `on[t]`: task t
-/// is in the set. `put(std::string_view)` receives the pieces in order. Context: any; O(ports), and what `put` takes.
+/// is in the set. `put(std::string_view)` receives the pieces in order. Context: any; O(ports), and the time of `put`.
 template <class Set, class Put>
 void put_set_fault(std::span<const Variable> variables, const Set& on, std::span<const TaskSpec> tasks, Put put) {
   const auto is_on = [&on](TaskId task) -> bool { return on[task.index]; };

@@ -3,6 +3,8 @@
 #include "chimera/task/method_guard.h"
 
 #include "chimera/base/assert.h"
+#include "chimera/base/message.h"
+#include "chimera/task/bounded_text.h"
 
 namespace chimera {
 namespace {
@@ -19,20 +21,6 @@ thread_local GuardedRun* innermost = nullptr;
 #else
 GuardedRun* innermost = nullptr;  // this system has one thread
 #endif
-
-char* put(char* to, const char* text) noexcept {
-  while (*text != '\0') *to++ = *text++;
-  return to;
-}
-
-char* put(char* to, std::size_t number) noexcept {
-  char digits[20];
-  std::size_t n = 0;
-  do digits[n++] = static_cast<char>('0' + number % 10);
-  while ((number /= 10) != 0);
-  while (n > 0) *to++ = digits[--n];
-  return to;
-}
 
 }  // namespace
 
@@ -58,9 +46,9 @@ char* put(char* to, std::size_t number) noexcept {
 [[gnu::noinline]] void leave_guarded(std::size_t index, std::size_t size) noexcept {
   CHIMERA_ASSERT(innermost != nullptr);
   innermost->fault->code = 0;
-  char* at = put(innermost->fault->text, "index ");
-  at = put(put(put(at, index), " of a port that has "), size);
-  *at = '\0';
+  Message text;
+  text << "index " << index << " of a port that has " << size;
+  component_api::put_text(innermost->fault->text, CHIMERA_FAULT_TEXT, {text.view()});
   __builtin_longjmp(innermost->place, 1);
 }
 

@@ -11,9 +11,6 @@ extern "C" std::uint32_t image_stack_begin[], image_stack_end[], image_handler_s
 namespace chimera::firmware {
 namespace {
 
-constexpr std::uint32_t kPattern = 0xc5c5'c5c5;
-constexpr std::uint32_t kGuardBytes = 32;
-
 std::uint32_t program_stack_pointer() noexcept {
   std::uint32_t at;
   asm volatile("mrs %0, psp" : "=r"(at));
@@ -25,12 +22,6 @@ std::uint32_t handler_stack_pointer() noexcept {
   return at;
 }
 
-void fill(std::uint32_t* begin, std::uint32_t end) noexcept {
-  constexpr std::uint32_t kFrameOfCaller = 64;
-  for (volatile std::uint32_t* at = begin; reinterpret_cast<std::uintptr_t>(at) < end - kFrameOfCaller; ++at)
-    *at = kPattern;
-}
-
 // Memory protection unit of ARMv6-M and ARMv7-M: one region of 32 bytes, privileged read-only, never executed.
 void protect(std::uint32_t region, const std::uint32_t* begin) noexcept {
   constexpr std::uint32_t kNeverExecuted = 1u << 28, kReadOnly = 5u << 24, kBytes32 = 4u << 1, kEnable = 1;
@@ -39,20 +30,13 @@ void protect(std::uint32_t region, const std::uint32_t* begin) noexcept {
   bare::register_at(0xe000'eda0) = kNeverExecuted | kReadOnly | kBytes32 | kEnable;
 }
 
-StackUse use_of(const std::uint32_t* begin, const std::uint32_t* end) noexcept {
-  const std::uint32_t* at = begin;
-  while (at < end && *at == kPattern) ++at;
-  const auto bytes = [](const std::uint32_t* from, const std::uint32_t* to) {
-    return static_cast<std::size_t>(to - from) * sizeof *from;
-  };
-  return {bytes(at, end), bytes(begin, end), at != begin};
-}
-
 }  // namespace
 
 void guard_stacks() noexcept {
-  fill(image_stack_begin, program_stack_pointer());
-  fill(image_handler_stack_begin, handler_stack_pointer() + 64);
+  // Words near the pointer are those of this function and of paint().
+  constexpr std::uint32_t kOwnBytes = 64;
+  paint({image_stack_begin, reinterpret_cast<std::uint32_t*>(program_stack_pointer() - kOwnBytes)});
+  paint({image_handler_stack_begin, reinterpret_cast<std::uint32_t*>(handler_stack_pointer())});
   constexpr std::uint32_t kDefaultMap = 4, kEnable = 1;
   const std::uint32_t regions = bare::register_at(0xe000'ed90) >> 8 & 0xff;
   if (regions < 2) return;
@@ -62,10 +46,10 @@ void guard_stacks() noexcept {
   asm volatile("dsb\n\tisb" ::: "memory");
 }
 
-StackUse program_stack() noexcept { return use_of(image_stack_begin, image_stack_end); }
-StackUse handler_stack() noexcept { return use_of(image_handler_stack_begin, image_handler_stack_end); }
+Stack program_stack() noexcept { return {"program", {image_stack_begin, image_stack_end}}; }
+Stack handler_stack() noexcept { return {"handlers", {image_handler_stack_begin, image_handler_stack_end}}; }
 bool is_program_stack_overrun() noexcept {
-  return program_stack_pointer() < reinterpret_cast<std::uintptr_t>(image_stack_begin) + kGuardBytes;
+  return program_stack_pointer() < reinterpret_cast<std::uintptr_t>(image_stack_begin + kGuardWords);
 }
 
 }  // namespace chimera::firmware

@@ -6,6 +6,7 @@
 #include "chimera/base/message.h"
 #include "chimera/platform/bare/core.h"
 #include "firmware/boards/board.h"
+#include "firmware/serial_text.h"
 
 namespace chimera::firmware {
 namespace {
@@ -24,16 +25,6 @@ namespace {
 
 constexpr const char* kExceptions[] = {"no exception", "reset", "NMI",        "hard fault",
                                        "memory fault", "bus fault", "usage fault"};
-
-Message& operator<<(Message& message, const void* address) noexcept {
-  const auto bits = reinterpret_cast<std::uintptr_t>(address);
-  message << "0x";
-  for (int shift = 28; shift >= 0; shift -= 4) {
-    const char digit = "0123456789abcdef"[(bits >> shift) & 15];
-    message << std::string_view(&digit, 1);
-  }
-  return message;
-}
 
 }  // namespace
 
@@ -59,8 +50,8 @@ void stop_at_exception(std::uint32_t number, std::uint32_t pc) noexcept {
     words << "exception " << number;
   else
     words << "interrupt " << number - 16 << " has no handler";
-  words << " at " << reinterpret_cast<const void*>(pc);
-  stop(words.view());
+  words << " at 0x";
+  stop(add_hex(words, pc, 8).view());
 }
 
 }  // namespace chimera::firmware

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the processor does after reset, before main, and where it goes at an exception.
+// The way from reset to main, and the table of exceptions.
 // The program uses its own stack (PSP), interrupts use another one (MSP): an overflow of the first leaves room for the
 // handler that reports it.
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 extern "C" {
 
-// Of the linker script.
+// Addresses from the linker script.
 extern std::uint32_t image_data_source[], image_data_begin[], image_data_end[], image_bss_begin[], image_bss_end[];
 extern std::uint32_t image_stack_end[], image_handler_stack_end[];
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the last run left behind for the next one, in memory that a reset does not clear.
+// A record of the last run for the next one, in memory that a reset does not clear.
 //
 //   boot       take_up()           whole: a warm boot, counted; else a new record
 //   tick       note_vital_fault()  why the watchdog is not stroked any more

@@ -78,7 +78,7 @@ inline MenuText text_of(double value, std::int32_t digits, std::string_view unit
   return MenuText(std::string_view(bytes, n));
 }
 
-struct TextLine final : MenuObject {
+struct PlainLine final : MenuObject {
   bool fits(const MenuItem&, const MenuBoard&) const noexcept override { return true; }
   MenuText text(const MenuItem&, const MenuBoard&, bool) const noexcept override { return {}; }
 };
@@ -167,7 +167,7 @@ struct GoLine final : MenuObject {
 
 /// The class of that kind; null: there is none. Context: setup.
 inline const MenuObject* class_of(std::string_view kind) noexcept {
-  static constexpr TextLine kText;
+  static constexpr PlainLine kText;
   static constexpr ShowLine kShow;
   static constexpr EditLine kEdit;
   static constexpr GoLine kGo;

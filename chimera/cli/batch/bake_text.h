@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `chimera bake` prints about an image: memory, stacks, and what double precision costs.
+// The report of `chimera bake` about an image: memory, stacks, and the cost of double precision.
 #pragma once
 
 #include <string>

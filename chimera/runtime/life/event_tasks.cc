@@ -64,7 +64,7 @@ void EventTasks::read_inputs(Nanoseconds now) noexcept {
   }
 }
 
-// Of a burst the first event is released now, or one period after the event before it, and the others follow.
+// The first event of a burst is released now, or one period after the previous event. The others follow.
 void EventTasks::release(EventTask& one, Nanoseconds now) noexcept {
   Task& task = *one.task;
   if (!task.by_events || task.state != State::kOn) return;
