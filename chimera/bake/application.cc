@@ -4,6 +4,8 @@
 
 #include <cstring>
 
+#include "chimera/bake/room.h"
+
 namespace chimera::bake {
 
 std::string declared_name(const ConfiguredPort& port) { return port.name.substr(0, port.name.find('[')); }
@@ -23,11 +25,28 @@ BakedApplication::BakedApplication(const Configuration& configuration, const Tar
       if (!text.empty()) std::memcpy(bytes.data(), text.data(), text.size());
       ports[p].value = bytes;
     }
+    for (PortSpec& port : ports) fit(port, configuration_.spec());
     task.ports = ports;
     if (!has_profile) task.budget = task.min_time = {};
     tasks_.push_back(task);
   }
   spec_.tasks = tasks_;
+  operators_.assign(spec_.operators.begin(), spec_.operators.end());
+  for (GivenSpec& given : operators_) fit(given, configuration_.spec());
+  spec_.operators = operators_;
+  constants_.assign(spec_.constants.begin(), spec_.constants.end());
+  for (std::size_t c = 0; c < constants_.size(); ++c) fit(constants_[c], ConstantId(c), spec_);
+  spec_.constants = constants_;
+}
+
+std::vector<ScriptAct> BakedApplication::acts(std::span<const ScriptAct> acts) const {
+  std::vector<ScriptAct> fitted(acts.begin(), acts.end());
+  for (ScriptAct& act : fitted) {
+    if (act.kind != ScriptAct::Kind::kSet) continue;
+    const std::size_t room = spec_.operators[act.operator_index].value.size();
+    if (act.value.size() > room) act.value = act.value.first(room);
+  }
+  return fitted;
 }
 
 }  // namespace chimera::bake

@@ -4,10 +4,12 @@
 
 #include <cstddef>
 #include <deque>
+#include <span>
 #include <vector>
 
 #include "chimera/bake/target.h"
 #include "chimera/runtime/application_spec.h"
+#include "chimera/runtime/cycle/script.h"
 #include "chimera/verify/configuration.h"
 
 namespace chimera::bake {
@@ -21,6 +23,8 @@ class BakedApplication {
   BakedApplication& operator=(const BakedApplication&) = delete;
 
   const ApplicationSpec& spec() const noexcept { return spec_; }
+  /// Acts of the description with values as large as the image has room for.
+  std::vector<ScriptAct> acts(std::span<const ScriptAct> acts) const;
   const Configuration& configuration() const noexcept { return configuration_; }
 
  private:
@@ -28,6 +32,8 @@ class BakedApplication {
   std::deque<std::vector<std::byte>> texts_;
   std::vector<std::vector<PortSpec>> ports_;
   std::vector<TaskSpec> tasks_;
+  std::vector<GivenSpec> operators_;
+  std::vector<ConstantSpec> constants_;
   ApplicationSpec spec_;
 };
 

@@ -71,8 +71,9 @@ BakeResult bake(const BakeInput& input) {
 
   const BakedApplication application(configuration, target, input.profile != nullptr);
   const ApplicationSpec& spec = application.spec();
+  const std::vector<ScriptAct> acts = application.acts(input.acts);
   const baked::Run run{spec.rtpus.empty() ? Policy::kEdf : spec.rtpus[0].policy, target.tick.value, input.duration,
-                       input.acts};
+                       acts};
   result.memory = memory_need(spec, input.acts.size(), target);
   result.mechanisms = mechanisms(spec, run);
   refuse_memory(result.memory, target, result.target);

@@ -18,7 +18,7 @@ std::vector<Mechanism> mechanisms(const ApplicationSpec& spec, const baked::Run&
   });
   const bool reacts = any_task([](const TaskSpec& task) {
     return task.on_miss != OnMiss::kContinue || task.on_overrun != OnMiss::kContinue || task.max_consecutive != 0 ||
-           task.tolerated_of != 0;
+           task.tolerated_of != 0 || task.min_time > Nanoseconds{};
   });
   return {{"kPeers", false},
           {"kService", false},
@@ -36,7 +36,8 @@ std::vector<Mechanism> mechanisms(const ApplicationSpec& spec, const baked::Run&
           {"kSignals", true},
           {"kReactions", reacts},
           {"kBudgets", any_task([](const TaskSpec& task) { return task.budget.count > 0; })},
-          {"kDigest", run.duration != kNever}};
+          {"kDigest", run.duration != kNever},
+          {"kStale", !spec.stale.empty()}};
 }
 
 std::string mechanisms_text(const std::vector<Mechanism>& mechanisms) {
@@ -45,6 +46,7 @@ std::string mechanisms_text(const std::vector<Mechanism>& mechanisms) {
       "namespace chimera::mechanisms {\n\n";
   for (const Mechanism& each : mechanisms)
     text += "inline constexpr bool " + std::string(each.name) + " = " + (each.is_used ? "true" : "false") + ";\n";
+  text += "inline constexpr bool kVerified = true;\n";
   return text + "\n}  // namespace chimera::mechanisms\n";
 }
 

@@ -7,8 +7,8 @@
 namespace chimera::bake {
 namespace {
 
-constexpr std::size_t kGroupHeaderBytes = 32;
-constexpr std::size_t kPayloads = 2;  // the published values and those under way
+constexpr std::size_t kPayloads = 2;  // of a group: the published values and those under way
+constexpr std::size_t kPayloadsOfTask = 2 * kPayloads + 1;  // of its two groups, and the values of a new incarnation
 
 std::size_t rounded_up(std::size_t bytes, std::size_t to) { return (bytes + to - 1) / to * to; }
 
@@ -18,22 +18,26 @@ std::size_t doubles_of(const PortSpec& port) { return port.type == CHIMERA_FLOAT
 void add_port(TaskMemoryNeed& need, std::size_t& group_bytes, const PortSpec& port) {
   need.flash_bytes += baked::kPortSpecBytes + rounded_up(port.value.size(), 8) + port.max_step.size() +
                       port.unit.size() + 1;
-  need.ram_bytes += baked::kLivePortBytes;
-  if (port.kind == CHIMERA_OUT_VAR) group_bytes += rounded_up(port.max_bytes(), 8);
+  need.ram_bytes += baked::kLivePortBytes + baked::kWiredPortBytes;
+  if (port.kind == CHIMERA_IN_VAR) need.ram_bytes += baked::kInputBytes;
+  if (port.kind == CHIMERA_OUT_VAR) {
+    need.ram_bytes += baked::kOutputBytes;
+    group_bytes += rounded_up(port.max_bytes(), 8);
+  }
   if (port.kind == CHIMERA_IN_CONST || port.kind == CHIMERA_OUT_CONST)
-    need.ram_bytes += rounded_up(port.max_bytes(), 8);
-  if (port.kind == CHIMERA_RESOURCE) need.ram_bytes += rounded_up(port.value.size() + 1, 4);
+    need.ram_bytes += baked::kConstantPortBytes + rounded_up(port.max_bytes(), 8);
+  if (port.kind == CHIMERA_RESOURCE) need.ram_bytes += baked::kResourcePortBytes + rounded_up(port.value.size() + 1, 4);
   if (port.kind == CHIMERA_IN_VAR) need.float64_in += doubles_of(port);
   if (port.kind == CHIMERA_OUT_VAR) need.float64_out += doubles_of(port);
 }
 
-TaskMemoryNeed need_of(const TaskSpec& task) {
+TaskMemoryNeed need_of(const TaskSpec& task, bool switches) {
   TaskMemoryNeed need;
   need.flash_bytes = baked::kTaskSpecBytes + task.name.size() + task.component.size() + 2;
-  need.ram_bytes = kTaskRecordBytes;
+  need.ram_bytes = baked::kTaskRecordBytes + (switches ? baked::kSwitchRecordBytes : 0) + 2 * baked::kGroupHeadBytes;
   std::size_t group_bytes = 0;
   for (const PortSpec& port : task.ports) add_port(need, group_bytes, port);
-  if (group_bytes > 0) need.ram_bytes += kGroupHeaderBytes + kPayloads * group_bytes;
+  need.ram_bytes += kPayloadsOfTask * group_bytes;
   return need;
 }
 
@@ -53,7 +57,7 @@ std::size_t MemoryNeed::ram_bytes() const noexcept {
 
 MemoryNeed memory_need(const ApplicationSpec& spec, std::size_t n_acts, const Target& target) {
   MemoryNeed need;
-  for (const TaskSpec& task : spec.tasks) need.tasks.push_back(need_of(task));
+  for (const TaskSpec& task : spec.tasks) need.tasks.push_back(need_of(task, spec.sets.size() > 1));
   std::size_t& flash = need.shared_flash_bytes;
   flash = baked::kApplicationSpecBytes + n_acts * baked::kScriptActBytes;
   flash += baked::kTaskIdBytes * (spec.init_order.size() + spec.start.size() + spec.on_order.size() +
@@ -68,7 +72,7 @@ MemoryNeed memory_need(const ApplicationSpec& spec, std::size_t n_acts, const Ta
              constant.name.size() + 1;
   for (const GivenSpec& given : spec.operators) {
     flash += baked::kGivenSpecBytes + given.value.size();
-    need.shared_ram_bytes += kGroupHeaderBytes + kPayloads * rounded_up(given.value.size(), 8);
+    need.shared_ram_bytes += baked::kGroupHeadBytes + kPayloads * rounded_up(given.value.size(), 8);
   }
   need.stack_bytes = std::size_t{target.stack_bytes} + target.handler_stack_bytes;
   return need;

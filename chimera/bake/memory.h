@@ -30,7 +30,6 @@ struct MemoryNeed {
   std::size_t ram_bytes() const noexcept;  ///< with the stacks
 };
 
-inline constexpr std::size_t kTaskRecordBytes = 256;  ///< limit of the runtime for one task
 /// Instructions of the compiler's library on a core without double precision, as measured on a Cortex-M3.
 inline constexpr std::size_t kDoubleAdd = 75, kDoubleMultiply = 53, kDoubleDivide = 581, kDoubleCompare = 49;
 /// Longest slice of the shell, and cycles of the core for one instruction: an upper bound without wait states.

@@ -16,6 +16,10 @@ class Features {
     if (rtpus.size() > 1)
       refuse(rtpus[1].name.at, counted(rtpus.size(), "rtpu") + "; an image has 1",
              "put every task on '" + rtpus[0].name.text + "', or bake one description for each board");
+    const auto& tasks = configuration_.draft().tasks;
+    if (tasks.size() > kMostTasksOfImage)
+      refuse(tasks[kMostTasksOfImage].name.at, counted(tasks.size(), "task"),
+             "it has room for " + std::to_string(kMostTasksOfImage));
     for (const DraftRtpu& rtpu : rtpus) judge(rtpu);
     for (const DraftTask& task : configuration_.draft().tasks) judge(task);
     for (const ConfiguredTask& task : configuration_.tasks()) component(task);

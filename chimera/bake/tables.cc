@@ -61,8 +61,10 @@ std::string port_of_text(const PortOf& port) {
       .text();
 }
 
+/// An image has less words than a host.
 std::string bits_text(const TaskBits& bits) {
-  return "{{" + join(bits.words, ", ", [](std::uint64_t word) { return std::to_string(word) + "u"; }) + "}}";
+  const std::span words = std::span(bits.words).first(kMostTasksOfImage / 64);
+  return "{{" + join(words, ", ", [](std::uint64_t word) { return std::to_string(word) + "u"; }) + "}}";
 }
 
 class Tables {
@@ -89,7 +91,7 @@ class Tables {
     for (const TaskSpec& task : spec_.tasks) components.insert(task.component);
     std::string text =
         "// Made by `chimera bake`: docs/formats/baked.md. A change belongs into the description or the target.\n"
-        "#include \"chimera/runtime/executive/baked.h\"\n\nextern \"C\" {\n";
+        "#include \"chimera/runtime/executive/baked.h\"\n#include \"chimera/runtime/executive/baked_sizes.h\"\n\nextern \"C\" {\n";
     for (const std::string_view name : components)
       text += "extern const chimera_component chimera_component_" + std::string(name) + ";\n";
     return text + "}\n\nnamespace chimera::baked {\nnamespace {\n\n[[maybe_unused]] constexpr std::byte operator\"\"_b("

@@ -3,13 +3,16 @@
 // A Result (base/result.h) answers bad input. Counters record late jobs and broken devices.
 #pragma once
 
+#include "chimera/base/mechanisms.h"
+
 namespace chimera {
 
-/// Ends the program after naming the broken condition and its place. Hosted: standard error and abort().
+/// Ends the program after naming the broken condition (images: "") and its place. Hosted: standard error and abort().
 /// Context: any; never returns.
 [[noreturn]] void assertion_failed(const char* condition, const char* file, int line) noexcept;
 
 }  // namespace chimera
 
-#define CHIMERA_ASSERT(condition) \
-  ((condition) ? static_cast<void>(0) : ::chimera::assertion_failed(#condition, __FILE__, __LINE__))
+#define CHIMERA_ASSERT(condition)                                                            \
+  ((condition) ? static_cast<void>(0)                                                        \
+               : ::chimera::assertion_failed(::chimera::mechanisms::kVerified ? "" : #condition, __FILE__, __LINE__))

@@ -26,6 +26,8 @@ inline constexpr bool kSignals = true;     ///< signals and requests that tasks 
 inline constexpr bool kReactions = true;   ///< on_miss or on_overrun other than continue, tolerate, max_consecutive
 inline constexpr bool kBudgets = true;     ///< budgets of execution time
 inline constexpr bool kDigest = true;      ///< hashes of what is published
+inline constexpr bool kStale = true;       ///< inputs that lose their validity with age
+inline constexpr bool kVerified = false;   ///< bake verified everything: errors of setup need no words
 
 }  // namespace chimera::mechanisms
 #endif
@@ -38,6 +40,8 @@ inline constexpr bool kCopies = kPeers || kPreemptive;
 inline constexpr bool kRivals = kSwitch || kStandbys;
 /// Components have work that a thread does beside their methods.
 inline constexpr bool kBackground = kService;
+/// Jobs wait outside the releases of their class: preempted, or released by an event.
+inline constexpr bool kLooseJobs = kPreemptive || kEvents;
 /// Tasks that failed are brought back.
 inline constexpr bool kRecovery = kStandbys || kRestart;
 

@@ -2,6 +2,7 @@
 // A part of an object that images without its mechanism lack (mechanisms.h): there it has no memory, and no code.
 #pragma once
 
+#include <type_traits>
 #include <utility>
 
 namespace chimera {
@@ -30,5 +31,18 @@ class PartIf<false, T> {
   constexpr T* operator->() noexcept { return nullptr; }
   constexpr T& operator*() noexcept { __builtin_unreachable(); }
 };
+
+/// In place of a value that images without its mechanism lack: it ignores what it is set to. Use what stands in the
+/// other images under `if constexpr` of the mechanism. Context: that of T.
+template <class T>
+class NoValue {
+ public:
+  constexpr NoValue() noexcept = default;
+  constexpr NoValue(const T&) noexcept {}  // NOLINT: in its place
+  constexpr NoValue& operator=(const T&) noexcept { return *this; }
+  constexpr operator T() const noexcept { return T{}; }
+};
+template <bool kIsThere, class T>
+using ValueIf = std::conditional_t<kIsThere, T, NoValue<T>>;
 
 }  // namespace chimera

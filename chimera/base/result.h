@@ -3,11 +3,15 @@
 // (std::expected is C++23; the member names here are its own.)
 #pragma once
 
+#include <cstddef>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
 #include "chimera/base/assert.h"
 #include "chimera/base/fixed.h"
+#include "chimera/base/mechanisms.h"
 
 namespace chimera {
 
@@ -19,12 +23,25 @@ enum class ErrorCode : unsigned char {
   kSystem,       // a failed call of the operating system
 };
 
+/// In place of the words of an error in an image, whose setup fails only if its parts do not belong together. Context:
+/// any; wait-free.
+class NoWords {
+ public:
+  constexpr NoWords() noexcept = default;
+  constexpr NoWords(std::string_view) noexcept {}  // NOLINT: as FixedString
+  constexpr void assign(std::string_view) noexcept {}
+  constexpr const char* c_str() const noexcept { return ""; }
+  constexpr std::string_view view() const noexcept { return "its parts are of different builds"; }
+};
+template <std::size_t n>
+using ErrorWords = std::conditional_t<mechanisms::kVerified, NoWords, FixedString<n>>;
+
 /// An error. `message` says what was found and what was expected. `where` names the place ("arm.yaml:12:8",
 /// "/path/file.so"), or is empty. Trivially copyable: no heap.
 struct Error {
   ErrorCode code = ErrorCode::kBadInput;
-  FixedString<400> message;
-  FixedString<200> where;
+  ErrorWords<400> message;
+  ErrorWords<200> where;
 };
 
 /// A T or an Error. If the caller reads the half that is absent, the program ends (CHIMERA_ASSERT). Context: setup.

@@ -17,8 +17,9 @@ ReadyQueue::ReadyQueue(Policy policy, std::span<const TaskSpec> tasks, const Que
       loose_(storage.loose) {
   const std::size_t n = tasks.size(), n_classes = TaskClasses::count(tasks);
   CHIMERA_ASSERT(storage.pauses.size() >= n_classes && storage.runs.size() >= n_classes);
+  CHIMERA_ASSERT(!mechanisms::kLooseJobs || storage.loose.size() >= n);
   if constexpr (!mechanisms::kPreemptive) return;
-  CHIMERA_ASSERT(storage.tasks.size() >= n && storage.loose.size() >= n);
+  CHIMERA_ASSERT(storage.tasks.size() >= n);
   for (std::size_t i = 0; i < n; ++i) tasks_[i] = QueueTask{};
 }
 
@@ -57,6 +58,8 @@ bool ReadyQueue::has_waiting(TaskId task, Nanoseconds before) const noexcept {
   if constexpr (mechanisms::kPreemptive) {
     const QueueTask& t = tasks_[task.index];
     if (t.has_pending && t.pending.release < before) return true;
+  }
+  if constexpr (mechanisms::kLooseJobs) {
     for (const LooseJob& one : loose_.items())
       if (one.job.task == task && one.job.release < before) return true;
   }
@@ -80,7 +83,7 @@ Urgency ReadyQueue::top_urgency() const noexcept {
 // Pops if several runs are ready, or if loose jobs wait beside them.
 Job ReadyQueue::pop_among() noexcept {
   CHIMERA_ASSERT(!is_empty());
-  if (mechanisms::kPreemptive && !loose_.is_empty() && loose_is_top()) return pop_loose();
+  if (mechanisms::kLooseJobs && !loose_.is_empty() && loose_is_top()) return pop_loose();
   TaskClass& c = classes_[runs_.top()];
   const Job job = TaskClasses::job(c, classes_.member(c, c.cursor++));
   if (!settle(c)) runs_.erase(0, ByUrgency{classes_});
@@ -90,9 +93,11 @@ Job ReadyQueue::pop_among() noexcept {
 
 Job ReadyQueue::pop_loose() noexcept {
   const Job job = loose_.top().job;
-  QueueTask& t = tasks_[job.task.index];
-  if (t.is_loose) --n_deferred_;
-  t.is_loose = false;
+  if constexpr (mechanisms::kPreemptive) {
+    QueueTask& t = tasks_[job.task.index];
+    if (t.is_loose) --n_deferred_;
+    t.is_loose = false;
+  }
   loose_.erase(0, ByUrgency{classes_});
   --n_beside_;
   return job;
@@ -128,13 +133,15 @@ void ReadyQueue::put_back(const Job& job, Nanoseconds remaining) noexcept { push
 void ReadyQueue::push_loose(const Job& job, const Nanoseconds* remaining) noexcept {
   const ClassMember& m = classes_.member_of(job.task.index);
   const Nanoseconds period = classes_[classes_.class_of(job.task.index)].period;
-  const Urgency urgency{m.criticality, m.user_priority, period, job.deadline, remaining ? *remaining : m.budget};
+  const Nanoseconds budget = m.budget;
+  const Urgency urgency{m.criticality, m.user_priority, period, job.deadline, remaining ? *remaining : budget};
   loose_.push({job, urgency}, ByUrgency{classes_});
   ++n_beside_;
 }
 
 bool ReadyQueue::remove(TaskId task, Job& job) noexcept {
-  return take_deferred(task, job) || take_loose(task, job) || take_from_run(task, job);
+  return (mechanisms::kPreemptive && take_deferred(task, job)) || (mechanisms::kLooseJobs && take_loose(task, job)) ||
+         take_from_run(task, job);
 }
 
 bool ReadyQueue::take_loose(TaskId task, Job& job) noexcept {

@@ -41,8 +41,8 @@ struct QueueTask {
   Job pending;
 };
 
-/// Memory for a queue of n tasks: every span has n elements, but `runs` and `pauses` one for each class. `tasks` and
-/// `loose` are for preemptive use.
+/// Memory for a queue of n tasks: every span has n elements, but `runs` and `pauses` one for each class. `tasks` is for
+/// preemptive use, `loose` also for jobs that events release.
 struct QueueStorage {
   TaskClasses::Storage classes;
   std::span<QueueTask> tasks;
@@ -84,13 +84,13 @@ class ReadyQueue {
     while (next_release() <= now) release_class(pauses_.top(), now, dropped);
   }
 
-  bool is_empty() const noexcept { return runs_.is_empty() && loose_.is_empty(); }
+  bool is_empty() const noexcept { return runs_.is_empty() && (!mechanisms::kLooseJobs || loose_.is_empty()); }
   /// The urgency of the job that pop() would return. Requires: not empty. Context: cycle; O(1).
   Urgency top_urgency() const noexcept;
   /// Removes and returns the most urgent job; ties: user priority, then tie_of(). Requires: not empty.
   /// Context: cycle; O(1) while one class is ready, otherwise O(log classes).
   Job pop() noexcept {
-    const std::uint32_t others = (runs_.size() - 1) | (mechanisms::kPreemptive ? n_beside_ : 0);  // one branch
+    const std::uint32_t others = (runs_.size() - 1) | (mechanisms::kLooseJobs ? n_beside_ : 0);  // one branch
     if (others != 0) [[unlikely]] return pop_among();
     TaskClass& c = classes_[runs_.top()];
     const ClassMember& m = classes_.member(c, c.cursor);

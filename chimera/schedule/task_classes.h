@@ -12,6 +12,8 @@
 #include <span>
 
 #include "chimera/base/ids.h"
+#include "chimera/base/mechanisms.h"
+#include "chimera/base/part_if.h"
 #include "chimera/base/time.h"
 #include "chimera/schedule/policy.h"
 #include "chimera/task/task_spec.h"
@@ -28,7 +30,7 @@ struct Job {
 /// A member of a class.
 struct ClassMember {
   Nanoseconds deadline;   ///< relative
-  Nanoseconds budget;
+  [[no_unique_address]] ValueIf<mechanisms::kPreemptive, Nanoseconds> budget;  ///< for llf and muf-laxity
   Nanoseconds first;      ///< no release before this instant, because the task was not ON
   std::uint32_t task = 0;
   std::uint32_t criticality = 0;

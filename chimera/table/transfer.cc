@@ -4,20 +4,20 @@
 
 namespace chimera {
 
-GroupInput GroupInput::direct(GroupReader reader) noexcept {
-  GroupInput input;
+SharedGroupInput SharedGroupInput::direct(GroupReader reader) noexcept {
+  SharedGroupInput input;
   input.reader_ = reader;
   return input;
 }
 
-GroupInput GroupInput::copied(LocalGroup& local) noexcept {
-  GroupInput input;
+SharedGroupInput SharedGroupInput::copied(LocalGroup& local) noexcept {
+  SharedGroupInput input;
   input.local_ = &local;
   return input;
 }
 
-GroupInput GroupInput::following(LocalGroup& local) noexcept {
-  GroupInput input = copied(local);
+SharedGroupInput SharedGroupInput::following(LocalGroup& local) noexcept {
+  SharedGroupInput input = copied(local);
   input.refreshes_ = false;
   return input;
 }

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include "chimera/base/mechanisms.h"
 #include "chimera/table/group.h"
@@ -14,22 +15,22 @@
 namespace chimera {
 
 /// A group as a task reads it. Plain value; owned by one task.
-class GroupInput {
+class SharedGroupInput {
  public:
-  GroupInput() noexcept = default;
+  SharedGroupInput() noexcept = default;
   /// For a producer in this context: it never runs during a method of the reader, so the slot cannot change.
-  static GroupInput direct(GroupReader reader) noexcept;
+  static SharedGroupInput direct(GroupReader reader) noexcept;
   /// For a producer in another context. Copies into `local`, which must outlive the input.
-  static GroupInput copied(LocalGroup& local) noexcept;
+  static SharedGroupInput copied(LocalGroup& local) noexcept;
 
   /// Like copied(), but another caller refreshes `local`, once for all inputs that follow it.
-  static GroupInput following(LocalGroup& local) noexcept;
+  static SharedGroupInput following(LocalGroup& local) noexcept;
   bool follows(const LocalGroup& local) const noexcept { return local_ == &local; }
 
   /// Updates slot(). False if it is unchanged because the writer overtook the read (the LocalGroup counts this).
   /// Context: cycle; bounded; O(1) when direct, otherwise O(payload).
   bool latch() noexcept {
-    if (!mechanisms::kCopies || local_ == nullptr) {
+    if (local_ == nullptr) {
       slot_ = reader_.published();
       return true;
     }
@@ -49,6 +50,29 @@ class GroupInput {
   bool refreshes_ = true;
   const chimera_slot* slot_ = nullptr;
 };
+
+/// The input of an image, where every producer is in this context: its slot stays where it is.
+class DirectGroupInput {
+ public:
+  DirectGroupInput() noexcept = default;
+  static DirectGroupInput direct(GroupReader reader) noexcept {
+    DirectGroupInput input;
+    input.slot_ = reader.published();
+    return input;
+  }
+  static DirectGroupInput following(LocalGroup&) noexcept { return {}; }  ///< never called
+  bool follows(const LocalGroup&) const noexcept { return false; }
+
+  bool latch() noexcept { return true; }
+  const chimera_slot* slot() const noexcept { return slot_; }
+  const std::byte* values() const noexcept { return reinterpret_cast<const std::byte*>(slot_ + 1); }
+  bool is_direct() const noexcept { return true; }
+
+ private:
+  const chimera_slot* slot_ = nullptr;
+};
+
+using GroupInput = std::conditional_t<mechanisms::kCopies, SharedGroupInput, DirectGroupInput>;
 
 /// Latches every input and returns the number of stale ones. Resolve port pointers from slot() afterwards. Consistent
 /// within a group, not across groups. Context: cycle; bounded; O(bytes of the copied groups).

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <compare>
 #include <cstdint>
 #include <type_traits>
 
@@ -17,8 +18,19 @@ namespace chimera {
 /// A count of the run: 32 bits where the target has no more.
 using Count = std::conditional_t<mechanisms::kCopies, std::uint64_t, std::uint32_t>;
 
+/// A duration of 0 to 4.29 s in 32 bits, for a profile; a longer one counts as the longest. Context: any; wait-free.
+struct ShortTime {
+  std::uint32_t count = 0;
+
+  constexpr explicit ShortTime(std::uint32_t ns) noexcept : count(ns) {}
+  constexpr explicit ShortTime(Nanoseconds time) noexcept
+      : count(time.count < 0 ? 0 : time.count > UINT32_MAX ? UINT32_MAX : static_cast<std::uint32_t>(time.count)) {}
+  constexpr operator Nanoseconds() const noexcept { return {count}; }
+  constexpr auto operator<=>(const ShortTime&) const noexcept = default;
+};
+
 /// Smallest, largest and sum of a duration. Context: cycle; wait-free.
-struct Spread {
+struct LongSpread {
   Count count = 0;
   Nanoseconds min = kNever;
   Nanoseconds max{INT64_MIN};
@@ -33,6 +45,24 @@ struct Spread {
   /// The mean; 0 if no value was added.
   Nanoseconds mean() const noexcept { return {count == 0 ? 0 : sum.count / static_cast<std::int64_t>(count)}; }
 };
+
+/// As LongSpread, for images. Requires: values of 0 or more. Context: cycle; wait-free.
+struct ShortSpread {
+  Nanoseconds sum;
+  Count count = 0;
+  ShortTime min{UINT32_MAX}, max{std::uint32_t{0}};
+
+  void add(Nanoseconds value) noexcept {
+    const std::uint32_t ns = ShortTime(value).count;
+    ++count;
+    if (ns < min.count) min.count = ns;
+    if (ns > max.count) max.count = ns;
+    sum += value;
+  }
+  /// The mean; 0 if no value was added.
+  Nanoseconds mean() const noexcept { return {count == 0 ? 0 : sum.count / static_cast<std::int64_t>(count)}; }
+};
+using Spread = std::conditional_t<mechanisms::kCopies, LongSpread, ShortSpread>;
 
 /// Execution times of cycle, and of all other methods together.
 struct CycleSpread {

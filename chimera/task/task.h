@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include "chimera/base/fixed.h"
 #include "chimera/base/mechanisms.h"
@@ -15,6 +16,7 @@
 #include "chimera/task/declared_port.h"
 #include "chimera/task/fault_record.h"
 #include "chimera/task/profile.h"
+#include "chimera/task/signal_list.h"
 #include "chimera/task/state_machine.h"
 #include "chimera/task/task_spec.h"
 
@@ -45,6 +47,11 @@ struct SentSignal {
 };
 
 inline constexpr std::size_t kOutboxSize = mechanisms::kSignals ? 16 : 1;
+using SentList = FixedVector<SentSignal, kOutboxSize>;
+/// Signals that a method sent: a list for each task, or one for all where they are handed over before another method
+/// runs. A switch keeps those of a task that it arms.
+using TaskOutbox = std::conditional_t<mechanisms::kCopies || mechanisms::kSwitch, SentList, SentList&>;
+inline constinit SentList sent_by_method{};
 
 /// The target of a request: none, or lists of tasks that SentSignals keeps. Otherwise a configuration number.
 inline constexpr std::uint16_t kNoRequest = UINT16_MAX, kListsRequested = UINT16_MAX - 1;
@@ -89,7 +96,7 @@ struct alignas(kCacheLine) Task {
 
   // Rarely touched.
   TaskFaults faults;
-  FixedVector<SentSignal, kOutboxSize> outbox;  ///< its end and the next four share a cache line, which jobs read
+  TaskOutbox outbox = sent_by_method;  ///< its end and the next four share a cache line, which jobs read
   /// The present job must give up, because it used up its budget. Relaxed, pairs with nothing: a job that sees it late
   /// gives up late.
   std::atomic<bool> give_up{false};
@@ -100,7 +107,7 @@ struct alignas(kCacheLine) Task {
   // Written by the executor and the task set at cycle boundaries.
   std::uint8_t requests_refused = 0;  ///< for configurations, since the start of the run; 255: or more
   bool is_error_told = false;  ///< its reaction on_fault has acted since it went to ERROR
-  FixedVector<Signal, kOutboxSize> pending;  ///< signals that wait for the present method to end
+  SignalList<kOutboxSize> pending;  ///< signals that wait for the present method to end
   const chimera_component* component = nullptr;  ///< from the construction of the component on
   DeclaredPorts ports;  ///< of the component, from its construction on
   chimera_inherited* inherited = nullptr;  ///< by output: the inherited value of its port at the last on

@@ -39,8 +39,9 @@ void put_name_and_state(TextLine& line, const Task& task) noexcept {
 }
 
 void put_spread(TextLine& line, const char* what, const Spread& spread) noexcept {
+  const Nanoseconds min = spread.min, max = spread.max;
   if (spread.count == 0) line.put("%z: none yet", what);
-  else line.put("%z: %m to %m, mean %m", what, spread.min, spread.max, spread.mean());
+  else line.put("%z: %m to %m, mean %m", what, min, max, spread.mean());
 }
 
 std::string_view set_name(std::uint32_t set, const ApplicationSpec& spec) noexcept {

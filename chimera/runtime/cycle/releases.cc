@@ -26,10 +26,10 @@ MissCause* cause_for(const BoundaryListener* guest, PartIf<mechanisms::kBlame, s
 
 QueueStorage storage_for(std::span<const TaskSpec> tasks, SetupMemory& memory) {
   const std::size_t n = tasks.size(), n_classes = TaskClasses::count(tasks);
-  const std::size_t n_beside = mechanisms::kPreemptive ? n : 0;
+  const std::size_t n_beside = mechanisms::kPreemptive ? n : 0, n_loose = mechanisms::kLooseJobs ? n : 0;
   return {{memory.take<ClassMember>(n), memory.take<TaskClass>(n_classes), memory.take<std::uint32_t>(n)},
           memory.take<QueueTask>(n_beside),
-          memory.take<LooseJob>(n_beside),
+          memory.take<LooseJob>(n_loose),
           memory.take<std::uint32_t>(n_classes),
           memory.take<std::uint32_t>(n_classes)};
 }
@@ -97,8 +97,9 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
     const TaskSpec& spec = *task.spec;
     const bool can = options.preemptive || !set.is_mine(task.id);
     const bool switches = takes_requests || !set.is_mine(task.id);
-    CHIMERA_ASSERT(is_built(spec.on_miss, can, switches) && is_built(spec.on_overrun, can, switches));
-    CHIMERA_ASSERT(switches || spec.on_fault_set == UINT16_MAX);
+    CHIMERA_ASSERT(mechanisms::kVerified ||
+                   (is_built(spec.on_miss, can, switches) && is_built(spec.on_overrun, can, switches)));
+    CHIMERA_ASSERT(mechanisms::kVerified || switches || spec.on_fault_set == UINT16_MAX);
     JobRecord& record = records_[task.id.index];
     record.task = &task;
     if (digest_ != nullptr && set.is_mine(task.id)) task.is_tapped = true;
@@ -107,7 +108,7 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
     record.budget = spec.budget > Nanoseconds{} ? spec.budget : kNever;
   }
   const auto has_events = [&](const Task& task) {
-    return task.spec->has_events && !options.preemptive && set.is_mine(task.id);
+    return mechanisms::kEvents && task.spec->has_events && !options.preemptive && set.is_mine(task.id);
   };
   const auto n_events = std::count_if(set.tasks().begin(), set.tasks().end(), has_events);
   events_.prepare(static_cast<std::size_t>(n_events), set.setup_memory());
@@ -125,7 +126,7 @@ void Releases::begin(Nanoseconds origin) noexcept {
     switching_->begin(origin);
   }
   signals_.begin(origin);
-  events_.begin(origin);
+  if constexpr (mechanisms::kEvents) events_.begin(origin);
   members_.follow_all(origin);
   follow(events_, signals_, origin);
 }

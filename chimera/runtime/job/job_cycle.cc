@@ -17,7 +17,7 @@ void JobCycle::conclude(const Job& job, const CycleTime& time, BodyEnd body, Nan
     // A job that was reported late is late, even where the two looks at the clock say otherwise.
     if (reported & JobRecord::kLate) end = std::max(end, job.deadline + Nanoseconds{1});
     count_times(task, job, start, end, used);
-    failed = end > job.deadline || used > record.budget;
+    failed = end > job.deadline || !record.is_within_budget(used);
     if (failed) may_publish = misses_.judge(job, body, end, used, reported);
     else misses_.count_good(task);
   }

@@ -36,7 +36,7 @@ class JobCycle {
   [[gnu::always_inline]] bool can_start(const Job& job, Nanoseconds now) noexcept {
     const JobRecord& record = records_[job.task.index];
     if (is_tapped_) tap_.record_release(job);
-    return !record.skip_next && now + record.start_margin <= job.deadline;
+    return record.lets_start(now, job.deadline);
   }
   /// False if the job must not start. Its release is then counted as dropped, with all that follows.
   bool may_start(const Job& job, Nanoseconds now) noexcept {
@@ -63,7 +63,7 @@ class JobCycle {
     JobRecord& record = records_[job.task.index];
     Task& task = *record.task;
     task.is_busy = false;
-    const bool in_time = end <= job.deadline && used <= record.budget;
+    const bool in_time = end <= job.deadline && record.is_within_budget(used);
     if (body.is_good() && in_time && record.is_plain && record.reported.load(std::memory_order_relaxed) == 0)
         [[likely]] {
       count_times(task, job, start, end, used);

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "chimera/base/mechanisms.h"
+#include "chimera/base/part_if.h"
 #include "chimera/base/shared_word.h"
 #include "chimera/base/time.h"
 #include "chimera/runtime/job/miss_history.h"
@@ -32,9 +34,11 @@ struct alignas(kCacheLine) JobRecord {
   };
 
   Task* task = nullptr;
-  Nanoseconds start_margin;  ///< a job starts while now + start_margin <= deadline
-  Nanoseconds budget;        ///< of execution time for one job; kNever: none
-  std::uint64_t told_seen = 0, faults_seen = 0;  ///< FaultRecord::told and count, at the last check
+  /// A job starts while now + start_margin <= deadline.
+  [[no_unique_address]] ValueIf<mechanisms::kReactions, Nanoseconds> start_margin;
+  /// Of execution time for one job; kNever: none.
+  [[no_unique_address]] ValueIf<mechanisms::kBudgets, Nanoseconds> budget;
+  decltype(TaskFaults::told) told_seen = 0, faults_seen = 0;  ///< FaultRecord::told and count, at the last check
   std::uint32_t dropped = 0;                     ///< releases since the last completed cycle
   bool skip_next = false;                        ///< the reaction `skip`: the next release is dropped
   bool is_on = false;                            ///< the task takes part in releases
@@ -46,7 +50,13 @@ struct alignas(kCacheLine) JobRecord {
   /// fetch_or of the reporter (a cycle boundary, the supervisor) pairs with that at the end of the job, both acq_rel:
   /// of a report and the end exactly one sees the other. Cleared before any thread knows of the next job.
   SharedWord<std::uint8_t> reported{0};
-  MissHistory history;  ///< kept if misses are tolerated
+  [[no_unique_address]] TaskMisses history;  ///< kept if misses are tolerated
+
+  /// A job may start: its release is not to be skipped, and enough time is left.
+  bool lets_start(Nanoseconds now, Nanoseconds deadline) const noexcept {
+    return !mechanisms::kReactions || (!skip_next && now + start_margin <= deadline);
+  }
+  bool is_within_budget(Nanoseconds used) const noexcept { return !mechanisms::kBudgets || used <= budget; }
 };
 
 }  // namespace chimera

@@ -4,7 +4,9 @@
 
 #include <bit>
 #include <cstdint>
+#include <type_traits>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/base/shared_word.h"
 #include "chimera/task/task_spec.h"
 
@@ -36,5 +38,12 @@ class MissHistory {
   // the end of jobs, read by the supervisor to see whether a miss is tolerated.
   SharedWord<std::uint64_t> last_{0};
 };
+
+/// In an image without reactions, which tolerates no miss.
+struct NoMissHistory {
+  bool add(bool, const TaskSpec&) noexcept { return false; }
+  bool would_tolerate(const TaskSpec&) const noexcept { return false; }
+};
+using TaskMisses = std::conditional_t<mechanisms::kReactions, MissHistory, NoMissHistory>;
 
 }  // namespace chimera

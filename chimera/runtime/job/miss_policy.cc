@@ -17,6 +17,7 @@ OnMiss left_of(OnMiss reaction, bool was_reported) noexcept {
 }  // namespace
 
 bool MissPolicy::decide_start(const Job& job, Nanoseconds now) noexcept {
+  if constexpr (!mechanisms::kReactions) return true;
   JobRecord& record = records_[job.task.index];
   Task& task = tasks_[job.task.index];
   const DroppedRelease dropped{job.task, job.release, 1};
@@ -51,7 +52,7 @@ bool MissPolicy::judge(const Job& job, BodyEnd& body, Nanoseconds end, Nanosecon
   Task& task = tasks_[job.task.index];
   JobRecord& record = records_[job.task.index];
   bool may_publish = true;
-  if (mechanisms::kBudgets && used > record.budget) {
+  if (!record.is_within_budget(used)) {
     const bool is_reported = (reported & JobRecord::kOverrun) != 0;
     ++task.profile.overrun;
     if (!is_reported) tap_.record(TapKind::kOverrun, end, task.id, task.call.cycle, used.count);

@@ -23,6 +23,7 @@
 #include <cstdint>
 #include <span>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/runtime/job/job_clock.h"
 #include "chimera/runtime/job/job_record.h"
 #include "chimera/runtime/job/job_step.h"
@@ -72,7 +73,7 @@ class MissPolicy {
 
   /// The task missed as many deadlines in a row as max_consecutive allows.
   static bool is_out_of_patience(const Task& task) noexcept {
-    const std::uint32_t limit = task.spec->max_consecutive;
+    const std::uint32_t limit = mechanisms::kReactions ? task.spec->max_consecutive : 0;
     return limit > 0 && task.profile.missed_in_a_row >= limit;
   }
   /// Ends the task for that, in ERROR.

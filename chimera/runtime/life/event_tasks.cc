@@ -20,6 +20,7 @@ void EventTasks::begin(Nanoseconds origin) noexcept {
 }
 
 EventTasks::EventTask* EventTasks::find(TaskId task) noexcept {
+  if constexpr (!mechanisms::kEvents) return nullptr;
   for (EventTask& one : tasks_)
     if (one.task->id == task) return &one;
   return nullptr;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/job/job_record.h"
 #include "chimera/runtime/life/event_inputs.h"
@@ -32,7 +33,7 @@ class EventTasks {
   /// Takes care of the `n` tasks of this context that have events; then calls add() for each. Context: setup.
   void prepare(std::size_t n, SetupMemory& memory) { tasks_ = memory.take<EventTask>(n); }
   void add(Task& task) noexcept;
-  bool are_none() const noexcept { return tasks_.empty(); }
+  bool are_none() const noexcept { return !mechanisms::kEvents || tasks_.empty(); }
   /// Ticks count from `origin`.
   void begin(Nanoseconds origin) noexcept;
 

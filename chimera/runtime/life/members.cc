@@ -27,7 +27,7 @@ void Members::follow(Task& task, Nanoseconds now) noexcept {
 
 void Members::leave(Task& task) noexcept {
   --n_on_;
-  events_.leave(task);
+  if constexpr (mechanisms::kEvents) events_.leave(task);
   lose_events(task);
   queue_.leave(task.id);
 }
@@ -44,7 +44,8 @@ void Members::join(Task& task, Nanoseconds now) noexcept {
   record.skip_next = false;
   task.profile.missed_in_a_row = 0;
   task.last_release = now - task.spec->period;
-  if (task.spec->server || (task.spec->has_events && events_.join(task, now))) return;  // released by events
+  const bool has_events = mechanisms::kEvents && task.spec->has_events;
+  if (task.spec->server || (has_events && events_.join(task, now))) return;  // released by events
   lose_events(task);
   queue_.join(task.id, now);
   // dt of the first cycle is the period, whatever part of one passed since on.

@@ -53,14 +53,12 @@ SwitchRequest SentSignals::take_request() noexcept {
 
 void SentSignals::defer(Task& task, Signal signal) noexcept {
   if (task.pending.try_push(signal)) ++n_pending_;
-  else if (signal == Signal::kKill) task.pending[task.pending.size() - 1] = Signal::kKill;
+  else if (signal == Signal::kKill) task.pending.replace_newest(Signal::kKill);
 }
 
 bool SentSignals::take_pending(Task& task, Signal& signal) noexcept {
   if (task.pending.empty()) return false;
-  signal = task.pending[0];
-  for (std::size_t i = 1; i < task.pending.size(); ++i) task.pending[i - 1] = task.pending[i];
-  task.pending.pop_back();
+  signal = task.pending.take_oldest();
   --n_pending_;
   return true;
 }

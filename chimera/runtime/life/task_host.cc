@@ -73,6 +73,7 @@ std::int32_t request_lists(void* context, const char* text) {
 
 std::int32_t host_request(void* context, const char* name) {
   if constexpr (!mechanisms::kSignals) return CHIMERA_FAULT;
+  if constexpr (!mechanisms::kSwitch) return refuse_request(context, name, "requests are not taken here");
   if (has_lists(name)) return request_lists(context, name);
   const TaskHost& host = host_of(context);
   const auto sets = host.set->spec().sets;

@@ -17,7 +17,7 @@ bool has_changed_outputs(const Task& task) noexcept {
 }  // namespace
 
 void TaskLife::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
-  progress_ = memory.take<Progress>(spec.tasks.size());
+  progress_ = memory.take<Progress>(kSignalsOverlap ? spec.tasks.size() : 1);
   judge_.prepare(spec, memory);
 }
 
@@ -95,7 +95,7 @@ SignalReport TaskLife::carry_out(TaskId id, Signal signal, Nanoseconds now) {
     const SignalReport settled = settle_off(id, now);
     if (signal == Signal::kOff || next(task.state, signal, false).kind == Next::Kind::kImpossible) return settled;
   }
-  Progress& progress = progress_[id.index];
+  Progress& progress = progress_of(id);
   progress = Progress{};
   progress.is_moved = is_moving_;
   progress.report = {true, false, Refusal::kNone, signal, id, task.state, task.state};
@@ -122,7 +122,7 @@ bool TaskLife::follow_constants(Task& task, Nanoseconds now) {
   const std::uint64_t faults = task.faults.count;
   (void)advance(task, next(State::kOff, Signal::kReinit, false), now);
   if (task.state == State::kOff && task.faults.count == faults) return true;
-  SignalReport& report = progress_[task.id.index].report;
+  SignalReport& report = progress_of(task.id).report;
   report.is_accepted = false;
   report.why = Refusal::kFault;
   return false;
@@ -181,7 +181,7 @@ SignalReport TaskLife::settle_off(TaskId id, Nanoseconds now) {
 
 SignalReport TaskLife::finish_slow(TaskId id, Nanoseconds now) {
   Task& task = set_.tasks()[id.index];
-  Progress& progress = progress_[id.index];
+  Progress& progress = progress_of(id);
   const SlowMethods::Outcome outcome = set_.slow().finish(task);
   if (outcome.is_construction) {
     (void)go_on_constructed(task, outcome.answer, now);
@@ -195,7 +195,7 @@ SignalReport TaskLife::finish_slow(TaskId id, Nanoseconds now) {
 
 // The state of the component is constructed, or is not: init is next.
 SignalReport TaskLife::go_on_constructed(Task& task, Answer answer, Nanoseconds now) {
-  SignalReport& report = progress_[task.id.index].report;
+  SignalReport& report = progress_of(task.id).report;
   if (answer == Answer::kOk) return advance(task, next(State::kNotCreated, Signal::kSpawn, false), now);
   report.is_accepted = report.is_deferred = false;
   report.why = Refusal::kFault;
@@ -203,7 +203,7 @@ SignalReport TaskLife::go_on_constructed(Task& task, Answer answer, Nanoseconds 
 }
 
 SignalReport TaskLife::advance(Task& task, Next at, Nanoseconds now) {
-  SignalReport& report = progress_[task.id.index].report;
+  SignalReport& report = progress_of(task.id).report;
   report.is_deferred = !follow(task, at, now);
   report.after = task.state;
   if (!report.is_deferred && !set_.slow().is_there() && task.state == State::kNotCreated) set_.methods().destroy(task);
@@ -213,7 +213,7 @@ SignalReport TaskLife::advance(Task& task, Next at, Nanoseconds now) {
 
 // Runs the steps that `at` starts until a state is reached (true), or until the service thread has the next one.
 bool TaskLife::follow(Task& task, Next at, Nanoseconds now) {
-  Progress& progress = progress_[task.id.index];
+  Progress& progress = progress_of(task.id);
   while (at.kind == Next::Kind::kStep) {
     const StepRule& step = rule(at.step);
     const Nanoseconds began = read_clock(now);
@@ -236,7 +236,7 @@ bool TaskLife::follow(Task& task, Next at, Nanoseconds now) {
 
 // The step `began` here, or here again after the service thread had it.
 Next TaskLife::conclude(Task& task, const StepRule& step, Answer answer, Nanoseconds now, Nanoseconds began) {
-  Progress& progress = progress_[task.id.index];
+  Progress& progress = progress_of(task.id);
   progress.has_new_constants = false;
   if (answer == Answer::kOk) answer = after_ok(task, step, now);
   task.profile.add_call(step.method, progress.used + (read_clock(now) - began));
@@ -254,7 +254,7 @@ bool TaskLife::before_step(Task& task, const StepRule& step, Nanoseconds now) {
   stage_outputs(task);
   if (step.before & kReadOut) take_over(task, now);
   if (step.before & kReadConst) {
-    FixedString<160> why;
+    FaultWords why;
     if (!set_.constants().give(task.id, why)) {
       record_fault(task, step.method, why.c_str(), now);
       return false;
@@ -265,12 +265,12 @@ bool TaskLife::before_step(Task& task, const StepRule& step, Nanoseconds now) {
 
 Answer TaskLife::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
   if (step.after_ok & kWriteConst) {
-    FixedString<160> why;
+    FaultWords why;
     if (!set_.constants().collect(task.id, why)) {
       record_fault(task, step.method, why.c_str(), now);
       return Answer::kFault;
     }
-    progress_[task.id.index].has_new_constants = set_.constants().has_new();
+    progress_of(task.id).has_new_constants = set_.constants().has_new();
   }
   // Outputs that clear did not change keep the age of their publication.
   if (step.step == Step::kClear && !has_changed_outputs(task)) return Answer::kOk;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/job/job_clock.h"
 #include "chimera/runtime/life/signal_judge.h"
@@ -80,6 +81,8 @@ class TaskLife {
   SignalJudge& judge() noexcept { return judge_; }
 
  private:
+  /// A signal to one task begins before that to another one has ended.
+  static constexpr bool kSignalsOverlap = mechanisms::kService || mechanisms::kConstants;
   /// The signal that a task is carrying out.
   struct Progress {
     SignalReport report;
@@ -89,6 +92,7 @@ class TaskLife {
     bool is_moved = false;  ///< by move()
   };
 
+  Progress& progress_of(TaskId task) noexcept { return progress_[kSignalsOverlap ? task.index : 0]; }
   SignalReport carry_out(TaskId task, Signal signal, Nanoseconds now);
   void turn_off_started(Nanoseconds now);
   SignalReport show(Task& task);
@@ -107,7 +111,7 @@ class TaskLife {
 
   TaskSet& set_;
   SignalJudge judge_;
-  std::span<Progress> progress_;  // by task
+  std::span<Progress> progress_;  // by task, or one for all
   std::uint64_t taken_over_valid_ = 0;
   bool is_arming_ = false;
   bool is_moving_ = false;

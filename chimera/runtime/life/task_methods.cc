@@ -15,9 +15,10 @@ Answer TaskMethods::construct(Task& task, Nanoseconds now) {
   show_making(*words_.making, task.id.index, Making::kConstructs);
   const auto constructed = memories_[task.id.index].construct(task, now);
   show_made(*words_.making);
-  if (constructed) StaleInputs::judge_cycles_of(task);
+  if (mechanisms::kStale && constructed) StaleInputs::judge_cycles_of(task);
   if (constructed) return Answer::kOk;
-  record_fault(task, Method::kInit, constructed.error().message.c_str(), now);
+  const char* const why = mechanisms::kVerified ? task.faults.last.text : constructed.error().message.c_str();
+  record_fault(task, Method::kInit, why, now);
   return Answer::kFault;
 }
 

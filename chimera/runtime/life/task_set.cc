@@ -10,6 +10,7 @@ namespace chimera {
 namespace {
 
 Result<void> check_producers(const ApplicationSpec& spec) {
+  if constexpr (mechanisms::kVerified) return {};  // the tables of an image are verified
   for (const Variable& variable : spec.variables) {
     if (!variable.producers.empty() || variable.is_given()) continue;
     const std::string_view reader = spec.tasks[variable.consumers[0].task.index].name;
@@ -38,7 +39,7 @@ Result<void> TaskSet::build(std::span<const chimera_component* const> components
   hosts_ = memory_.take<TaskHost>(n);
   on_ = memory_.take<bool>(n);
   states_ = memory_.take<State>(n);
-  listed_ = memory_.take<TaskStatus>(n);
+  listed_ = memory_.take<TaskStatus>(mechanisms::kPeers ? n : 0);
   for (std::size_t t = 0; t < n; ++t) prepare_task(t, components[t]);
   if (auto produced = check_producers(spec_); !produced) return produced;
   if (auto laid = table_.prepare(spec_, place_, memory_); !laid) return laid;
@@ -80,7 +81,7 @@ void TaskSet::prepare_parts() {
   standbys_.prepare(spec_, life_.judge().rivals(), memory_);
   if (others() != nullptr) changes_.prepare(tasks_.size(), memory_);
   constants_.prepare(spec_, table_, memories_, others(), memory_);
-  for (const StaleSpec& stale : spec_.stale)
+  for (const StaleSpec& stale : mechanisms::kStale ? spec_.stale : std::span<const StaleSpec>{})
     if (TaskMemory& memory = memories_[stale.task.index]; memory.is_planned())
       hosts_[stale.task.index].stale = &StaleInputs::make(stale.after, memory, spec_.variables, memory_);
   sources_.prepare(spec_, table_, tasks_, memories_, others(), place_.preemptive, memory_);
@@ -113,6 +114,7 @@ void TaskSet::on_set_changed() noexcept {
   for (Task& task : tasks_) {
     if (!is_mine(task.id)) continue;
     if (task.standing == Standing::kWarm && !task.is_warm()) task.standing = Standing::kPlain;
+    if constexpr (!mechanisms::kPeers) continue;  // nobody is told
     const TaskStatus now{task.shown_state(), task.in_service(), memories_[task.id.index].incarnation()};
     TaskStatus& listed = listed_[task.id.index];
     if (now != listed) changes_.add_status(task.id, listed, now);

@@ -26,12 +26,14 @@
 #include <span>
 
 #include "chimera/base/ids.h"
+#include "chimera/base/mechanisms.h"
 #include "chimera/base/time.h"
 
 namespace chimera {
 
 inline constexpr std::uint32_t kMaxContexts = 16;        // bits in TurnWord::missing
-inline constexpr std::size_t kMaxSwitchedTasks = 256;    // of an application that can be switched
+/// Of an application that can be switched; an image has less room.
+inline constexpr std::size_t kMostTasksOfImage = 64, kMaxSwitchedTasks = mechanisms::kPeers ? 256 : kMostTasksOfImage;
 
 /// A set of tasks, as bits. Plain value.
 struct TaskBits {

@@ -20,9 +20,13 @@ std::int64_t whole(const Constant& constant, std::int64_t fallback) noexcept {
 
 }  // namespace
 
-ConstantStore::ConstantStore(const ApplicationSpec& spec, SetupMemory& memory)
-    : first_(memory.take<std::uint32_t>(spec.constants.size())),
-      counts_(memory.take<std::uint32_t>(spec.constants.size())) {
+ConstantStore::ConstantStore(const ApplicationSpec& spec, SetupMemory& memory) {
+  if constexpr (!mechanisms::kConstants) {
+    take_given(spec, memory);
+    return;
+  }
+  first_ = memory.take<std::uint32_t>(spec.constants.size());
+  counts_ = memory.take<std::uint32_t>(spec.constants.size());
   const std::span<std::size_t> bytes = memory.take<std::size_t>(first_.size());
   std::size_t n = 0;
   for (std::size_t c = 0; c < first_.size(); ++c) {
@@ -45,6 +49,14 @@ ConstantStore::ConstantStore(const ApplicationSpec& spec, SetupMemory& memory)
       made_[m].value = memory.take_bytes(bytes[c], kCacheLine);
     }
     if (!spec.constants[c].value.empty()) set(ConstantId(c), 0, spec.constants[c].value);
+  }
+}
+
+void ConstantStore::take_given(const ApplicationSpec& spec, SetupMemory& memory) {
+  made_ = memory.take<Constant>(spec.constants.size());
+  for (std::size_t c = 0; c < made_.size(); ++c) {
+    const std::span<const std::byte> value = spec.constants[c].value;
+    made_[c] = {&spec.constants[c], {const_cast<std::byte*>(value.data()), value.size()}, !value.empty()};
   }
 }
 

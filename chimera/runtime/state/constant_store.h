@@ -5,11 +5,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
+#include "chimera/base/mechanisms.h"
+#include "chimera/base/result.h"
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/application_spec.h"
 
 namespace chimera {
+
+/// Why a task cannot be initialised with its constants, or cannot make them. Nothing is wrong with those that the
+/// description gives.
+using FaultWords = std::conditional_t<mechanisms::kVerified && !mechanisms::kConstants, NoWords, FixedString<160>>;
 
 /// One constant with a value: that of one of its producers, or of the description.
 struct Constant {
@@ -27,7 +34,9 @@ class ConstantStore {
   ConstantStore(const ApplicationSpec& spec, SetupMemory& memory);
 
   /// With the value that counts. Requires: a valid id.
-  const Constant& operator[](ConstantId id) const noexcept { return made_[counts_[id.index]]; }
+  const Constant& operator[](ConstantId id) const noexcept {
+    return made_[mechanisms::kConstants ? counts_[id.index] : id.index];
+  }
   /// With the value of one of its producers, by its place in ConstantSpec::producers.
   const Constant& of(ConstantId id, std::uint32_t producer) const noexcept {
     return made_[first_[id.index] + producer];
@@ -42,6 +51,9 @@ class ConstantStore {
   std::int64_t integer(ConstantId id, std::int64_t fallback) const noexcept;
 
  private:
+  // The description gives all values: they stay where they are, and nothing sets another.
+  void take_given(const ApplicationSpec& spec, SetupMemory& memory);
+
   std::span<Constant> made_;         // the values of a constant lie side by side
   std::span<std::uint32_t> first_;   // by constant: in made_
   std::span<std::uint32_t> counts_;  // by constant: in made_

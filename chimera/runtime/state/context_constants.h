@@ -29,10 +29,10 @@ class ContextConstants final : public MadeConstants {
 
   /// Copies the present constants into the task and fixes its extents, before init or reinit. False with `why` if one
   /// has no value, an extent is out of range, or a list of values has another length than the constant says.
-  bool give(TaskId task, FixedString<160>& why) noexcept;
+  bool give(TaskId task, FaultWords& why) noexcept;
   /// Takes over what init or reinit of the task made, fixes its extents, and shows the constants to other contexts.
   /// False with `why` as give().
-  bool collect(TaskId task, FixedString<160>& why) noexcept;
+  bool collect(TaskId task, FaultWords& why) noexcept;
   /// True if the last collect() brought a new value.
   bool has_new() const noexcept { return mechanisms::kConstants && has_new_; }
   /// True if a constant that the task was initialised with has a new value. Requires: it was constructed.
@@ -44,7 +44,7 @@ class ContextConstants final : public MadeConstants {
   /// kNoSet: no configuration of the application is its start set.
   std::uint32_t in_force() const noexcept { return in_force_; }
   /// True if the task could be initialised with the constants in force. As give(), but changes nothing.
-  bool would_take(TaskId task, FixedString<160>& why) noexcept;
+  bool would_take(TaskId task, FaultWords& why) noexcept;
   /// Compares the values that were read last.
   bool differ(ConstantId constant, std::uint32_t a, std::uint32_t b) const noexcept override;
   /// Takes over what tasks of other contexts have made since. O(constants of others).
@@ -60,7 +60,7 @@ class ContextConstants final : public MadeConstants {
   void plan_foreign(SetupMemory& memory);
   void publish(TaskId task) noexcept;
   std::span<const std::uint32_t> listed(const PortSpec& port) const noexcept;
-  bool lists_fit(TaskId task, FixedString<160>& why) const noexcept;
+  bool lists_fit(TaskId task, FaultWords& why) const noexcept;
   void choose_for(TaskId task) noexcept;
 
   const ApplicationSpec* spec_ = nullptr;

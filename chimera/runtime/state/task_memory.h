@@ -42,13 +42,13 @@ class TaskMemory {
   void abandon(Task& task);
 
   /// Copies constants in; false with `why` when one has no value. Sets extents that constants fix.
-  bool read_constants(const ConstantStore& store, FixedString<160>& why) noexcept;
+  bool read_constants(const ConstantStore& store, FaultWords& why) noexcept;
   /// Copies out-consts to the store as those of the task; answers the number of constants that changed.
   int write_constants(ConstantStore& store, TaskId task) noexcept;
   /// Fixes the extents of all ports from known constants; false with `why` when one is out of range.
-  bool fix_extents(const ConstantStore& store, FixedString<160>& why) noexcept;
+  bool fix_extents(const ConstantStore& store, FaultWords& why) noexcept;
   /// True if the task could be initialised with these constants. As read_constants(), but changes nothing.
-  bool would_take(const ConstantStore& store, FixedString<160>& why) const noexcept;
+  bool would_take(const ConstantStore& store, FaultWords& why) const noexcept;
 
   /// The group that consumers may be bound to before the task was ever spawned: the never-written fill.
   GroupReader reader() const noexcept;

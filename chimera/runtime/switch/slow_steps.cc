@@ -101,14 +101,14 @@ bool SlowSteps::waits_for_device(const Task& task, Nanoseconds now) noexcept {
 }
 
 StepEnd SlowSteps::check(const Task& task) noexcept {
-  FixedString<160> why;
+  FaultWords why;
   ContextConstants& constants = parts_.set.constants();
   constants.read_foreign();
   constants.put_in_force(order_->constants_after());
   const bool is_fit = constants.would_take(task.id, why);
   constants.put_in_force(order_->constants);
   if (is_fit) return StepEnd::kDone;
-  failure_ = {NoSwitch::kBadConstant, task.id, {}, why};
+  failure_ = {NoSwitch::kBadConstant, task.id, {}, FixedString<160>(why.view())};
   return StepEnd::kFailed;
 }
 
