@@ -2,6 +2,7 @@
 // Copies the tasks of a configuration and replaces what belongs to the machine of the description.
 #include "chimera/bake/application.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace chimera::bake {
@@ -24,6 +25,8 @@ BakedApplication::BakedApplication(const Configuration& configuration, const Tar
       ports[p].value = bytes;
     }
     task.ports = ports;
+    const auto is_for_it = [&task](const EventLine& event) { return event.task.text == task.name; };
+    task.has_events = task.has_events || std::ranges::any_of(target.events, is_for_it);
     if (!has_profile) task.budget = task.min_time = {};
     tasks_.push_back(task);
   }
