@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "chimera/base/mechanisms.h"
 #include "chimera/base/message.h"
 #include "firmware/boards/board.h"
 
@@ -17,7 +18,9 @@ inline Message& add_hex(Message& text, std::uint64_t bits, int digits) noexcept 
 }
 
 /// Sends the text as one line, or counts it as lost: BareUart::send. Context: cycle; wait-free.
-inline void send_line(Message& text) noexcept { uart().send((text << "\n").view()); }
+inline void send_line(Message& text) noexcept {
+  if constexpr (mechanisms::kShell) uart().send((text << "\n").view());
+}
 inline void send_line(Message&& text) noexcept { send_line(text); }
 
 }  // namespace chimera::firmware

@@ -2,6 +2,7 @@
 // Copies the tasks of a configuration and replaces what belongs to the machine of the description.
 #include "chimera/bake/application.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "chimera/bake/room.h"
@@ -27,6 +28,8 @@ BakedApplication::BakedApplication(const Configuration& configuration, const Tar
     }
     for (PortSpec& port : ports) fit(port, configuration_.spec());
     task.ports = ports;
+    const auto is_for_it = [&task](const EventLine& event) { return event.task.text == task.name; };
+    task.has_events = task.has_events || std::ranges::any_of(target.events, is_for_it);
     if (!has_profile) task.budget = task.min_time = {};
     tasks_.push_back(task);
   }

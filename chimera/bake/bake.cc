@@ -33,14 +33,9 @@ std::string memory_text(const Target& target) {
          ";\nchimera_handler_stack_bytes = " + std::to_string(target.handler_stack_bytes) + ";\n";
 }
 
-/// Keys of the target and reactions of tasks that have no effect in the image.
+/// Reactions of tasks that have no effect in the image.
 std::vector<std::string> notes_of(const BakeInput& input) {
   std::vector<std::string> notes;
-  std::string unused;
-  if (input.target.watchdog.count > 0) append_joined(unused, ", ", "'watchdog'");
-  if (!input.target.safe_writes.empty()) append_joined(unused, ", ", "'safe_writes'");
-  if (!input.target.pins.empty()) append_joined(unused, ", ", "'pins'");
-  if (!unused.empty()) notes.push_back("images do not use " + unused + " of the target yet");
   if (input.profile != nullptr) return notes;
   notes.emplace_back("without --profile no deadline is judged");
   std::string idle;
@@ -75,7 +70,7 @@ BakeResult bake(const BakeInput& input) {
   const baked::Run run{spec.rtpus.empty() ? Policy::kEdf : spec.rtpus[0].policy, target.tick.value, input.duration,
                        acts};
   result.memory = memory_need(spec, input.acts.size(), target);
-  result.mechanisms = mechanisms(spec, run);
+  result.mechanisms = mechanisms(spec, run, target);
   refuse_memory(result.memory, target, result.target);
   result.description.sort();
   result.target.sort();

@@ -43,7 +43,7 @@ const Library& library() {
 
 const std::string kTarget =
     "version: 1\ncpu: cortex-m3\nboard: mps2\nclock_hz: 25000000\nflash: {address: 0, size: 64 KiB}\n"
-    "ram: {address: 0x20000000, size: 20 KiB}\ninterrupts: {timer0: 8}\n"
+    "ram: {address: 0x20000000, size: 20 KiB}\ninterrupts: {timer0: 8, timer1: 9}\n"
     "pins: {led0: {register: 0x40028000, bit: 0, access: write}}\n";
 const std::string kFit = "tasks: {source: {}, sink: {}}\n";
 
@@ -141,11 +141,25 @@ TEST(Bake, RefusesBackgroundWork) {
             "needs a thread of Linux [not-built]\n  use a component without 'background: true'\n");
 }
 
-TEST(Bake, RefusesEventsOfInterrupts) {
+TEST(Bake, RefusesATaskWithADescriptorThatHasNoInterrupt) {
   EXPECT_EQ(refusal({.text = "tasks: {waiter: {}, sink: {}}\n"}),
-            "s.yaml:3:9: error: the events of task 'waiter' come from a descriptor of Linux, and interrupts "
-            "release no jobs in an image yet [not-built]\n"
-            "  use a component whose sync looks for events at the rate of the task\n");
+            "s.yaml:3:9: error: the events of task 'waiter' come from a descriptor on Linux, and the target 't' gives "
+            "it no interrupt [resource-missing]\n  write 'events: {waiter: INTERRUPT}' in the target\n");
+}
+
+TEST(Bake, GivesATaskTheInterruptOfTheTarget) {
+  const BakeResult result = baked({.text = "tasks: {waiter: {}, sink: {}}\n", .target = "events: {waiter: timer0}\n"});
+  ASSERT_TRUE(result.is_baked());
+  const std::string& tables = result.files.back().text;
+  EXPECT_NE(tables.find("kEvents[] = {\n    {TaskId(0u), 8u},\n};"), std::string::npos) << tables;
+  EXPECT_NE(tables.find(".has_events = true"), std::string::npos) << tables;
+}
+
+TEST(Bake, RefusesEventsOfTasksAndInterruptsThatCannotHaveThem) {
+  EXPECT_EQ(refusal({.text = "tasks: {waiter: {}, other: {component: waiter, alias: {y: z}}, sink: {}}\n",
+                     .target = "uart: {address: 64, interrupt: timer1, baud: 9600}\n"
+                               "events: {waiter: timer0, other: timer0, sink: timer1, other_task: timer0}\n"}),
+            "");
 }
 
 TEST(Bake, RefusesAResourceWithoutATextInTheTarget) {
@@ -165,13 +179,10 @@ TEST(Bake, PutsTheTextOfTheTargetIntoTheTables) {
 
 TEST(Bake, RefusesUnknownLinesOfTheTarget) {
   EXPECT_EQ(refusal({.text = "tasks: {key: {resources: {pin: x}}, sink: {}}\n",
-                     .target = "resources: {key: {pin: led1}, kee: {pin: a}, sink: {tty: a}}\n"
-                               "events: {sink: timer0}\n"}),
+                     .target = "resources: {key: {pin: led1}, kee: {pin: a}, sink: {tty: a}}\n"}),
             "t.yaml:9:24: error: the target has no pin 'led1' [word-unknown]\n  did you mean 'led0'?\n"
             "t.yaml:9:31: error: the description has no task 'kee' [word-unknown]\n  did you mean 'key'?\n"
-            "t.yaml:9:53: error: task 'sink' has no resource port 'tty' [word-unknown]\n  its resource ports: none\n"
-            "t.yaml:10:10: error: interrupts release no jobs in an image yet, and the target gives task 'sink' the "
-            "interrupt 'timer0' [not-built]\n  take the line out of 'events'\n");
+            "t.yaml:9:53: error: task 'sink' has no resource port 'tty' [word-unknown]\n  its resource ports: none\n");
 }
 
 TEST(Bake, RefusesAWrongNumberOfResourceTexts) {
@@ -238,12 +249,6 @@ TEST(Bake, LeavesBudgetsOutWithoutAProfile) {
   EXPECT_NE(result.notes[1].find("left out: 'source'"), std::string::npos) << result.notes[1];
 }
 
-TEST(Bake, NamesTheKeysOfTheTargetThatHaveNoEffect) {
-  const BakeResult result = baked({.target = "watchdog: 1 s\n"});
-  ASSERT_FALSE(result.notes.empty());
-  EXPECT_NE(result.notes[0].find("'watchdog'"), std::string::npos) << result.notes[0];
-}
-
 TEST(Bake, TurnsOnTheMechanismsThatAreUsed) {
   const auto used = [](const Case& of) {
     std::set<std::string> names;
@@ -255,7 +260,7 @@ TEST(Bake, TurnsOnTheMechanismsThatAreUsed) {
   EXPECT_EQ(used({.text = "tasks: {source: {on_fault: {restart: 2, within: 1 s, then: error}}, sink: {on_miss: hold}}\n"
                           "configurations: {all: [source, sink], one: [source]}\nstart: all\n",
                   .target = "watchdog: 1 s\nuart: {address: 64, interrupt: timer0, baud: 9600}\n"}),
-            (std::set<std::string>{"kSignals", "kSwitch", "kRestart", "kReactions"}));
+            (std::set<std::string>{"kSignals", "kSwitch", "kRestart", "kReactions", "kShell", "kWatchdog"}));
 }
 
 }  // namespace chimera::bake::bake_test

@@ -6,7 +6,7 @@
 
 namespace chimera::bake {
 
-std::vector<Mechanism> mechanisms(const ApplicationSpec& spec, const baked::Run& run) {
+std::vector<Mechanism> mechanisms(const ApplicationSpec& spec, const baked::Run& run, const Target& target) {
   const auto any_task = [&](auto is) { return std::ranges::any_of(spec.tasks, is); };
   const bool switches =
       spec.sets.size() > 1 ||
@@ -37,6 +37,9 @@ std::vector<Mechanism> mechanisms(const ApplicationSpec& spec, const baked::Run&
           {"kReactions", reacts},
           {"kBudgets", any_task([](const TaskSpec& task) { return task.budget.count > 0; })},
           {"kDigest", run.duration != kNever},
+          {"kShell", target.uart.has_value()},
+          {"kWatchdog", target.watchdog.count > 0},
+          {"kInterrupts", !target.events.empty()},
           {"kStale", !spec.stale.empty()}};
 }
 

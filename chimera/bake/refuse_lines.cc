@@ -70,11 +70,23 @@ class UnknownLines {
   }
 
   void judge(const EventLine& each) {
-    report_.add({.rule = "not-built",
-                 .at = each.task.at,
-                 .message = "interrupts release no jobs in an image yet, and the target gives task " +
-                            in_quotes(each.task.text) + " the interrupt " + in_quotes(each.interrupt.text),
-                 .remedy = "take the line out of 'events'"});
+    const ConfiguredTask* const of = task(each.task);
+    if (of == nullptr) return;
+    const auto index = static_cast<std::size_t>(of - configuration_.tasks().data());
+    if (!configuration_.spec().tasks[index].aperiodic)
+      refuse("not-built", each.task, "task " + in_quotes(of->name) + " has no method 'sync', so it takes no events",
+             "take the line out of 'events'");
+    const bool is_of_uart = target_.uart && target_.uart->interrupt.text == each.interrupt.text;
+    const auto is_same = [&each](const EventLine& other) { return other.interrupt.text == each.interrupt.text; };
+    const auto first = std::ranges::find_if(target_.events, is_same);
+    if (is_of_uart || &*first != &each)
+      refuse("resource-twice", each.interrupt, "the interrupt " + in_quotes(each.interrupt.text) + " belongs to " +
+             (is_of_uart ? "'uart'" : "task " + in_quotes(first->task.text)), "give each task an interrupt of its own");
+  }
+
+  void refuse(const char* rule, const Word& word, std::string message, std::string remedy) {
+    report_.add({.rule = rule, .at = word.at, .message = std::move(message), .found = word.text,
+                 .remedy = std::move(remedy)});
   }
 
   void unknown(const Word& word, std::string message, const std::vector<std::string>& names, const char* what) {
@@ -107,12 +119,15 @@ void refuse_unserved(const Configuration& configuration, const Target& target, R
                     .remedy = example(task.name, declared_name(port)),
                     .task = task.name,
                     .port = port.name});
-    if (task.has_event_source)
-      report.add({.rule = "not-built",
+    const bool has_interrupt =
+        std::ranges::any_of(target.events, [&task](const EventLine& event) { return event.task.text == task.name; });
+    if (task.has_event_source && !has_interrupt)
+      report.add({.rule = "resource-missing",
                   .at = task.at,
                   .message = "the events of task " + in_quotes(task.name) +
-                             " come from a descriptor of Linux, and interrupts release no jobs in an image yet",
-                  .remedy = "use a component whose sync looks for events at the rate of the task",
+                             " come from a descriptor on Linux, and the target " + in_quotes(target.name) +
+                             " gives it no interrupt",
+                  .remedy = "write 'events: {" + task.name + ": INTERRUPT}' in the target",
                   .task = task.name});
   }
 }

@@ -8,12 +8,13 @@
 
 #include "chimera/platform/bare/bare_clock.h"
 #include "chimera/platform/bare/bare_uart.h"
+#include "firmware/boards/board_watchdog.h"
 #include CHIMERA_BOARD
 
 namespace chimera::firmware {
 
-inline constexpr std::size_t kSendBytes = 256, kReceiveBytes = 128;
-using BoardUart = bare::BareUart<UartPort, kSendBytes, kReceiveBytes>;
+inline constexpr std::size_t kSendBytes = 256;
+using BoardUart = bare::BareUart<UartPort, kSendBytes>;
 
 /// Starts the clock and the serial line. Context: setup.
 void begin_board() noexcept;
@@ -21,6 +22,8 @@ void begin_board() noexcept;
 bare::BareClock& board_clock() noexcept;
 /// The serial line of the image: 8 bits, no parity. Context: any.
 BoardUart& uart() noexcept;
+/// The watchdog of the chip. Context: any.
+BoardWatchdog& board_watchdog() noexcept;
 
 // Interrupts.
 void on_tick();

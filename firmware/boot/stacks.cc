@@ -48,8 +48,21 @@ void guard_stacks() noexcept {
 
 Stack program_stack() noexcept { return {"program", {image_stack_begin, image_stack_end}}; }
 Stack handler_stack() noexcept { return {"handlers", {image_handler_stack_begin, image_handler_stack_end}}; }
+// The processor stored r0 to r3, r12, lr, pc and xpsr.
+std::uint32_t interrupted_program() noexcept {
+  return reinterpret_cast<const std::uint32_t*>(program_stack_pointer())[6];
+}
+
+// The frame of an exception takes 32 bytes below the pointer. If they reach into the guard, the processor notes that
+// (ARMv7-M), and moves the pointer all the same.
 bool is_program_stack_overrun() noexcept {
-  return program_stack_pointer() < reinterpret_cast<std::uintptr_t>(image_stack_begin + kGuardWords);
+  if (program_stack_pointer() < reinterpret_cast<std::uintptr_t>(image_stack_begin + kGuardWords)) return true;
+#if __ARM_ARCH >= 7
+  constexpr std::uint32_t kStackingFailed = 1u << 4;
+  return (bare::register_at(0xe000'ed28) & kStackingFailed) != 0;
+#else
+  return false;
+#endif
 }
 
 }  // namespace chimera::firmware

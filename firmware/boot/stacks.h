@@ -14,6 +14,8 @@ void guard_stacks() noexcept;
 Stack program_stack() noexcept;
 /// The stack of interrupts. Context: any; wait-free.
 Stack handler_stack() noexcept;
+/// The address at which an interrupt interrupted the program. Context: interrupt; wait-free.
+std::uint32_t interrupted_program() noexcept;
 /// The program is at the guard of its stack, or beyond. Context: exception; wait-free.
 bool is_program_stack_overrun() noexcept;
 

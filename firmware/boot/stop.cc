@@ -4,8 +4,11 @@
 
 #include "chimera/base/assert.h"
 #include "chimera/base/message.h"
+#include "chimera/base/mechanisms.h"
 #include "chimera/platform/bare/core.h"
+#include "chimera/runtime/executive/baked.h"
 #include "firmware/boards/board.h"
+#include "firmware/boot/kept.h"
 #include "firmware/serial_text.h"
 
 namespace chimera::firmware {
@@ -20,7 +23,10 @@ namespace {
 #else
   static_cast<void>(code);
 #endif
-  for (;;) bare::wait_for_interrupt();
+  for (;;) {
+    bare::wait_for_interrupt();
+    if constexpr (mechanisms::kWatchdog) board_watchdog().stroke();
+  }
 }
 
 constexpr const char* kExceptions[] = {"no exception", "reset", "NMI",        "hard fault",
@@ -29,37 +35,57 @@ constexpr const char* kExceptions[] = {"no exception", "reset", "NMI",        "h
 }  // namespace
 
 void end_image(int code) noexcept {
-  uart().flush();
+  if constexpr (mechanisms::kShell) uart().flush();
   end_simulation(code);
 }
 
-void stop(std::string_view words) noexcept {
-  uart().flush();
-  uart().send("stop ");
-  uart().send(words.substr(0, kSendBytes - 1));
-  uart().flush();
-  uart().send("\n");
-  end_image(1);
+// A failure in here resets at once. The words come last, because a serial line may take its time.
+void stop(ResetCause cause, std::uint32_t pc, std::string_view words) noexcept {
+  static constinit bool is_stopping = false;
+  asm volatile("cpsid i" ::: "memory");
+  if (is_stopping) bare::reset_chip();
+  is_stopping = true;
+  for (const baked::RegisterWrite& write : baked::kTarget.safe_writes) bare::register_at(write.address) = write.value;
+  note_end(reset_record(), cause, running_method(), pc);
+  if constexpr (mechanisms::kShell) {
+    uart().flush();
+    uart().send("stop ");
+    uart().send(words.substr(0, kSendBytes - 1));
+    uart().flush();
+    uart().send("\n");
+    uart().flush();
+  }
+  bare::reset_chip();
 }
 
 void stop_at_exception(std::uint32_t number, std::uint32_t pc) noexcept {
+  constexpr std::uint32_t kNmi = 2;
   Message words;
-  if (number < std::size(kExceptions))
+  const bool is_watchdog = mechanisms::kWatchdog && number == kNmi;
+  if (is_watchdog)
+    words << "watchdog";
+  else if (number < std::size(kExceptions))
     words << kExceptions[number];
   else if (number < 16)
     words << "exception " << number;
   else
     words << "interrupt " << number - 16 << " has no handler";
   words << " at 0x";
-  stop(add_hex(words, pc, 8).view());
+  stop(is_watchdog ? ResetCause::kWatchdog : ResetCause::kFault, pc, add_hex(words, pc, 8).view());
 }
 
+namespace {
+
+[[noreturn]] void fail(const char* words) noexcept { stop(ResetCause::kAssertion, 0, words); }
+
+}  // namespace
 }  // namespace chimera::firmware
 
 namespace chimera {
 
 void assertion_failed(const char* condition, const char* file, int line) noexcept {
-  firmware::stop((Message() << file << ":" << line << ": " << condition).view());
+  const auto pc = static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(__builtin_return_address(0)));
+  firmware::stop(firmware::ResetCause::kAssertion, pc, (Message() << file << ":" << line << ": " << condition).view());
 }
 
 }  // namespace chimera
@@ -69,15 +95,15 @@ namespace std {
 [[noreturn]] void __glibcxx_assert_fail(const char* file, int line, const char*, const char* condition) noexcept {
   chimera::assertion_failed(condition, file, line);
 }
-[[noreturn]] void __throw_out_of_range_fmt(const char* format, ...) { chimera::firmware::stop(format); }
-[[noreturn]] void __throw_length_error(const char* words) { chimera::firmware::stop(words); }
+[[noreturn]] void __throw_out_of_range_fmt(const char* format, ...) { chimera::firmware::fail(format); }
+[[noreturn]] void __throw_length_error(const char* words) { chimera::firmware::fail(words); }
 
 }  // namespace std
 
 extern "C" {
 
-[[noreturn]] void abort() { chimera::firmware::stop("abort"); }
-[[noreturn]] void __cxa_pure_virtual() { chimera::firmware::stop("call of a function that its class does not define"); }
-[[noreturn]] void __aeabi_atexit() { chimera::firmware::stop("a static object has a destructor"); }
+[[noreturn]] void abort() { chimera::firmware::fail("abort"); }
+[[noreturn]] void __cxa_pure_virtual() { chimera::firmware::fail("call of a function that its class does not define"); }
+[[noreturn]] void __aeabi_atexit() { chimera::firmware::fail("a static object has a destructor"); }
 
 }  // extern "C"

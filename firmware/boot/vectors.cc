@@ -4,9 +4,12 @@
 // handler that reports it.
 #include <cstdint>
 
+#include "chimera/base/mechanisms.h"
+#include "chimera/platform/bare/core.h"
 #include "firmware/boards/board.h"
 #include "firmware/boot/stacks.h"
 #include "firmware/boot/stop.h"
+#include "firmware/event_interrupts.h"
 
 extern "C" {
 
@@ -56,7 +59,8 @@ int main();
 
 /// `frame` has r0 to r3, r12, lr, pc and xpsr.
 [[noreturn, gnu::used]] void image_stop_at_exception(const std::uint32_t* frame, std::uint32_t number) {
-  if (chimera::firmware::is_program_stack_overrun()) chimera::firmware::stop("the stack of the program is too small");
+  if (chimera::firmware::is_program_stack_overrun())  // the processor had no room for the frame
+    chimera::firmware::stop(chimera::firmware::ResetCause::kStack, 0, "the stack of the program is too small");
   chimera::firmware::stop_at_exception(number, frame[6]);
 }
 
@@ -64,6 +68,13 @@ int main();
 
 namespace chimera::firmware {
 namespace {
+
+void on_event() {
+  const unsigned exception = bare::running_exception();
+  if constexpr (mechanisms::kInterrupts)
+    if (event_interrupts != nullptr && event_interrupts->on_interrupt(exception - 16)) return;
+  stop_at_exception(exception, interrupted_program());
+}
 
 using Handler = void (*)();
 
@@ -77,7 +88,9 @@ constexpr VectorTable vectors() {
   for (Handler& each : table.handlers) each = image_exception;
   table.handlers[0] = image_reset;
   table.handlers[14] = on_tick;
-  for (const unsigned number : kUartInterrupts) table.handlers[15 + number] = on_uart;
+  for (unsigned number = 0; number < kInterrupts; ++number) table.handlers[15 + number] = on_event;
+  if constexpr (mechanisms::kShell)
+    for (const unsigned number : kUartInterrupts) table.handlers[15 + number] = on_uart;
   return table;
 }
 

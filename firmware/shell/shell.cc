@@ -59,13 +59,11 @@ void Shell::step(Nanoseconds now) noexcept {
   }
 }
 
-bool Shell::say(std::string_view line) noexcept {
-  const bool is_amid = is_sending_ && sent_ > 0;
-  if (is_amid || out_.free() < line.size() + 2) return false;
-  for (const char c : line) out_.add(static_cast<std::uint8_t>(c));
-  out_.add('\r');
-  out_.add('\n');
-  return true;
+int Shell::next_byte() noexcept {
+  if (rows_made_.load(std::memory_order_acquire) == rows_sent_) return -1;  // pairs with send()
+  const int byte = out_.take();
+  if (byte == '\n') ++rows_sent_;
+  return byte;
 }
 
 void Shell::send() noexcept {
@@ -75,6 +73,8 @@ void Shell::send() noexcept {
     if (!out_.add(static_cast<std::uint8_t>(c))) return;
   }
   if (sent_ < n + 2) return;
+  const std::uint32_t made = rows_made_.load(std::memory_order_relaxed) + 1;
+  rows_made_.store(made, std::memory_order_release);  // pairs with next_byte()
   is_sending_ = false;
   line_.clear();
   sent_ = 0;

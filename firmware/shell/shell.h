@@ -4,6 +4,8 @@
 //
 //   interrupt   receive()   -> ring -> step() -> reader -> words -> names -> act at a cycle boundary, or rows
 //   interrupt   next_byte() <- ring <- step() <- one row
+//
+// A row goes out when all of it is in the ring, so that other lines of the image come between rows.
 #pragma once
 
 #include <array>
@@ -14,6 +16,7 @@
 #include <string_view>
 
 #include "chimera/platform/bare/byte_ring.h"
+#include "chimera/platform/bare/serial_peer.h"
 #include "chimera/runtime/cycle/releases.h"
 #include "firmware/shell/command_line.h"
 #include "firmware/shell/line_reader.h"
@@ -32,10 +35,11 @@ struct ShellParts {
   ShellListener& listener;
   std::span<const Stack> stacks;
   const Watchdog* watchdog = nullptr;  ///< null: there is none
+  const Boot* boot = nullptr;          ///< how the image began; null: it is not known
 };
 
 /// A new line waits in the ring while one is worked on. No allocation.
-class Shell {
+class Shell final : public bare::SerialPeer {
  public:
   /// Context: setup.
   explicit Shell(const ShellParts& parts) noexcept : parts_(parts) {
@@ -46,10 +50,10 @@ class Shell {
 
   // For the interrupts of the serial line. Context: any, one at a time; wait-free.
 
-  /// A byte arrived. Bytes that do not fit are counted, and the line that they belong to is refused.
-  void receive(std::uint8_t byte) noexcept;
-  /// The next byte to send; -1: there is none.
-  int next_byte() noexcept { return out_.take(); }
+  /// Bytes that do not fit are counted, and the line that they belong to is refused.
+  void receive(std::uint8_t byte) noexcept override;
+  /// A byte of a row that is whole, or -1.
+  int next_byte() noexcept override;
 
   // For the thread of the cycle boundaries, while no job is ready. Context: between jobs; wait-free.
 
@@ -58,8 +62,6 @@ class Shell {
   /// Does one piece of work: reads up to 32 bytes, looks at up to 16 names or 128 words of a stack, makes at most one
   /// row, reads or shows one number, or sends up to 64 bytes. `now` is on the clock of the executor.
   void step(Nanoseconds now) noexcept;
-  /// Puts a whole line among the rows. False: it does not fit now.
-  bool say(std::string_view line) noexcept;
   /// Bytes that arrived and did not fit.
   std::uint32_t lost_bytes() const noexcept { return lost_.load(std::memory_order_relaxed); }
 
@@ -101,6 +103,8 @@ class Shell {
   std::uint32_t index_ = 0;    // of the variable or task that was found
   std::atomic<std::uint32_t> lost_{0};  // written by receive() only; relaxed, pairs with nothing
   std::uint32_t lost_told_ = 0;
+  std::atomic<std::uint32_t> rows_made_{0};  // whole ones in out_ so far; written by step(), pairs with next_byte()
+  std::uint32_t rows_sent_ = 0;              // by next_byte() only
   ShellParts parts_;
   CommandLine command_;
   StackScan scan_{Stack()};

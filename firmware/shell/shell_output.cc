@@ -61,7 +61,11 @@ bool Shell::make_last_status_row(std::size_t row) noexcept {
     }
     return true;
   }
-  if (row > 1 || lost_bytes() == 0) return false;
+  if (row == 1) {
+    if (parts_.boot != nullptr) put_boot(line_, *parts_.boot, parts_.set.spec().tasks);
+    return true;
+  }
+  if (row > 2 || lost_bytes() == 0) return false;
   line_.put("input: %u bytes lost", lost_bytes());
   return true;
 }

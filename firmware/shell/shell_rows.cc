@@ -172,7 +172,7 @@ void put_boot(TextLine& line, const Boot& boot, std::span<const TaskSpec> tasks)
     line.put(", ");
     put_vital(line, {boot.vital, TaskId(boot.vital_number), boot.vital_number}, tasks);
   }
-  if (boot.starts_off) line.put("; everything starts OFF");
+  if (boot.starts_off) line.put("; no task is started");
 }
 
 }  // namespace chimera::firmware

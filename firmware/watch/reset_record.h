@@ -46,13 +46,13 @@ struct ResetRecord {
   bool operator==(const ResetRecord&) const noexcept = default;
 };
 
-/// From this number of warm boots in a row on, everything starts OFF.
+/// From this number of warm boots in a row on, the image starts no task.
 inline constexpr std::uint32_t kWarmBootsAllowed = 3;
 
 /// Result of take_up().
 struct Boot {
   bool is_warm = false;             ///< the record was whole: the memory had power since the last run
-  bool starts_off = false;          ///< warm_boots reached kWarmBootsAllowed
+  bool starts_off = false;          ///< warm_boots reached kWarmBootsAllowed: no task is started
   std::uint32_t warm_boots = 0;     ///< in a row, this one among them
   ResetCause cause = ResetCause::kNone;
   RunningMethod running;

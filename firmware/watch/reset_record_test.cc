@@ -53,7 +53,7 @@ TEST(ResetRecord, ThirdWarmBootInARowStartsOff) {
   EXPECT_FALSE(take_up(record).starts_off);
   const Boot third = take_up(record);
   EXPECT_TRUE(third.starts_off);
-  EXPECT_EQ(text_of(third), "warm boot 3: no cause noted; everything starts OFF");
+  EXPECT_EQ(text_of(third), "warm boot 3: no cause noted; no task is started");
   note_settled(record);
   EXPECT_FALSE(take_up(record).starts_off);
 }

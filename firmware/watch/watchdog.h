@@ -7,7 +7,7 @@
 
 namespace chimera::firmware {
 
-/// The watchdog of the chip. platform/bare has one.
+/// The watchdog of the chip.
 class WatchdogPort {
  public:
   /// Begins the time anew after which the watchdog interrupts, and then resets. Context: any; wait-free.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One digital input. Each platform implements the functions in a source of its own: pin_file.cc for Linux.
+// One digital input. Each platform implements the functions in a source of its own: pin_file.cc for Linux,
+// firmware/pins.cc for an image.
 #pragma once
 
 #include <cstdint>

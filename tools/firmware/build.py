@@ -10,7 +10,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDERS = ("base", "platform/bare", "table", "task", "schedule", "runtime", "runtime/record", "runtime/job",
            "runtime/plan", "runtime/state", "runtime/life", "runtime/switch", "runtime/cycle", "runtime/executive")
-FIRMWARE = ("firmware", "firmware/boot", "firmware/boards")
+FIRMWARE = ("firmware", "firmware/boot", "firmware/boards", "firmware/shell", "firmware/watch")
 TOGETHER = 8
 NO_PRODUCT = re.compile(r"_(test|stress|fuzz)\.cc$")
 # Analyses of the desk; an image carries their results.

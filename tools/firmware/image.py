@@ -26,23 +26,26 @@ class ImageError(Exception):
 class Image:
     """firmware/images/NAME/image.yaml"""
     name: str
+    folder: pathlib.Path
     application: pathlib.Path       # a description
     targets: list                   # of firmware/targets
-    duration: str                   # "60 s"
+    duration: str                   # "60 s"; "": it does not end by itself
     acts: list                      # as of --at
     folders: list                   # of components, beside library/
     instruction_ns: int             # time of an instruction in QEMU
 
     @staticmethod
-    def read(name):
-        path = IMAGES / name / "image.yaml"
+    def read(name, folder=None):
+        """The image of that name, or of another folder."""
+        path = (folder or IMAGES / name) / "image.yaml"
         if not path.is_file():
             raise ImageError(f"no image {name}; there are: {', '.join(names())}")
         keys = yaml.safe_load(path.read_text())
-        if not isinstance(keys, dict) or not {"application", "targets", "for"} <= set(keys) <= KEYS:
-            raise ImageError(f"{path}: has application, targets and for; it can have at, components, instruction_ns")
-        return Image(name, (path.parent / keys["application"]).resolve(), keys["targets"], keys["for"],
-                     keys.get("at", []), [(path.parent / each).resolve() for each in keys.get("components", [])],
+        if not isinstance(keys, dict) or not {"application", "targets"} <= set(keys) <= KEYS:
+            raise ImageError(f"{path}: has application and targets; it can have for, at, components, instruction_ns")
+        folders = [(path.parent / each).resolve() for each in keys.get("components", [])]
+        return Image(name, path.parent, (path.parent / keys["application"]).resolve(), keys["targets"],
+                     keys.get("for", ""), keys.get("at", []), folders,
                      keys.get("instruction_ns", qemu.INSTRUCTION_NS))
 
     def components(self):
@@ -75,10 +78,11 @@ class Built:
 
     def _run(self, *words):
         acts = [word for act in self.image.acts for word in ("--at", act)]
-        call([self.tree / "bin" / "chimera", *words, "--for", self.image.duration, *acts], self.tree)
+        duration = ["--for", self.image.duration] if self.image.duration else []
+        call([self.tree / "bin" / "chimera", *words, *duration, *acts], self.tree)
 
     def bake(self):
-        own = IMAGES / self.image.name / f"{self.target}.yaml"  # with the resources of this application
+        own = self.image.folder / f"{self.target}.yaml"  # with the resources of this application
         target = own if own.is_file() else self.target
         self._run("bake", self.image.application, "--target", target, "--out", self.out / "baked")
 
@@ -105,6 +109,10 @@ class Built:
     def complaints(self):
         return list(sizes.complaints(self.elf))
 
+    def session(self):
+        """The running image, to talk to."""
+        return qemu.Session(self.machine(), self.elf, self.image.instruction_ns)
+
     def host_digest(self):
         path = self.out / "host.digest"
         self._run("run", self.image.application, "--virtual", "--digest", path)
@@ -114,7 +122,7 @@ class Built:
         """The lines of the image. Raises ImageError if it does not end by itself."""
         lines, code = qemu.run(self.machine(), self.elf, limit_s, self.image.instruction_ns)
         (self.out / "output.txt").write_text("\n".join(lines) + "\n")
-        if code != 0 or not lines or lines[-1] != "end time":
+        if code != 0 or not lines or lines[-1] != "end time" or any(line.startswith("warm boot") for line in lines):
             raise ImageError(f"{self.elf}: exit {code}, its last lines:\n  " + "\n  ".join(lines[-5:]))
         return lines
 

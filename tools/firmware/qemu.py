@@ -2,10 +2,13 @@
 """Runs an image in QEMU. Each instruction takes the same time, so two runs are equal: 64 ns are those of a core of
 15 million instructions a second. Idle time takes no time of the host.
 usage: qemu.py MACHINE IMAGE [LIMIT_S]   prints the lines of the serial port"""
+import queue
 import subprocess
 import sys
+import threading
 
 LIMIT_S = 300
+HANG_S = 60  # a test waits no longer for a line
 INSTRUCTION_NS = 64
 
 
@@ -36,6 +39,61 @@ def run(machine, image, limit_s=LIMIT_S, instruction_ns=INSTRUCTION_NS):
     if not out and err:
         raise QemuError(f"{image}: {err.strip()}")
     return out.splitlines(), process.returncode
+
+
+class Session:
+    """A running image, and the two ends of its serial line. Use it with `with`: then it ends."""
+
+    def __init__(self, machine, image, instruction_ns=INSTRUCTION_NS):
+        self.process = subprocess.Popen(command(machine, image, instruction_ns), stdin=subprocess.PIPE,
+                                        stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.lines = []  # so far
+        self.fresh = queue.Queue()
+        threading.Thread(target=self._read, daemon=True).start()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.kill()
+        self.process.wait()
+
+    def _read(self):
+        for line in self.process.stdout:
+            self.fresh.put(line.decode(errors="replace").rstrip("\r\n"))
+        self.fresh.put(None)
+
+    def send(self, data):
+        """Bytes or a text."""
+        self.process.stdin.write(data.encode() if isinstance(data, str) else data)
+        self.process.stdin.flush()
+
+    def line(self):
+        """The next line. Raises QemuError if the image ended or hangs."""
+        try:
+            line = self.fresh.get(timeout=HANG_S)
+        except queue.Empty:
+            line = None
+        if line is None:
+            raise QemuError(f"no line for {HANG_S} s, or the image ended; its last lines:\n  "
+                            + "\n  ".join(self.lines[-8:]))
+        self.lines.append(line)
+        return line
+
+    def wait_for(self, start):
+        """The next line that begins so."""
+        while not (line := self.line()).startswith(start):
+            pass
+        return line
+
+    def ask(self, text):
+        """The rows of a command and its answer, which is the last one: "ok" or "no: REASON"."""
+        self.send(text + "\n")
+        rows = []
+        while not rows or (rows[-1] != "ok" and not rows[-1].startswith("no: ")):
+            line = self.line()
+            rows += [] if line.startswith("digest ") else [line]
+        return rows
 
 
 def main():

@@ -10,7 +10,7 @@ import sys
 # `.text.name  0xaddress  0xsize  object`; the linker breaks a line behind a long name.
 PIECE = re.compile(r"^ (\.[\w.$]+|COMMON)\s+0x[0-9a-f]+\s+0x([0-9a-f]+) (\S.*)$")
 OUTPUT = re.compile(r"^(\.[\w.]+)(\s|$)")
-IN_FLASH, IN_RAM = {".text", ".data", ".init_array", ".ARM.exidx"}, {".data", ".bss"}
+IN_FLASH, IN_RAM = {".text", ".data", ".init_array", ".ARM.exidx"}, {".data", ".bss", ".kept"}
 # Functions of an allocator, of exceptions, of static objects that are constructed at run time, and of a C library.
 FOREIGN = re.compile(r"(malloc|calloc|realloc|free|_sbrk|_Znw|_Zna|_Zdl|_Zda|__cxa_throw|__cxa_allocate|__cxa_guard|"
                      r"__cxa_begin_catch|__gxx_personality|_Unwind_|__aeabi_unwind|atexit|printf|snprintf|puts|"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A serial line with a ring of bytes in each direction; interrupts move the bytes.
+// A serial line with a ring of bytes to send; interrupts move the bytes. A peer shares the line, line by line.
 #pragma once
 
 #include <cstddef>
@@ -8,19 +8,26 @@
 
 #include "chimera/platform/bare/byte_ring.h"
 #include "chimera/platform/bare/core.h"
+#include "chimera/platform/bare/serial_peer.h"
 
 namespace chimera::bare {
 
 /// `Port` is CmsdkUart or Stm32Usart.
-template <class Port, std::size_t kSendBytes, std::size_t kReceiveBytes>
+template <class Port, std::size_t kSendBytes>
 class BareUart {
  public:
   /// Context: setup. The interrupt of the port is enabled by the caller.
   void begin(std::uintptr_t address, std::uint32_t clock_hz, std::uint32_t baud) noexcept {
     port_.begin(address, clock_hz, baud);
   }
-  /// Sends the whole text later, or nothing of it, and counts it as lost, if it does not fit in. Context: cycle;
-  /// wait-free.
+  /// The peer gets all bytes that arrive, and its lines go out between those of send(). It outlives this. Without a
+  /// peer, bytes that arrive are dropped. Context: setup.
+  void attach(SerialPeer& peer) noexcept {
+    NoInterrupts off;
+    peer_ = &peer;
+  }
+  /// Sends the text later, or nothing of it, and counts it as lost, if it does not fit in. From the first byte of a
+  /// line on, the peer waits for its '\n'. Context: cycle; wait-free.
   bool send(std::string_view text) noexcept {
     NoInterrupts off;
     pump();
@@ -29,36 +36,51 @@ class BareUart {
     pump();
     return true;
   }
-  /// The next received byte; -1: none. Context: cycle; wait-free.
-  int receive() noexcept { return ring_in_.take(); }
-  /// Waits until everything is sent. Context: setup; blocks.
+  /// The peer may have a line to send. Context: cycle; wait-free.
+  void go_on() noexcept {
+    NoInterrupts off;
+    pump();
+  }
+  /// Waits until all texts of send() are sent. Context: setup; blocks.
   void flush() noexcept {
-    while (ring_out_.size() != 0) {
-      NoInterrupts off;
-      pump();
-    }
+    while (ring_out_.size() != 0) go_on();
   }
   /// Call from the interrupts of the port. Context: interrupt; wait-free.
   void on_interrupt() noexcept {
     port_.acknowledge();
-    while (port_.has_received())
-      if (!ring_in_.add(port_.receive())) ++lost_in_;
+    while (port_.has_received()) {
+      const std::uint8_t byte = port_.receive();
+      if (peer_ != nullptr) peer_->receive(byte);
+    }
     pump();
   }
-  /// Texts that did not fit in, and received bytes that did not. Context: any; wait-free.
+  /// Texts of send() that did not fit in. Context: any; wait-free.
   std::uint32_t lost_out() const noexcept { return lost_out_; }
-  std::uint32_t lost_in() const noexcept { return lost_in_; }
 
  private:
+  enum class Line : std::uint8_t { kNone, kOwn, kOfPeer };
+
   void pump() noexcept {
-    while (ring_out_.size() != 0 && port_.can_send()) port_.send(static_cast<std::uint8_t>(ring_out_.take()));
-    port_.ask_to_send(ring_out_.size() != 0);
+    bool is_full = false;
+    for (int byte = 0; !(is_full = !port_.can_send()) && (byte = next()) >= 0;)
+      port_.send(static_cast<std::uint8_t>(byte));
+    port_.ask_to_send(is_full);
+  }
+  // One source until the end of its line. Own lines come first, because the program does not wait for the peer.
+  int next() noexcept {
+    int byte = line_ == Line::kOfPeer ? -1 : ring_out_.take();
+    if (byte >= 0) line_ = byte == '\n' ? Line::kNone : Line::kOwn;
+    if (byte >= 0 || line_ == Line::kOwn || peer_ == nullptr) return byte;
+    byte = peer_->next_byte();
+    line_ = byte < 0 || byte == '\n' ? Line::kNone : Line::kOfPeer;
+    return byte;
   }
 
   Port port_;
   ByteRing<kSendBytes> ring_out_;
-  ByteRing<kReceiveBytes> ring_in_;
-  std::uint32_t lost_out_ = 0, lost_in_ = 0;
+  SerialPeer* peer_ = nullptr;
+  std::uint32_t lost_out_ = 0;
+  Line line_ = Line::kNone;
 };
 
 }  // namespace chimera::bare

@@ -25,6 +25,26 @@ inline void enable_interrupt(unsigned number) noexcept {
   register_at(0xe000'e100 + 4 * (number / 32)) = 1u << (number % 32);
 }
 
+/// Switches an interrupt of the chip off. An interrupt that comes then waits. `number` as for enable_interrupt().
+inline void disable_interrupt(unsigned number) noexcept {
+  register_at(0xe000'e180 + 4 * (number / 32)) = 1u << (number % 32);
+  asm volatile("dsb\n\tisb" ::: "memory");
+}
+
+/// The number of the exception that runs, as in ARMv7-M; 16 and above are interrupts of the chip.
+inline unsigned running_exception() noexcept {
+  std::uint32_t number;
+  asm volatile("mrs %0, ipsr" : "=r"(number));
+  return number;
+}
+
+/// Resets the chip; the RAM keeps its content. Context: any.
+[[noreturn]] inline void reset_chip() noexcept {
+  asm volatile("dsb" ::: "memory");
+  register_at(0xe000'ed0c) = 0x05fa'0004;
+  for (;;) asm volatile("dsb" ::: "memory");
+}
+
 /// Sleeps until an interrupt waits, also if interrupts are switched off. Context: any; blocks.
 inline void wait_for_interrupt() noexcept { asm volatile("dsb\n\twfi" ::: "memory"); }
 

@@ -3,11 +3,13 @@
 #pragma once
 
 #include "chimera/platform/bare/cmsdk_uart.h"
+#include "chimera/platform/bare/cmsdk_watchdog.h"
 
 namespace chimera::firmware {
 
 inline constexpr unsigned kInterrupts = 32;
 using UartPort = bare::CmsdkUart;
+using WatchdogTimer = bare::CmsdkWatchdog;
 inline constexpr unsigned kUartInterrupts[] = {0, 1};  // received, sent
 
 /// Switches on what the image uses.

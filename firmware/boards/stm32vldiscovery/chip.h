@@ -3,11 +3,13 @@
 #pragma once
 
 #include "chimera/platform/bare/stm32_usart.h"
+#include "chimera/platform/bare/stm32_watchdog.h"
 
 namespace chimera::firmware {
 
 inline constexpr unsigned kInterrupts = 61;
 using UartPort = bare::Stm32Usart;
+using WatchdogTimer = bare::Stm32Watchdog;
 inline constexpr unsigned kUartInterrupts[] = {37};
 
 /// Switches on the clocks of USART1 and of its pins.

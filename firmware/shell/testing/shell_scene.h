@@ -88,8 +88,8 @@ class ShellScene : private Clock, private JobClock, private DigestLines {
   }
   ~ShellScene() { executive_->shut_down(); }
 
-  void use(std::span<const Stack> stacks, const Watchdog* watchdog = nullptr) {
-    shell_.emplace(ShellParts{*set_, executive_->releases(), *listener_, stacks, watchdog});
+  void use(std::span<const Stack> stacks, const Watchdog* watchdog = nullptr, const Boot* boot = nullptr) {
+    shell_.emplace(ShellParts{*set_, executive_->releases(), *listener_, stacks, watchdog, boot});
   }
   /// Adds bytes to the input of the line. They arrive as fast as the shell accepts them.
   void type(std::string_view bytes) { input_.insert(input_.end(), bytes.begin(), bytes.end()); }
