@@ -4,6 +4,7 @@
 #include <new>
 #include <span>
 
+#include "chimera/base/part_if.h"
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/executive/baked.h"
 #include "chimera/runtime/executive/executive.h"
@@ -12,6 +13,7 @@
 #include "firmware/boot/stacks.h"
 #include "firmware/boot/stop.h"
 #include "firmware/digest_lines.h"
+#include "firmware/receipt_lines.h"
 #include "firmware/serial_text.h"
 
 extern "C" std::byte image_rest_begin[], image_rest_end[];  // from the linker script: RAM without variables and stacks
@@ -41,6 +43,12 @@ void print_tasks(const TaskSet& set) {
     send_line(Message() << "task " << task.spec->name << " cycles " << profile.cycles << " missed " << profile.missed
                         << " dropped " << profile.dropped << " faults " << task.faults.count << " response "
                         << (profile.cycles == 0 ? 0 : profile.response.max.count));
+    const Spread &cycle = profile.execution[CHIMERA_CYCLE], &delay = profile.start_delay;
+    if (cycle.count == 0) continue;
+    send_line(Message() << "profile " << task.spec->name << " samples " << cycle.count << " worst " << cycle.max.count
+                        << " mean " << cycle.mean().count << " response "
+                        << (profile.cycles == 0 ? 0 : profile.response.max.count) << " jitter "
+                        << (delay.count == 0 ? 0 : (delay.max - delay.min).count));
   }
 }
 
@@ -76,6 +84,8 @@ int run_application() {
   options.policy = baked::kRun.policy;
   options.script = Script(baked::kRun.acts);
   options.digest = &make<Digest>(memory, baked::kSpec.tasks.size(), lines, memory);
+  auto& receipts = make<PartIf<mechanisms::kSwitch, ReceiptLinesOut>>(memory, baked::kSpec);
+  options.receipts = receipts.get();
   auto& executive = make<Executive>(memory, set, clock, job_clock, options);
   const auto wait = [&clock](Nanoseconds at) {
     clock.wait_until(at);
@@ -85,9 +95,11 @@ int run_application() {
   send_line(Message() << "memory setup " << memory.used() << " of " << rest.size());
   // The grid of releases begins at a tick, so that every release is at a tick.
   clock.wait_until(clock.last_tick() + clock.tick());
+  if constexpr (mechanisms::kSwitch) receipts->begin(clock.last_tick());
   executive.start(clock.last_tick());
   const RunEnd end = executive.run(baked::kRun.duration);
   options.digest->end();
+  executive.releases().end(clock.now());
   print_tasks(set);
   print_stacks();
   if (uart().lost_out() != 0) send_line(Message() << "lost " << uart().lost_out());

@@ -8,7 +8,8 @@ namespace chimera::bake {
 
 std::string declared_name(const ConfiguredPort& port) { return port.name.substr(0, port.name.find('[')); }
 
-BakedApplication::BakedApplication(const Configuration& configuration, const Target& target, bool has_profile)
+BakedApplication::BakedApplication(const Configuration& configuration, const Target& target,
+                                   const RecordedProfile* profile)
     : configuration_(configuration), spec_(configuration.spec()) {
   ports_.reserve(spec_.tasks.size());
   for (std::size_t t = 0; t < spec_.tasks.size(); ++t) {
@@ -24,10 +25,12 @@ BakedApplication::BakedApplication(const Configuration& configuration, const Tar
       ports[p].value = bytes;
     }
     task.ports = ports;
-    if (!has_profile) task.budget = task.min_time = {};
+    if (profile == nullptr) task.budget = task.min_time = {};
     tasks_.push_back(task);
   }
   spec_.tasks = tasks_;
+  const std::span<const SwitchPlan> plans = plans_.emplace(spec_, profile).all();
+  if (!plans.empty()) spec_.plans = plans.data();
 }
 
 }  // namespace chimera::bake

@@ -4,8 +4,11 @@
 
 #include <cstddef>
 #include <deque>
+#include <optional>
 #include <vector>
 
+#include "chimera/analysis/recorded_profile.h"
+#include "chimera/bake/plans.h"
 #include "chimera/bake/target.h"
 #include "chimera/runtime/application_spec.h"
 #include "chimera/verify/configuration.h"
@@ -15,8 +18,8 @@ namespace chimera::bake {
 /// Context: setup. Its spec lives as long as it does.
 class BakedApplication {
  public:
-  /// Budgets of the description belong to another machine. They stay only with `has_profile`, which is of the target.
-  BakedApplication(const Configuration& configuration, const Target& target, bool has_profile);
+  /// Budgets of the description belong to another machine. They stay only with a profile, which is of the target.
+  BakedApplication(const Configuration& configuration, const Target& target, const RecordedProfile* profile);
   BakedApplication(const BakedApplication&) = delete;
   BakedApplication& operator=(const BakedApplication&) = delete;
 
@@ -29,6 +32,7 @@ class BakedApplication {
   std::vector<std::vector<PortSpec>> ports_;
   std::vector<TaskSpec> tasks_;
   ApplicationSpec spec_;
+  std::optional<BakedPlans> plans_;
 };
 
 /// "pedal" of "pedal[1]", an instance of a repeated port. Context: setup.

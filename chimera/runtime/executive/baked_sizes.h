@@ -11,7 +11,8 @@ namespace chimera::baked {
 
 inline constexpr std::size_t kTaskSpecBytes = 136, kPortSpecBytes = 120, kVariableBytes = 28, kPortOfBytes = 12;
 inline constexpr std::size_t kConstantSpecBytes = 40, kGivenSpecBytes = 52, kNamedSetBytes = 40, kScriptActBytes = 48;
-inline constexpr std::size_t kApplicationSpecBytes = 112, kTaskIdBytes = 4;
+inline constexpr std::size_t kApplicationSpecBytes = 116, kTaskIdBytes = 4;
+inline constexpr std::size_t kSwitchPlanBytes = 48, kHandoverBytes = 28;
 inline constexpr std::size_t kLivePortBytes = 48;  ///< the live half of a port, in the state of its component
 
 static_assert(sizeof(void*) != 4 || (sizeof(TaskSpec) == kTaskSpecBytes && sizeof(PortSpec) == kPortSpecBytes &&
@@ -21,5 +22,6 @@ static_assert(sizeof(void*) != 4 ||
                sizeof(NamedSet) == kNamedSetBytes && sizeof(ScriptAct) == kScriptActBytes));
 static_assert(sizeof(void*) != 4 || (sizeof(ApplicationSpec) == kApplicationSpecBytes &&
                                      sizeof(TaskId) == kTaskIdBytes && sizeof(chimera_port) == kLivePortBytes));
+static_assert(sizeof(void*) != 4 || (sizeof(SwitchPlan) == kSwitchPlanBytes && sizeof(Handover) == kHandoverBytes));
 
 }  // namespace chimera::baked
