@@ -41,6 +41,12 @@ void print_tasks(const TaskSet& set) {
     if (mechanisms::kInterrupts && task.spec->has_events)
       line << " events " << profile.events << " lost " << profile.events_lost;
     send_line(line);
+    const Spread &cycle = profile.execution[CHIMERA_CYCLE], &delay = profile.start_delay;
+    if (cycle.count == 0) continue;
+    send_line(Message() << "profile " << task.spec->name << " samples " << cycle.count << " worst " << cycle.max.count
+                        << " mean " << cycle.mean().count << " response "
+                        << (profile.cycles == 0 ? 0 : profile.response.max.count) << " jitter "
+                        << (delay.count == 0 ? 0 : (delay.max - delay.min).count));
   }
 }
 
@@ -81,8 +87,11 @@ int Image::run() {
   // The grid of releases begins at a tick, so that every release is at a tick.
   bare::BareClock& clock = board_clock();
   clock.wait_until(clock.last_tick() + clock.tick());
+  if constexpr (mechanisms::kSwitch) receipts_->begin(clock.last_tick());
   executive_->start(clock.last_tick());
-  return end(executive_->run(boot_.starts_off ? kNever : baked::kRun.duration));
+  const RunEnd why = executive_->run(boot_.starts_off ? kNever : baked::kRun.duration);
+  executive_->releases().end(clock.now());
+  return end(why);
 }
 
 void Image::make_executive() {
@@ -98,6 +107,7 @@ void Image::make_executive() {
   }
   if constexpr (mechanisms::kInterrupts)
     options.events = event_interrupts = &make<EventInterrupts>(baked::kTarget.events, memory_);
+  if constexpr (mechanisms::kSwitch) options.receipts = receipts_ = &make<ReceiptLinesOut>(baked::kSpec);
   if constexpr (mechanisms::kShell) options.guest = served_.listener = &make<ShellListener>(*set_, memory_);
   executive_ = &make<Executive>(*set_, *clock_, *method_clock_, options);
   static std::array<Stack, 2> stacks;

@@ -12,6 +12,7 @@
 #include "firmware/event_interrupts.h"
 #include "firmware/idle_clock.h"
 #include "firmware/method_clock.h"
+#include "firmware/receipt_lines.h"
 
 namespace chimera::firmware {
 
@@ -46,6 +47,7 @@ class Image {
   IdleClock* clock_ = nullptr;
   MethodClock* method_clock_ = nullptr;
   Digest* digest_ = nullptr;
+  ReceiptLinesOut* receipts_ = nullptr;
   Executive* executive_ = nullptr;
 };
 

@@ -11,7 +11,8 @@ namespace chimera::bake {
 
 std::string declared_name(const ConfiguredPort& port) { return port.name.substr(0, port.name.find('[')); }
 
-BakedApplication::BakedApplication(const Configuration& configuration, const Target& target, bool has_profile)
+BakedApplication::BakedApplication(const Configuration& configuration, const Target& target,
+                                   const RecordedProfile* profile)
     : configuration_(configuration), spec_(configuration.spec()) {
   ports_.reserve(spec_.tasks.size());
   for (std::size_t t = 0; t < spec_.tasks.size(); ++t) {
@@ -30,7 +31,7 @@ BakedApplication::BakedApplication(const Configuration& configuration, const Tar
     task.ports = ports;
     const auto is_for_it = [&task](const EventLine& event) { return event.task.text == task.name; };
     task.has_events = task.has_events || std::ranges::any_of(target.events, is_for_it);
-    if (!has_profile) task.budget = task.min_time = {};
+    if (profile == nullptr) task.budget = task.min_time = {};
     tasks_.push_back(task);
   }
   spec_.tasks = tasks_;
@@ -40,6 +41,8 @@ BakedApplication::BakedApplication(const Configuration& configuration, const Tar
   constants_.assign(spec_.constants.begin(), spec_.constants.end());
   for (std::size_t c = 0; c < constants_.size(); ++c) fit(constants_[c], ConstantId(c), spec_);
   spec_.constants = constants_;
+  const std::span<const SwitchPlan> plans = plans_.emplace(spec_, profile).all();
+  if (!plans.empty()) spec_.plans = plans.data();
 }
 
 std::vector<ScriptAct> BakedApplication::acts(std::span<const ScriptAct> acts) const {

@@ -4,9 +4,12 @@
 
 #include <cstddef>
 #include <deque>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "chimera/analysis/recorded_profile.h"
+#include "chimera/bake/plans.h"
 #include "chimera/bake/target.h"
 #include "chimera/runtime/application_spec.h"
 #include "chimera/runtime/cycle/script.h"
@@ -17,8 +20,8 @@ namespace chimera::bake {
 /// Context: setup. Its spec lives as long as it does.
 class BakedApplication {
  public:
-  /// Budgets of the description belong to another machine. They stay only with `has_profile`, which is of the target.
-  BakedApplication(const Configuration& configuration, const Target& target, bool has_profile);
+  /// Budgets of the description belong to another machine. They stay only with a profile, which is of the target.
+  BakedApplication(const Configuration& configuration, const Target& target, const RecordedProfile* profile);
   BakedApplication(const BakedApplication&) = delete;
   BakedApplication& operator=(const BakedApplication&) = delete;
 
@@ -35,6 +38,7 @@ class BakedApplication {
   std::vector<GivenSpec> operators_;
   std::vector<ConstantSpec> constants_;
   ApplicationSpec spec_;
+  std::optional<BakedPlans> plans_;
 };
 
 /// "pedal" of "pedal[1]", an instance of a repeated port. Context: setup.

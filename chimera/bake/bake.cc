@@ -10,6 +10,7 @@
 #include "chimera/bake/refusals.h"
 #include "chimera/bake/tables.h"
 #include "chimera/base/hosted/wording.h"
+#include "chimera/text/time_text.h"
 
 namespace chimera::bake {
 namespace {
@@ -37,7 +38,7 @@ std::string memory_text(const Target& target) {
 std::vector<std::string> notes_of(const BakeInput& input) {
   std::vector<std::string> notes;
   if (input.profile != nullptr) return notes;
-  notes.emplace_back("without --profile no deadline is judged");
+  notes.emplace_back("without --profile no deadline is judged: run the image, save its profile, and bake again");
   std::string idle;
   for (const TaskSpec& task : input.configuration.spec().tasks)
     if (task.budget.count > 0 && task.on_overrun != OnMiss::kContinue) append_joined(idle, ", ", in_quotes(task.name));
@@ -45,6 +46,22 @@ std::vector<std::string> notes_of(const BakeInput& input) {
     notes.push_back("'on_overrun' never acts without --profile, because budgets of the description are left out: " +
                     idle);
   return notes;
+}
+
+/// Switches that the image makes the slow way for deadlines, by the times of the profile.
+void note_slow_switches(const ApplicationSpec& spec, std::vector<std::string>& notes) {
+  const std::size_t n = spec.plans == nullptr ? 0 : spec.sets.size() * spec.sets.size();
+  for (const SwitchPlan& plan : std::span(spec.plans, n)) {
+    if (plan.deadline == nullptr || *plan.deadline) continue;
+    const TaskSpec& task = spec.tasks[plan.deadline->task.index];
+    const std::string ends = plan.deadline->takes == kNever ? "no bound was found for it"
+                                                            : "it would end up to " + time_text(plan.deadline->takes) +
+                                                                  " after its release";
+    notes.push_back("the switch from " + in_quotes(spec.sets[plan.before].name) + " to " +
+                    in_quotes(spec.sets[plan.after].name) + " turns tasks OFF first: otherwise task " +
+                    in_quotes(task.name) + " could miss its deadline of " + time_text(task.deadline) + " (" + ends +
+                    ")");
+  }
 }
 
 }  // namespace
@@ -64,13 +81,14 @@ BakeResult bake(const BakeInput& input) {
   if (input.profile != nullptr) refuse_late(configuration, *input.profile, target, result.description);
   refuse_unknown(configuration, target, result.target);
 
-  const BakedApplication application(configuration, target, input.profile != nullptr);
+  const BakedApplication application(configuration, target, input.profile);
   const ApplicationSpec& spec = application.spec();
   const std::vector<ScriptAct> acts = application.acts(input.acts);
   const baked::Run run{spec.rtpus.empty() ? Policy::kEdf : spec.rtpus[0].policy, target.tick.value, input.duration,
                        acts};
   result.memory = memory_need(spec, input.acts.size(), target);
   result.mechanisms = mechanisms(spec, run, target);
+  note_slow_switches(spec, result.notes);
   refuse_memory(result.memory, target, result.target);
   result.description.sort();
   result.target.sort();

@@ -241,6 +241,47 @@ TEST(Bake, RefusesATaskThatTheProfileLacks) {
             "  record the profile on the target with every task ON, or bake without --profile\n");
 }
 
+const std::string kTwoSets =
+    "tasks: {source: {rate: 1 kHz}, spare: {component: source, rate: 1 kHz}, sink: {rate: 10 Hz}}\n"
+    "configurations: {a: [source, sink], b: [spare, sink]}\nstart: a\n";
+
+TEST(Bake, WritesAPlanForEachPairOfConfigurations) {
+  const BakeResult result = baked({.text = kTwoSets});
+  ASSERT_TRUE(result.is_baked());
+  const std::string& text = result.files.back().text;
+  EXPECT_NE(text.find("constexpr TaskId kArriving1[] = {\n    TaskId(1u),\n};\n"
+                      "constexpr TaskId kLeaving1[] = {\n    TaskId(0u),\n};\n"
+                      "constexpr TaskId kStaying1[] = {\n    TaskId(2u),\n};\n"
+                      "constexpr Handover kHandovers1[] = {\n"
+                      "    {.variable = VariableId(0u), .from = {.task = TaskId(0u)}, .to = {.task = TaskId(1u)}},\n};\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("constexpr SwitchPlan kPlans[] = {\n    {},\n    {.before = 0, .after = 1, .arriving = kArriving1,"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find(".plans = kPlans}"), std::string::npos);
+}
+
+TEST(Bake, CountsTheMemoryOfSwitches) {
+  const MemoryNeed with = baked({.text = kTwoSets}).memory;
+  const std::string without_sets = kTwoSets.substr(0, kTwoSets.find("spare")) + "sink: {rate: 10 Hz}}\n";
+  const MemoryNeed without = baked({.text = without_sets}).memory;
+  EXPECT_GT(with.shared_flash_bytes, without.shared_flash_bytes + 4 * 48);
+  EXPECT_GT(with.shared_ram_bytes, without.shared_ram_bytes + 3 * kSwitchTaskBytes + kSwitchVariableBytes);
+}
+
+TEST(Bake, SaysWhichSwitchesAreSlowByTheProfile) {
+  RecordedProfile profile = profile_of(600, 10);
+  profile.tasks.push_back(profile.tasks[0]);
+  profile.tasks.back().task = "spare";
+  const BakeResult result = baked({.text = kTwoSets, .profile = &profile});
+  ASSERT_TRUE(result.is_baked()) << result.description.text();
+  ASSERT_EQ(result.notes.size(), 3u) << result.notes.back();
+  EXPECT_TRUE(result.notes[1].starts_with("the switch from 'a' to 'b' turns tasks OFF first: otherwise task "))
+      << result.notes[1];
+  EXPECT_NE(result.files.back().text.find(".deadline = &kDeadline1"), std::string::npos);
+}
+
 TEST(Bake, LeavesBudgetsOutWithoutAProfile) {
   const BakeResult result = baked({.text = "tasks: {source: {budget: 2 ms, on_overrun: hold}, sink: {}}\n"});
   ASSERT_TRUE(result.is_baked());

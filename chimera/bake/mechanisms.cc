@@ -29,6 +29,7 @@ std::vector<Mechanism> mechanisms(const ApplicationSpec& spec, const baked::Run&
           {"kTap", false},
           {"kBlame", false},
           {"kSwitch", switches},
+          {"kTransitions", false},
           {"kConstants", has_constants},
           {"kOperators", !spec.operators.empty()},
           {"kEvents", any_task([](const TaskSpec& task) { return task.aperiodic; })},

@@ -2,6 +2,8 @@
 // Adds up sizes of the tables and records of an image, by the sizes of a 32-bit machine.
 #include "chimera/bake/memory.h"
 
+#include <algorithm>
+
 #include "chimera/runtime/executive/baked_sizes.h"
 
 namespace chimera::bake {
@@ -41,6 +43,23 @@ TaskMemoryNeed need_of(const TaskSpec& task, bool switches) {
   return need;
 }
 
+/// Plans in flash, and what the planner, the record and the receipt of a switch keep for each task and variable.
+void add_switches(const ApplicationSpec& spec, MemoryNeed& need) {
+  if (spec.plans == nullptr) return;
+  for (const SwitchPlan& plan : std::span(spec.plans, spec.sets.size() * spec.sets.size()))
+    need.shared_flash_bytes +=
+        baked::kSwitchPlanBytes + baked::kHandoverBytes * plan.handovers.size() +
+        baked::kTaskIdBytes * (plan.arriving.size() + plan.leaving.size() + plan.staying.size());
+  need.shared_ram_bytes += kSwitchBytes + kSwitchTaskBytes * spec.tasks.size();
+  for (const Variable& variable : spec.variables) {
+    std::size_t most = 0;
+    for (const PortOf& producer : variable.producers)
+      if (const PortSpec* const port = spec.port(CHIMERA_OUT_VAR, producer))
+        most = std::max<std::size_t>(most, port->max_bytes());
+    need.shared_ram_bytes += kSwitchVariableBytes + 2 * rounded_up(most, 8);
+  }
+}
+
 }  // namespace
 
 std::size_t MemoryNeed::flash_bytes() const noexcept {
@@ -62,6 +81,7 @@ MemoryNeed memory_need(const ApplicationSpec& spec, std::size_t n_acts, const Ta
   flash = baked::kApplicationSpecBytes + n_acts * baked::kScriptActBytes;
   flash += baked::kTaskIdBytes * (spec.init_order.size() + spec.start.size() + spec.on_order.size() +
                                   spec.end_order.size());
+  add_switches(spec, need);
   for (const NamedSet& set : spec.sets)
     flash += baked::kNamedSetBytes + baked::kTaskIdBytes * set.order.size() + set.name.size() + 1;
   for (const Variable& variable : spec.variables)

@@ -214,6 +214,44 @@ class Tables {
         .text();
   }
 
+  std::string deadline(const PlanAnswer& answer, const std::string& number) {
+    if (answer) return {};  // as if it was not judged
+    all_.add("constexpr PlanAnswer kDeadline" + number + " = " +
+             Initialiser()
+                 .add_text("why", "NoSwitch::kNotSchedulable")
+                 .add_id("task", "TaskId", answer.task)
+                 .add("takes", answer.takes, kNever)
+                 .text() +
+             ";\n");
+    return "&kDeadline" + number;
+  }
+
+  std::string plan(const SwitchPlan& spec, std::size_t index) {
+    const std::string number = std::to_string(index);
+    const auto handover = [](const Handover& each) {
+      return Initialiser()
+          .add_id("variable", "VariableId", each.variable)
+          .add_text("from", each.from.task.is_valid() ? port_of_text(each.from) : "")
+          .add_text("to", port_of_text(each.to))
+          .text();
+    };
+    return Initialiser()
+        .add("before", spec.before, kNoSet)
+        .add("after", spec.after, kNoSet)
+        .add_text("arriving", ids("kArriving" + number, spec.arriving))
+        .add_text("leaving", ids("kLeaving" + number, spec.leaving))
+        .add_text("staying", ids("kStaying" + number, spec.staying))
+        .add_text("handovers", all_.array("Handover", "kHandovers" + number, names_of(spec.handovers, handover)))
+        .add_text("deadline", spec.deadline == nullptr ? "" : deadline(*spec.deadline, number))
+        .text();
+  }
+
+  std::string plans() {
+    if (spec_.plans == nullptr) return {};
+    const std::span<const SwitchPlan> all(spec_.plans, spec_.sets.size() * spec_.sets.size());
+    return all_.list("SwitchPlan", "kPlans", all, [&](auto& a, auto i) { return plan(a, i); });
+  }
+
   std::string application() {
     const auto rtpu = [](const RtpuSpec& spec, std::size_t) {
       return Initialiser()
@@ -251,6 +289,7 @@ class Tables {
         .add_text("sets", all_.list("NamedSet", "kSets", spec_.sets, [&](auto& a, auto i) { return set(a, i); }))
         .add_text("restarts", all_.list("RestartSpec", "kRestarts", spec_.restarts, restart))
         .add_text("stale", all_.list("StaleSpec", "kStale", spec_.stale, stale))
+        .add_text("plans", plans())
         .text();
   }
 

@@ -18,6 +18,7 @@ inline constexpr bool kRestart = true;     ///< the reaction `restart` of on_fau
 inline constexpr bool kTap = true;         ///< the trace
 inline constexpr bool kBlame = true;       ///< the cause of a missed deadline
 inline constexpr bool kSwitch = true;      ///< switches among configurations
+inline constexpr bool kTransitions = true; ///< deadlines over a switch are judged while the program runs
 inline constexpr bool kConstants = true;   ///< constants that tasks produce
 inline constexpr bool kOperators = true;   ///< variables that an operator sets
 inline constexpr bool kEvents = true;      ///< aperiodic tasks

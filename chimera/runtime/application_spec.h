@@ -111,6 +111,8 @@ struct NamedSet {
   SafeCondition safe_when{};      ///< must hold while a switch to it arms, and when its instant is proposed
 };
 
+struct SwitchPlan;
+
 /// Context: setup. Every span must outlive the runtime that is made from it.
 struct ApplicationSpec {
   std::string_view name;
@@ -127,6 +129,8 @@ struct ApplicationSpec {
   std::span<const StandbySpec> standbys;  ///< in the order of the description
   std::span<const RestartSpec> restarts;  ///< one for each task whose reaction on_fault is restart
   std::span<const StaleSpec> stale;       ///< at most one for each task
+  /// The plan of the switch from set b to set a at number b * sets.size() + a. Null: plans are made on request.
+  const SwitchPlan* plans = nullptr;
 
   /// Name of what the port is linked to; "" when it is not linked. Context: any; wait-free.
   std::string_view link_name(const PortSpec& port) const noexcept {

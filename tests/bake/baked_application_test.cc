@@ -2,33 +2,19 @@
 // Compiled with the tables of one application: tests/bake/CMakeLists.txt.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
-#include <map>
+#include <vector>
 
-#include "chimera/catalogue/workplace.h"
-#include "chimera/cli/run/digest_text.h"
-#include "chimera/load/shared_object.h"
 #include "chimera/runtime/executive/baked.h"
-#include "chimera/runtime/hosted/asked_sets.h"
-#include "chimera/runtime/hosted/heap_memory.h"
-#include "chimera/runtime/hosted/heap_task_set.h"
-#include "chimera/runtime/record/digest.h"
+#include "chimera/runtime/plan/switch_plan.h"
 #include "chimera/runtime/testing/spec_equal.h"
-#include "chimera/runtime/virtual/virtual_executor.h"
 #include "chimera/verify/verify.h"
+#include "tests/bake/baked_run.h"
 
 namespace chimera::baked_application_test {
 
-const Library& library() {
-  static const Result<Library> kLibrary =
-      Workplace::around(std::string(std::getenv("CHIMERA_BUILD")) + "/bin/chimera").library();
-  EXPECT_TRUE(kLibrary);
-  return *kLibrary;
-}
-
 TEST(BakedApplication, IsTheApplicationOfTheDescription) {
-  const Verdict verdict = verify(read_description_file(BAKED_DESCRIPTION), library());
+  const Verdict verdict = verify(read_description_file(BAKED_DESCRIPTION), built_library());
   ASSERT_TRUE(verdict.configuration) << verdict.report.text();
   ApplicationSpec expected = verdict.configuration->spec();
   std::vector<TaskSpec> tasks(expected.tasks.begin(), expected.tasks.end());
@@ -51,38 +37,72 @@ TEST(BakedApplication, HasValuesThatAProcessorCanReadInPlace) {
 }
 
 TEST(BakedApplication, GivesTheDigestOfTheDescription) {
-  const ApplicationSpec& spec = baked::kSpec;
-  std::vector<const chimera_component*> components;
-  std::map<std::string_view, SharedObject> opened;
-  for (const TaskSpec& task : spec.tasks) {
-    const LibraryEntry* entry = library().find(task.component);
-    ASSERT_NE(entry, nullptr) << task.component;
-    auto object = SharedObject::open(entry->object_file);
-    ASSERT_TRUE(object) << object.error().message.c_str();
-    const auto& kept = opened.emplace(task.component, *std::move(object)).first->second;
-    components.push_back(*kept.component(task.component));
-  }
-  auto set = HeapTaskSet::create(spec, components);
-  ASSERT_TRUE(set) << set.error().message.c_str();
-  HeapMemory memory;
-  cli::DigestText text;
-  Digest digest(spec.tasks.size(), text, memory);
-  AskedSets asked(spec, false);
-  RunOptions options;
-  options.script = Script(baked::kRun.acts);
-  options.asked = &asked;
-  options.digest = &digest;
-  VirtualOptions how;
-  how.times = JobTimes::none();
-  VirtualExecutor executor(**set, options, how);
-  ASSERT_TRUE(executor.start());
-  executor.run(baked::kRun.duration);
-  digest.end();
   std::ifstream file(BAKED_DIGEST);
   const std::string expected{std::istreambuf_iterator<char>(file), {}};
   ASSERT_GT(expected.size(), 100u);
-  EXPECT_EQ(text.text(spec), expected);
-  executor.shut_down();
+  EXPECT_EQ(digest_of(baked::kSpec, baked::kRun.acts, baked::kRun.duration), expected);
+}
+
+std::vector<std::uint32_t> numbers(std::span<const TaskId> tasks) {
+  std::vector<std::uint32_t> all;
+  for (const TaskId task : tasks) all.push_back(task.index);
+  return all;
+}
+
+TEST(BakedApplication, HasThePlanThatIsMadeWhileRunning) {
+  const ApplicationSpec& spec = baked::kSpec;
+  const std::size_t n = spec.sets.size();
+  ASSERT_EQ(spec.plans != nullptr, n > 1);
+  ApplicationSpec without = spec;
+  without.plans = nullptr;
+  HeapMemory memory;
+  SwitchPlanner made, baked;
+  made.prepare(without, memory);
+  baked.prepare(spec, memory);
+  for (std::uint32_t pair = 0; n > 1 && pair < n * n; ++pair) {
+    SCOPED_TRACE(pair);
+    std::vector<TaskStatus> statuses(spec.tasks.size(), {State::kOff});
+    for (const TaskId task : spec.sets[pair / n].order) statuses[task.index].state = State::kOn;
+    SwitchPlan expected, found;
+    const std::uint32_t after = static_cast<std::uint32_t>(pair % n);
+    ASSERT_EQ(baked.plan(after, statuses, found).why, made.plan(after, statuses, expected).why);
+    EXPECT_EQ(found.before, expected.before);
+    EXPECT_EQ(found.after, expected.after);
+    EXPECT_EQ(numbers(found.arriving), numbers(expected.arriving));
+    EXPECT_EQ(numbers(found.leaving), numbers(expected.leaving));
+    EXPECT_EQ(numbers(found.staying), numbers(expected.staying));
+    ASSERT_EQ(found.handovers.size(), expected.handovers.size());
+    for (std::size_t h = 0; h < found.handovers.size(); ++h) {
+      EXPECT_EQ(found.handovers[h].variable, expected.handovers[h].variable);
+      EXPECT_EQ(found.handovers[h].from, expected.handovers[h].from);
+      EXPECT_EQ(found.handovers[h].to, expected.handovers[h].to);
+    }
+    const bool is_baked = !expected.arriving.empty() || !expected.leaving.empty();
+    EXPECT_EQ(found.arriving.data() == spec.plans[pair].arriving.data(), is_baked || found.arriving.data() == nullptr);
+  }
+}
+
+TEST(BakedApplication, MakesAPlanWhenATaskIsInAnotherStateThanTheBakedOneAssumes) {
+  const ApplicationSpec& spec = baked::kSpec;
+  if (spec.plans == nullptr) return EXPECT_LT(spec.sets.size(), 2u);
+  HeapMemory memory;
+  SwitchPlanner planner;
+  planner.prepare(spec, memory);
+  std::vector<TaskStatus> statuses(spec.tasks.size(), {State::kOff});
+  for (const TaskId task : spec.sets[0].order) statuses[task.index].state = State::kOn;
+  const SwitchPlan& assumed = spec.plans[1];
+  ASSERT_FALSE(assumed.arriving.empty());
+  statuses[assumed.arriving[0].index].state = State::kError;
+  SwitchPlan plan;
+  const PlanAnswer answer = planner.plan(1u, statuses, plan);
+  EXPECT_EQ(answer.why, NoSwitch::kInError);
+  EXPECT_EQ(answer.task, assumed.arriving[0]);
+  statuses[assumed.arriving[0].index].state = State::kOff;
+  ASSERT_FALSE(assumed.leaving.empty());
+  statuses[assumed.leaving[0].index].state = State::kOff;
+  ASSERT_TRUE(planner.plan(1u, statuses, plan));
+  EXPECT_EQ(plan.before, kNoSet);
+  EXPECT_EQ(plan.leaving.size() + 1, assumed.leaving.size());
 }
 
 }  // namespace chimera::baked_application_test

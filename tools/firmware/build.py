@@ -31,9 +31,9 @@ class BuildError(Exception):
     """What the user reads."""
 
 
-def sources_of_kernel():
+def sources_of_kernel(firmware):
     """(name, files) of what is compiled as one: eight files of a folder at most, because headers take the time."""
-    for folder in (*(f"chimera/{each}" for each in FOLDERS), *FIRMWARE):
+    for folder in (*(f"chimera/{each}" for each in FOLDERS), *firmware):
         files = [path for path in sorted((ROOT / folder).glob("*.cc"))
                  if not NO_PRODUCT.search(path.name) and f"{folder.removeprefix('chimera/')}/{path.name}" not in DESK]
         for i in range(0, len(files), TOGETHER):
@@ -59,8 +59,8 @@ def write_if_new(path, text):
         path.write_text(text)
 
 
-def rules(baked, out, board, folders):
-    """The text of build.ninja, and the components without a source."""
+def rules(baked, out, board, folders, program):
+    """The text of build.ninja, and the components without a source. `program` as of build()."""
     cache = shutil.which("ccache") or ""
     common = (f"@{baked}/cpu.flags {COMMON} -I{ROOT} -I{baked} -DCHIMERA_MECHANISMS='<mechanisms.h>' "
               f"-DCHIMERA_BOARD='\"firmware/boards/{board}/chip.h\"'"
@@ -74,13 +74,15 @@ def rules(baked, out, board, folders):
             "  rspfile = $out.rsp\n  rspfile_content = $in_newline\n  description = link $out"]
     objects, missing = [], []
 
-    def compiled(path, target):
+    def compiled(path, target, flags=""):
         text.append(f"build {word(target)}: {'cc' if path.suffix == '.c' else 'cxx'} {word(path)}")
         if target.startswith("kernel/firmware/boot/"):  # else memcpy would become a call of itself
-            text.append("  more = -fno-tree-loop-distribute-patterns")
+            flags = "-fno-tree-loop-distribute-patterns"
+        if flags:
+            text.append(f"  more = {flags}")
         objects.append(word(target))
 
-    for name, files in sources_of_kernel():
+    for name, files in sources_of_kernel(FIRMWARE if program is None else FIRMWARE[1:]):
         together = out / "together" / f"{name}.cc"
         together.parent.mkdir(parents=True, exist_ok=True)
         write_if_new(together, "".join(f'#include "{path.relative_to(ROOT)}"\n' for path in files))
@@ -88,6 +90,8 @@ def rules(baked, out, board, folders):
     for name in (baked / "components.txt").read_text().split():
         path = source_of_component(name, folders)
         compiled(path, f"components/{name}.o") if path else missing.append(name)
+    for path, flags in program or ():
+        compiled(path, f"program/{path.stem}.o", flags)
     text.append(f"build baked/tables.cc.o: cxx {word(baked / 'tables.cc')}")
     objects.append("baked/tables.cc.o")
     text.append(f"build image.elf: link {' '.join(objects)} | {ROOT}/firmware/boards/image.ld {baked}/memory.ld")
@@ -111,11 +115,11 @@ def explained(log, missing):
     return "\n".join(line for line in log[max(failed, 0):].splitlines() if not line.startswith("["))[:6000]
 
 
-def build(baked, out, board, folders=()):
-    """OUT/image.elf, up to date. Raises BuildError."""
+def build(baked, out, board, folders=(), program=None):
+    """OUT/image.elf, up to date. `program`: (file, flags) in place of the sources in firmware/. Raises BuildError."""
     out = out.resolve()
     out.mkdir(parents=True, exist_ok=True)
-    text, missing = rules(baked.resolve(), out, board, folders)
+    text, missing = rules(baked.resolve(), out, board, folders, program)
     write_if_new(out / "build.ninja", text)
     done = subprocess.run(["ninja", "-C", str(out)], stdin=subprocess.DEVNULL, capture_output=True, text=True)
     (out / "build.log").write_text(done.stdout + done.stderr)

@@ -11,6 +11,7 @@ import subprocess
 import build
 import digest
 import qemu
+import receipts
 import sizes
 import yaml
 
@@ -59,12 +60,13 @@ def names():
 
 
 def call(command, tree):
-    """Runs the program of the host. Raises ImageError with what it said."""
+    """What the program of the host printed. Raises ImageError with it if the program failed."""
     environment = dict(os.environ, ASAN_OPTIONS="detect_leaks=0", CHIMERA_PATH=str(tree / "components"))
     done = subprocess.run(list(map(str, command)), stdin=subprocess.DEVNULL, capture_output=True, text=True,
                           env=environment)
     if done.returncode != 0:
         raise ImageError(f"{' '.join(map(str, command[1:]))}: exit {done.returncode}\n{done.stdout}{done.stderr}")
+    return done.stdout
 
 
 class Built:
@@ -79,12 +81,12 @@ class Built:
     def _run(self, *words):
         acts = [word for act in self.image.acts for word in ("--at", act)]
         duration = ["--for", self.image.duration] if self.image.duration else []
-        call([self.tree / "bin" / "chimera", *words, *duration, *acts], self.tree)
+        return call([self.tree / "bin" / "chimera", *words, *duration, *acts], self.tree)
 
-    def bake(self):
+    def bake(self, *words, out="baked"):
         own = self.image.folder / f"{self.target}.yaml"  # with the resources of this application
         target = own if own.is_file() else self.target
-        self._run("bake", self.image.application, "--target", target, "--out", self.out / "baked")
+        self._run("bake", self.image.application, "--target", target, "--out", self.out / out, *words)
 
     def link(self):
         self.elf = build.build(self.out / "baked", self.out, self.board(), self.image.folders)
@@ -113,10 +115,12 @@ class Built:
         """The running image, to talk to."""
         return qemu.Session(self.machine(), self.elf, self.image.instruction_ns)
 
-    def host_digest(self):
+    def difference(self, lines):
+        """One sentence about where digest or receipts of the image differ from those of the host; "" if nowhere."""
         path = self.out / "host.digest"
-        self._run("run", self.image.application, "--virtual", "--digest", path)
-        return digest.of_host(path.read_text())
+        run = json.loads(self._run("run", self.image.application, "--virtual", "--json", "--digest", path))
+        return (digest.difference(digest.of_host(path.read_text()), digest.of_image(lines)) or
+                receipts.difference(receipts.of_host(run), receipts.of_image(lines)))
 
     def run(self, limit_s=qemu.LIMIT_S):
         """The lines of the image. Raises ImageError if it does not end by itself."""

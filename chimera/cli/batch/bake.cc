@@ -7,12 +7,15 @@
 
 #include "chimera/bake/bake.h"
 #include "chimera/base/hosted/ordinary_file.h"
+#include "chimera/base/hosted/wording.h"
 #include "chimera/cli/batch/bake_text.h"
+#include "chimera/cli/batch/desk_init.h"
 #include "chimera/cli/files/file_refusal.h"
 #include "chimera/cli/files/output_file.h"
 #include "chimera/cli/run/run.h"
 #include "chimera/cli/run/run_plan.h"
 #include "chimera/description/yaml_reader.h"
+#include "chimera/text/time_text.h"
 #include "chimera/verify/verify.h"
 
 namespace chimera::cli {
@@ -67,14 +70,17 @@ Result<void> write_files(const std::string& folder, std::span<const bake::BakedF
 }
 
 CommandResult report(const BakeRequest& request, const RunPlan& plan, const bake::Target& target,
-                     const bake::BakeResult& result) {
+                     const bake::BakeResult& result, const DeskInit& inits) {
   CommandResult output;
   output.code = result.is_baked() ? kOk : kRefused;
   if (request.json) {
-    output.out = bake_json(plan.configuration, target, result).dump(Json::Style::kDense) + "\n";
+    Json all = bake_json(plan.configuration, target, result);
+    all["init_faults"] = Json(inits.refusals);
+    output.out = all.dump(Json::Style::kDense) + "\n";
     return output;
   }
   output.err = result.description.text() + result.target.text();
+  for (const std::string& refusal : inits.refusals) output.err += request.file + ": error: " + refusal + "\n";
   for (const std::string& note : result.notes) output.err += "note: " + note + "\n";
   if (result.is_baked())
     output.out = plan.configuration.subsystem() + " for " + target.name + ": baked into " + request.out + "\n";
@@ -95,23 +101,37 @@ CommandResult bake_for(const BakeRequest& request, const bake::Target& target, c
   run.at = request.at;
   run.duration = request.duration;
   if (auto judged = judge_acts(run, plan); !judged) return file_refusal(judged.error(), request.json, kUsage);
+  for (const ScriptAct& act : plan.acts)
+    if (act.kind == ScriptAct::Kind::kSwitch && act.lists != nullptr)
+      return file_refusal({ErrorCode::kRefused,
+                           {"--at " + time_text(act.at) + ": an image has plans of switches between configurations "
+                            "only; write 'switch CONFIGURATION'"},
+                           {request.file}},
+                          request.json, kUsage);
   std::optional<RecordedProfile> profile;
   if (!request.profile.empty()) {
     auto read = read_recorded_profile(request.profile);
     if (!read) return file_refusal(read.error(), request.json);
     profile = *std::move(read);
   }
-  const bake::BakeResult result = bake::bake({.configuration = plan.configuration,
-                                              .target = target,
-                                              .target_file = target_file,
-                                              .library = plan.library,
-                                              .profile = profile ? &*profile : nullptr,
-                                              .acts = plan.acts,
-                                              .duration = request.duration});
+  bake::BakeResult result = bake::bake({.configuration = plan.configuration,
+                                        .target = target,
+                                        .target_file = target_file,
+                                        .library = plan.library,
+                                        .profile = profile ? &*profile : nullptr,
+                                        .acts = plan.acts,
+                                        .duration = request.duration});
+  DeskInit inits;
+  if (result.is_baked()) {
+    inits = init_at_desk({plan.configuration, target, profile ? &*profile : nullptr}, plan.library);
+    if (!inits.untried.empty())
+      result.notes.push_back("'init' is not tried here, because it needs the board: " + join(inits.untried, ", "));
+    if (!inits.refusals.empty()) result.files.clear();
+  }
   if (result.is_baked())
     if (auto written = write_files(request.out, result.files); !written)
       return file_refusal(written.error(), request.json);
-  return report(request, plan, target, result);
+  return report(request, plan, target, result, inits);
 }
 
 }  // namespace

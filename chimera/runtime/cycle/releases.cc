@@ -79,10 +79,12 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
   if constexpr (mechanisms::kSwitch) {
     const std::size_t n_switches = options.script.count(ScriptAct::Kind::kSwitch);
     CHIMERA_ASSERT(is_alone ? peers == nullptr : n_switches == 0);
-    const std::size_t n_receipts = n_switches + kept_of_unscripted(set.spec());
+    const std::size_t n_kept = n_switches + kept_of_unscripted(set.spec());
+    const std::size_t n_receipts = options.receipts != nullptr ? std::min<std::size_t>(n_kept, 1) : n_kept;
     if (is_alone && n_receipts > 0) {
       LocalSwitches& switches = switches_->emplace();
       switches.prepare(set.spec(), 1, n_receipts, options.asked, set.setup_memory());
+      if (options.receipts != nullptr) switches.read_by(*options.receipts);
       switches.join(0, set, !threads_.preempt());
       signals_.order_by(switches);
       peers = &switches.of(0);

@@ -10,6 +10,7 @@
 #include "chimera/runtime/job/job_threads.h"
 #include "chimera/runtime/life/boundary_listener.h"
 #include "chimera/runtime/life/event_inputs.h"
+#include "chimera/runtime/plan/switch_receipt.h"
 #include "chimera/runtime/plan/switch_request.h"
 #include "chimera/runtime/record/digest.h"
 #include "chimera/runtime/record/tap_ring.h"
@@ -29,6 +30,7 @@ struct RunOptions {
   EventInputs* events = nullptr;              ///< events of tasks beside rings; null: none. Not with `preemptive`
   Nanoseconds tick = milliseconds(1);        ///< between two looks at `events`, counted from the origin; > 0
   const std::atomic<bool>* stop = nullptr;   ///< checked before every job; may be set by a signal handler
+  ReceiptReader* receipts = nullptr;         ///< takes them instead of Releases::receipts(); null: they are kept
   SwitchPeers* switch_peers = nullptr;       ///< null: switches are asked for by the script, or there are none
   /// Target sets of lists of tasks. Null: with `switch_peers` others know them, otherwise no task may ask for lists.
   AskedTasks* asked = nullptr;

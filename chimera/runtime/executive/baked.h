@@ -9,6 +9,7 @@
 
 #include "chimera/runtime/application_spec.h"
 #include "chimera/runtime/cycle/script.h"
+#include "chimera/runtime/plan/switch_plan.h"
 #include "chimera/task/abi.h"
 
 namespace chimera::baked {

@@ -16,7 +16,8 @@ namespace chimera::baked {
 
 inline constexpr std::size_t kTaskSpecBytes = 136, kPortSpecBytes = 120, kVariableBytes = 28, kPortOfBytes = 12;
 inline constexpr std::size_t kConstantSpecBytes = 40, kGivenSpecBytes = 52, kNamedSetBytes = 40, kScriptActBytes = 48;
-inline constexpr std::size_t kApplicationSpecBytes = 112, kTaskIdBytes = 4;
+inline constexpr std::size_t kApplicationSpecBytes = 116, kTaskIdBytes = 4;
+inline constexpr std::size_t kSwitchPlanBytes = 48, kHandoverBytes = 28;
 inline constexpr std::size_t kLivePortBytes = 48;  ///< the live half of a port, in the state of its component
 
 // In RAM, of each task. All that has a fixed size: what its job, its state and its place in the queue need.
@@ -46,5 +47,6 @@ static_assert(sizeof(void*) != 4 ||
                sizeof(NamedSet) == kNamedSetBytes && sizeof(ScriptAct) == kScriptActBytes));
 static_assert(sizeof(void*) != 4 || (sizeof(ApplicationSpec) == kApplicationSpecBytes &&
                                      sizeof(TaskId) == kTaskIdBytes && sizeof(chimera_port) == kLivePortBytes));
+static_assert(sizeof(void*) != 4 || (sizeof(SwitchPlan) == kSwitchPlanBytes && sizeof(Handover) == kHandoverBytes));
 
 }  // namespace chimera::baked

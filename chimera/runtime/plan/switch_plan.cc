@@ -76,6 +76,12 @@ void SwitchPlanner::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
 PlanAnswer SwitchPlanner::plan(std::uint32_t target, std::span<const TaskStatus> statuses,
                                SwitchPlan& plan) noexcept {
   if (target >= spec_->sets.size()) return {NoSwitch::kUnknownSet, {}};
+  if (const SwitchPlan* const made = made_plan(target, statuses)) {
+    const std::uint32_t number = plan.number;
+    plan = *made;
+    plan.number = number;
+    return {};
+  }
   const PlanAnswer answer = plan_for(spec_->sets[target].order, statuses, plan);
   if (answer) plan.after = target;
   return answer;
@@ -90,6 +96,22 @@ PlanAnswer SwitchPlanner::plan(const TaskBits& target, std::span<const TaskStatu
   const PlanAnswer answer = plan_for(target_.first(n), statuses, plan);
   if (answer) plan.after = kNoSet;
   return answer;
+}
+
+// The plan that was made before the run. Null: there is none, or some task is in another state than the plan assumes.
+const SwitchPlan* SwitchPlanner::made_plan(std::uint32_t target,
+                                           std::span<const TaskStatus> statuses) const noexcept {
+  if (spec_->plans == nullptr) return nullptr;
+  const std::uint32_t before = set_of(*spec_, tasks_on(statuses));
+  if (before == kNoSet || before == target) return nullptr;
+  const SwitchPlan& made = spec_->plans[before * spec_->sets.size() + target];
+  const auto is_ready = [&](TaskId id) {
+    const TaskStatus& now = statuses[id.index];
+    return !now.in_service && (now.state == State::kOff || now.state == State::kOn);
+  };
+  const bool are_ready = std::all_of(made.arriving.begin(), made.arriving.end(), is_ready) &&
+                         std::all_of(made.staying.begin(), made.staying.end(), is_ready);
+  return are_ready && made.after == target ? &made : nullptr;
 }
 
 PlanAnswer SwitchPlanner::plan_for(std::span<const TaskId> order, std::span<const TaskStatus> statuses,
@@ -110,6 +132,7 @@ PlanAnswer SwitchPlanner::plan_for(std::span<const TaskId> order, std::span<cons
     if (is_on(statuses[id.index]) && !is_in_target(id)) leaving_[leaving++] = id;
   }
   if (arriving == 0 && leaving == 0) return {NoSwitch::kNothingToDo, {}};
+  plan.deadline = nullptr;
   plan.before = set_in_force(statuses);
   plan.arriving = arriving_.first(arriving);
   plan.leaving = leaving_.first(leaving);

@@ -27,30 +27,6 @@ struct Handover {
   PortOf to;    ///< out-var of an arriving task
 };
 
-/// Lists point into the SwitchPlanner that made the plan.
-struct SwitchPlan {
-  std::uint32_t number = 0;
-  std::uint32_t before = kNoSet;       ///< in ApplicationSpec::sets; kNoSet: the ON tasks are none of them
-  std::uint32_t after = kNoSet;        ///< in ApplicationSpec::sets; kNoSet: the target is none of them
-  std::span<const TaskId> arriving;    ///< in data-flow order, producers first
-  std::span<const TaskId> leaving;     ///< against the data flow
-  std::span<const TaskId> staying;     ///< in data-flow order
-  std::span<const Handover> handovers; ///< in the order of ApplicationSpec::variables
-};
-
-/// Places [begin, end) in SwitchPlan::arriving: a longest row of tasks that belong to one rtpu.
-struct SwitchRun {
-  std::size_t begin = 0, end = 0;
-};
-
-/// The run of that number; begin == end behind the last one. Context: cycle boundary; O(tasks).
-SwitchRun find_run(const SwitchPlan& plan, std::span<const TaskSpec> tasks, std::uint16_t number) noexcept;
-
-/// How long before the instant of the change it is proposed. Every context agrees between two jobs, so this is longer
-/// than `longest_job`, the longest cycle measured so far; else at most 1 ms, and three quarters of the period of the
-/// fastest task that arrives or leaves. Context: any; O(tasks).
-Nanoseconds lead_of(const SwitchPlan& plan, std::span<const TaskSpec> tasks, Nanoseconds longest_job) noexcept;
-
 /// Why a switch is not made. Reasons of the first group are found before anything is done; others abort the switch.
 enum class NoSwitch : std::uint8_t {
   kNone,
@@ -91,6 +67,31 @@ struct PlanAnswer {
 
   explicit operator bool() const noexcept { return why == NoSwitch::kNone; }
 };
+
+/// Lists point into the SwitchPlanner that made the plan, or are constant.
+struct SwitchPlan {
+  std::uint32_t number = 0;
+  std::uint32_t before = kNoSet;       ///< in ApplicationSpec::sets; kNoSet: the ON tasks are none of them
+  std::uint32_t after = kNoSet;        ///< in ApplicationSpec::sets; kNoSet: the target is none of them
+  std::span<const TaskId> arriving;    ///< in data-flow order, producers first
+  std::span<const TaskId> leaving;     ///< against the data flow
+  std::span<const TaskId> staying;     ///< in data-flow order
+  std::span<const Handover> handovers; ///< in the order of ApplicationSpec::variables
+  const PlanAnswer* deadline = nullptr;  ///< of SwitchSchedule::judge(), before the run; null: to be asked
+};
+
+/// Places [begin, end) in SwitchPlan::arriving: a longest row of tasks that belong to one rtpu.
+struct SwitchRun {
+  std::size_t begin = 0, end = 0;
+};
+
+/// The run of that number; begin == end behind the last one. Context: cycle boundary; O(tasks).
+SwitchRun find_run(const SwitchPlan& plan, std::span<const TaskSpec> tasks, std::uint16_t number) noexcept;
+
+/// How long before the instant of the change it is proposed. Every context agrees between two jobs, so this is longer
+/// than `longest_job`, the longest cycle measured so far; else at most 1 ms, and three quarters of the period of the
+/// fastest task that arrives or leaves. Context: any; O(tasks).
+Nanoseconds lead_of(const SwitchPlan& plan, std::span<const TaskSpec> tasks, Nanoseconds longest_job) noexcept;
 
 /// Returns the tasks that are ON. Context: cycle boundary.
 TaskBits tasks_on(std::span<const TaskStatus> statuses) noexcept;
@@ -145,6 +146,7 @@ class SwitchPlanner {
   }
 
  private:
+  const SwitchPlan* made_plan(std::uint32_t target, std::span<const TaskStatus> statuses) const noexcept;
   PlanAnswer plan_for(std::span<const TaskId> order, std::span<const TaskStatus> statuses, SwitchPlan& plan) noexcept;
   bool is_in_target(TaskId task) const noexcept { return in_target_[task.index]; }
   std::span<const Handover> list_handovers(std::span<const TaskStatus> statuses) noexcept;

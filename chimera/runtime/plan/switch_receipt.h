@@ -171,6 +171,16 @@ inline void read_part(const SwitchPart& part, SwitchReceipt& receipt) noexcept {
       std::span(lists.reinitialised).first(std::min<std::size_t>(part.n_reinitialised, part.reinitialised.size()));
 }
 
+/// Gets each receipt when its switch is over, where no list of all of them is kept.
+class ReceiptReader {
+ public:
+  /// The receipt is gone afterwards. Context: cycle boundary.
+  virtual void take(const SwitchReceipt& receipt) noexcept = 0;
+
+ protected:
+  ~ReceiptReader() = default;
+};
+
 /// The receipts of a run. If more are made than were planned for, the first ones and the last one are kept.
 class SwitchReceipts {
  public:

@@ -9,14 +9,15 @@ namespace chimera {
 void SwitchWays::prepare(const ApplicationSpec& spec, SetupMemory& memory) {
   spec_ = &spec;
   rivals_.prepare(spec, memory);
-  schedule_.prepare(spec, memory);
+  if constexpr (mechanisms::kTransitions) schedule_->prepare(spec, memory);
   users_.prepare(spec, memory);
 }
 
 SwitchWay SwitchWays::judge(const SwitchPlan& plan, std::span<const TaskStatus> statuses, std::uint32_t constants,
                             const MadeConstants& made, const NeededGaps& gaps) noexcept {
   SwitchWay way;
-  way.deadline = schedule_.judge(statuses, target_of(plan));
+  if (plan.deadline != nullptr) way.deadline = *plan.deadline;
+  else if constexpr (mechanisms::kTransitions) way.deadline = schedule_->judge(statuses, target_of(plan));
   if (!way.deadline) way.slow |= kSlowForDeadlines;
   way.constant = users_.find_staying(plan, constants, made);
   if (way.constant.task.is_valid()) way.slow |= kSlowForConstants;

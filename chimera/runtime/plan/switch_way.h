@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <span>
 
+#include "chimera/base/mechanisms.h"
+#include "chimera/base/part_if.h"
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/plan/constant_choice.h"
 #include "chimera/runtime/plan/idle_gap.h"
@@ -57,7 +59,7 @@ class SwitchWays {
 
   const ApplicationSpec* spec_ = nullptr;
   Rivals rivals_;
-  SwitchSchedule schedule_;
+  [[no_unique_address]] PartIf<mechanisms::kTransitions, SwitchSchedule> schedule_;
   ConstantUsers users_;
 };
 

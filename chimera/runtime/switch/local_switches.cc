@@ -131,6 +131,13 @@ void LocalSwitches::ask(SwitchRequest request, Nanoseconds now) noexcept {
   const bool is_nothing = answer.why == NoSwitch::kNothingToDo;
   if (is_nothing && request.cause != SwitchCause::kScript) return;
   const std::uint32_t number = is_nothing ? 0 : receipts_.next_number();
+  if (!answer && reader_ != nullptr) {
+    SwitchReceipt told;
+    told.number = number;
+    note_request(told, request, orders_.set_in_force(), orders_.on(), {}, now);
+    refuse(told, answer);
+    return reader_->take(told);
+  }
   if (is_under_way() && !receipts_.has_room()) return receipts_.leave_out();  // the last place is that of the present
   SwitchReceipt& receipt = receipts_.add();
   receipt.number = number;
@@ -160,6 +167,10 @@ void LocalSwitches::end_if_over(Nanoseconds now, bool is_run_over) noexcept {
   const NoSwitch otherwise = is_run_over ? NoSwitch::kRunEnded : NoSwitch::kMemberDied;
   orders_.collect(present_, otherwise, std::max(now, latest_), *receipt_);
   if (!is_run_over && orders_.make_next_try(present_, receipt_->why, now)) return orders_.announce(present_);
+  if (reader_ != nullptr) {
+    reader_->take(*receipt_);
+    receipts_.clear();
+  }
   receipt_ = nullptr;
 }
 

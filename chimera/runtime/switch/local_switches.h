@@ -28,6 +28,8 @@ class LocalSwitches : private SwitchMembers {
                SetupMemory& memory);
   /// `needs_gaps`: as SwitchMembers::needs_gaps() of its tasks. The tasks outlive this. Context: setup.
   void join(std::uint32_t context, TaskSet& tasks, bool needs_gaps);
+  /// The reader, which outlives this, takes all receipts; room for one is enough then. Context: setup.
+  void read_by(ReceiptReader& reader) noexcept { reader_ = &reader; }
   /// The view that the context has of the others in a switch. Context: setup.
   SwitchPeers& of(std::uint32_t context) noexcept { return members_[context]; }
   void begin(Nanoseconds origin) noexcept { orders_.begin(origin); }
@@ -98,6 +100,7 @@ class LocalSwitches : private SwitchMembers {
   std::span<Member> members_;  // by context
   SwitchReceipts receipts_;
   OrderedSwitch present_;
+  ReceiptReader* reader_ = nullptr;
   SwitchReceipt* receipt_ = nullptr;  // of the switch that is under way
   SwitchRequest wish_;                // of the task that asked last: waits for the end of the switch that is under way
   TaskBits kept_off_;                 // by the script

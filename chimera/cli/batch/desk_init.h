@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs `init` of the tasks of an image on this machine, so that what a component refuses is known before the board has
+// it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "chimera/bake/application.h"
+#include "chimera/catalogue/library.h"
+
+namespace chimera::cli {
+
+/// What was found, in the order of initialisation.
+struct DeskInit {
+  std::vector<std::string> refusals;  ///< "task 'pid': 'init' refuses: kp must be above 0"
+  std::vector<std::string> untried;   ///< tasks whose `init` needs a pin or an interrupt, or a constant of such a task
+};
+
+/// Calls `init` of each task once in virtual time, in a process of its own, then `kill`. Tasks that need a constant of
+/// a task that refuses are left out. Context: setup; may block.
+DeskInit init_at_desk(const bake::BakedApplication& application, const Library& library);
+
+}  // namespace chimera::cli
