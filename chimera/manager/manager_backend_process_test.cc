@@ -405,10 +405,12 @@ TEST_F(ServedTest, StatusHasTheServerAndTheTimeSinceOn) {
   const Json lamp = good("status")["tasks"][1], sensor = good("status")["tasks"][0];
   const Json server = {{"kind", "deferrable"}, {"capacity_ns", 2000000}, {"period_ns", 10000000}};
   EXPECT_EQ(lamp["server"], server);
+  EXPECT_EQ(lamp["has_doorbell"], true);
   EXPECT_GE(lamp["on_ns"].as_int64(), 2'000'000'000);
   EXPECT_LT(lamp["on_ns"].as_int64(), 20'000'000'000);
   EXPECT_GE(lamp["busy_ns"].as_int64(), 3 * 3000) << "of the fake: 3 us a cycle";
   EXPECT_EQ(sensor["server"], nullptr);
+  EXPECT_EQ(sensor["has_doorbell"], false);
   const Json profile = good("profile")["tasks"][1];
   EXPECT_EQ(profile["server"], server);
   EXPECT_GE(profile["on_ns"].as_int64(), 2'000'000'000);

@@ -289,10 +289,11 @@ struct pboNoPorts { const chimera_call* pbo_call; };
 #define PBO_ILLEGAL (PBO_CALL->illegal)         /* the illegal-configuration flag */
 #define PBO_EXPIRED (PBO_CALL->host->expired(PBO_CALL->context))
 #define PBO_SIGNAL(which, task) (PBO_CALL->host->signal(PBO_CALL->context, which, task))
-#define PBO_RING(task) PBO_SIGNAL(CHIMERA_SIGNAL_WAKEUP, task) /* one event for a task behind a server */
+#define PBO_RING(task) PBO_SIGNAL(CHIMERA_SIGNAL_WAKEUP, task) /* one event for a task that events release */
 #define PBO_SAFE_FRAME(index, descriptor, pause_ns) /* written if this process dies; CHIMERA_OK or not */ \
   (PBO_CALL->host->safe_frame(PBO_CALL->context, index, descriptor, pause_ns))
 #define PBO_CONFIGURATION_IN_FORCE (PBO_CALL->host->configuration(PBO_CALL->context)) /* a chimera_text */
+#define PBO_INCARNATION (PBO_CALL->host->incarnation(PBO_CALL->context)) /* starts of this process; from 1 */
 #define PBO_SAFE_BYTES(index, bytes, size) (PBO_CALL->host->safe_bytes(PBO_CALL->context, index, bytes, size))
 #define PBO_REQUEST(name) (PBO_CALL->host->request(PBO_CALL->context, name)) /* a configuration; CHIMERA_OK or not */
 #define PBO_SPEND(ns) (PBO_CALL->host->spend(PBO_CALL->context, ns))

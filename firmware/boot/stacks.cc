@@ -22,12 +22,15 @@ std::uint32_t handler_stack_pointer() noexcept {
   return at;
 }
 
-// Memory protection unit of ARMv6-M and ARMv7-M: one region of 32 bytes, privileged read-only, never executed.
+// Memory protection unit of ARMv6-M and ARMv7-M: 32 bytes, privileged read-only, never executed. The smallest region of
+// ARMv6-M has 256 bytes in eight parts; all parts but one are left out of it.
 void protect(std::uint32_t region, const std::uint32_t* begin) noexcept {
-  constexpr std::uint32_t kNeverExecuted = 1u << 28, kReadOnly = 5u << 24, kBytes32 = 4u << 1, kEnable = 1;
+  constexpr std::uint32_t kNeverExecuted = 1u << 28, kReadOnly = 5u << 24, kBytes256 = 7u << 1, kEnable = 1;
+  const auto address = reinterpret_cast<std::uintptr_t>(begin);
+  const std::uint32_t left_out = 0xffu & ~(1u << (address >> 5 & 7));
   bare::register_at(0xe000'ed98) = region;
-  bare::register_at(0xe000'ed9c) = reinterpret_cast<std::uintptr_t>(begin);
-  bare::register_at(0xe000'eda0) = kNeverExecuted | kReadOnly | kBytes32 | kEnable;
+  bare::register_at(0xe000'ed9c) = address & ~255u;
+  bare::register_at(0xe000'eda0) = kNeverExecuted | kReadOnly | left_out << 8 | kBytes256 | kEnable;
 }
 
 }  // namespace

@@ -38,6 +38,7 @@ int t_ballOn(t_ballLocal_t *local) {
   SVAR_OUT(state);
   memcpy(local->position, xd, sizeof local->position); /* go on from where the cursor is */
   if (SVAR_INHERITED(xd) >= 0) strcpy(*state, SVAR_HANDED_OVER(xd) ? "handed over" : "outdated");
+  if (PBO_INCARNATION > 1) strcpy(*state, "restarted");
   return PBO_OK;
 }
 

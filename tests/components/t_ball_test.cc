@@ -94,6 +94,14 @@ TEST(CFace, AnOutVarHasItsValueAtOn) {
   EXPECT_EQ(rig.get<Text<64>>("state").view(), "outdated");
 }
 
+TEST(CFace, TheIncarnationIsThatOfTheProcess) {
+  Ball rig;
+  ASSERT_TRUE(rig.init());
+  rig.incarnation(2);
+  ASSERT_TRUE(rig.on());
+  EXPECT_EQ(rig.get<Text<64>>("state").view(), "restarted");
+}
+
 TEST(CFace, MethodsReachTheirPortsByName) {
   Ball rig;
   rig.set("scale", 2.0);

@@ -20,8 +20,8 @@ export const ACTS: Act[] = [
   { name: "clear", key: "c", role: "operate", help: "leave ERROR", fits: (t) => t.state === "ERROR" },
   { name: "reinit", key: "r", role: "operate", help: "read its constants again", fits: (t) => t.state === "ON" },
   { name: "spawn", key: "p", role: "operate", help: "create the task", fits: (t) => t.state === "NOT-CREATED" },
-  { name: "ring", key: "b", role: "operate", help: "one event for a task behind a server",
-    fits: (t) => t.server !== null && t.state === "ON" },
+  { name: "ring", key: "b", role: "operate", help: "one event for a task that events release",
+    fits: (t) => t.has_doorbell && t.state === "ON" },
 ];
 
 /** A question in place of an act: what will happen, and the act itself. */

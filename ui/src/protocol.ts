@@ -113,7 +113,7 @@ export interface TaskStatus {
   task: string; component: string; rtpu: string; state: State; in_service: boolean; incarnation: number;
   rate_hz: number; period_ns: number; budget_ns: number; busy_ns: number; on_ns: number; cycles: number;
   execution_ns: { mean: number; max: number }; response_ns: { max: number }; jitter_ns: number;
-  server: { capacity_ns: number; period_ns: number } | null;
+  server: { capacity_ns: number; period_ns: number } | null; has_doorbell: boolean;
   missed: number; overrun: number; dropped: number; stale: number; rejected: number; demoted: number;
   fault: string | null; faults: number; standby_for: string | null;
   inputs: { port: string; variable: string; age_ns: number | null }[];

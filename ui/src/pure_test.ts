@@ -109,8 +109,8 @@ test("arrow keys go along the lines, and up and down to the nearest box", () => 
 const task = (name: string, change: Partial<TaskStatus>): TaskStatus => ({
   task: name, component: name, rtpu: "servo", state: "ON", in_service: false, incarnation: 1, rate_hz: 1000,
   period_ns: 1e6, budget_ns: 1e5, busy_ns: 0, on_ns: 0, cycles: 0, execution_ns: { mean: 0, max: 0 },
-  response_ns: { max: 0 }, jitter_ns: 0, server: null, missed: 0, overrun: 0, dropped: 0, stale: 0, rejected: 0,
-  demoted: 0, fault: null, faults: 0, standby_for: null, inputs: [], ...change,
+  response_ns: { max: 0 }, jitter_ns: 0, server: null, has_doorbell: false, missed: 0, overrun: 0, dropped: 0, stale: 0,
+  rejected: 0, demoted: 0, fault: null, faults: 0, standby_for: null, inputs: [], ...change,
 });
 const rtpu = (name: string, alive: boolean): RtpuStatus => ({
   name, cpu: 1, policy: "muf", executor: "executive", pid: 2, alive, phase: "serving", hang: null, restarts: 0,
@@ -142,6 +142,13 @@ test("a person is asked only before the kill of a task that is ON", () => {
   const question = questionBefore(kill, [task("pid", {}), task("arm", { state: "OFF" })], () => undefined);
   assert.equal(question?.title, "Kill pid?");
   assert.equal(question?.button, "Kill pid, arm");
+});
+
+test("a ring is offered for tasks that are ON and have a doorbell", () => {
+  const ring = ACTS.find((act) => act.name === "ring")!;
+  assert.ok(ring.fits(task("lamp", { has_doorbell: true })));
+  assert.ok(!ring.fits(task("pid", {})));
+  assert.ok(!ring.fits(task("lamp", { has_doorbell: true, state: "OFF" })));
 });
 
 const TEXT = `# A loop.

@@ -138,6 +138,7 @@ Json task_json(const ManagerState& state, TaskId task, Nanoseconds at) {
           {"period_ns", spec.period.count},
           {"budget_ns", spec.budget.count},
           {"server", server_json(spec.server)},
+          {"has_doorbell", spec.has_doorbell()},
           {"on_ns", on_time(state, task, p, at).count},
           {"busy_ns", p.execution[CHIMERA_CYCLE].sum.count},
           {"cycles", p.cycles},

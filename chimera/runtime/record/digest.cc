@@ -43,6 +43,12 @@ class Fnv {
   std::uint64_t& hash_;
 };
 
+/// Since the origin. A task that was never ON has no release: its publication counts at the origin, whose instant on
+/// the clock differs between machines.
+Nanoseconds release_of(const Task& task, Nanoseconds origin) noexcept {
+  return task.last_release == Nanoseconds{} ? Nanoseconds{} : task.last_release - origin;
+}
+
 void add_output(Fnv& hash, const DeclaredPort& declared, const Output& output, const std::byte* at) noexcept {
   const std::uint32_t size = output.spec->element_bytes;
   for (std::uint32_t i = 0; i < output.port->count; ++i, at += size) {
@@ -71,7 +77,7 @@ void Digest::hand_over(DigestLine& line) noexcept {
 // The instants of acts and publications differ between machines, those of releases do not.
 Digest::OfTask& Digest::of(const Task& task) noexcept {
   OfTask& found = of_[task.id.index];
-  const std::int64_t second = (task.last_release - origin_).count / seconds(1).count;
+  const std::int64_t second = release_of(task, origin_).count / seconds(1).count;
   if (second > found.line.second) {
     hand_over(found.line);
     found.line.second = second;
@@ -86,7 +92,7 @@ void Digest::add_publication(const Task& task) noexcept {
   const auto* payload = reinterpret_cast<const std::byte*>(&slot + 1);
   Fnv hash(line.hash);
   hash.add('P', 1);
-  hash.add(static_cast<std::uint64_t>((task.last_release - origin_).count), 8);
+  hash.add(static_cast<std::uint64_t>(release_of(task, origin_).count), 8);
   hash.add(slot.sequence, 8);
   hash.add(slot.valid, 8);
   for (const Output& output : task.outputs)

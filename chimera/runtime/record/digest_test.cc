@@ -165,6 +165,12 @@ TEST_F(DigestTest, HandsOverALineForEachSecondOfReleases) {
   EXPECT_EQ(lines[2].second, 3);
 }
 
+TEST_F(DigestTest, CountsAPublicationBeforeTheFirstOnAtTheOrigin) {
+  const std::uint64_t at_origin = hash(0);
+  EXPECT_EQ(hash(-kOrigin.count / milliseconds(1).count), at_origin) << "its last release is none";
+  EXPECT_NE(hash(1 - kOrigin.count / milliseconds(1).count), at_origin);
+}
+
 TEST_F(DigestTest, HashesMethodCodeAndTextOfFaults) {
   const auto hash_of = [this](Method method, std::int32_t code, const char* text) {
     task.faults = {};

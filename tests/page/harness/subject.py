@@ -108,7 +108,8 @@ class Subject:
                   "demoted", "events", "events_lost", "exhausted", "faults")
         return {"task": name, "component": "adder", "rtpu": task["rtpu"], "state": task["state"], "in_service": False,
                 "incarnation": 1, "standby_for": None, "rate_hz": 100.0, "period_ns": 10000000, "budget_ns": 50000,
-                "server": None, "on_ns": 1000000000, "busy_ns": 20000000, "execution_ns": {"mean": 20000, "max": 40000},
+                "server": None, "has_doorbell": False, "on_ns": 1000000000, "busy_ns": 20000000,
+                "execution_ns": {"mean": 20000, "max": 40000},
                 "response_ns": {"max": 50000}, "jitter_ns": 1000, "fault": task["fault"],
                 "inputs": [{"port": p["port"], "variable": p["variable"], "age_ns": 1000000}
                            for p in task["ports"] if p["kind"] == "in-var"], **dict.fromkeys(counts, 0)}
