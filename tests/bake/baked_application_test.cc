@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <deque>
 #include <fstream>
 #include <map>
+#include <vector>
 
+#include "chimera/bake/room.h"
 #include "chimera/catalogue/workplace.h"
 #include "chimera/cli/run/digest_text.h"
 #include "chimera/load/shared_object.h"
@@ -30,10 +33,22 @@ const Library& library() {
 TEST(BakedApplication, IsTheApplicationOfTheDescription) {
   const Verdict verdict = verify(read_description_file(BAKED_DESCRIPTION), library());
   ASSERT_TRUE(verdict.configuration) << verdict.report.text();
-  ApplicationSpec expected = verdict.configuration->spec();
-  std::vector<TaskSpec> tasks(expected.tasks.begin(), expected.tasks.end());
-  for (TaskSpec& task : tasks) task.budget = task.min_time = {};  // of another machine
+  const ApplicationSpec& described = verdict.configuration->spec();
+  ApplicationSpec expected = described;
+  std::vector<TaskSpec> tasks(described.tasks.begin(), described.tasks.end());
+  std::deque<std::vector<PortSpec>> ports;
+  for (TaskSpec& task : tasks) {
+    task.budget = task.min_time = {};  // of another machine
+    for (PortSpec& port : ports.emplace_back(task.ports.begin(), task.ports.end())) bake::fit(port, described);
+    task.ports = ports.back();
+  }
   expected.tasks = tasks;
+  std::vector<GivenSpec> operators(described.operators.begin(), described.operators.end());
+  for (GivenSpec& given : operators) bake::fit(given, described);
+  expected.operators = operators;
+  std::vector<ConstantSpec> constants(described.constants.begin(), described.constants.end());
+  for (std::size_t c = 0; c < constants.size(); ++c) bake::fit(constants[c], ConstantId(c), expected);
+  expected.constants = constants;
   EXPECT_EQ(testing::first_difference(baked::kSpec, expected), "");
 }
 
