@@ -33,10 +33,10 @@ void add_port(TaskMemoryNeed& need, std::size_t& group_bytes, const PortSpec& po
   if (port.kind == CHIMERA_OUT_VAR) need.float64_out += doubles_of(port);
 }
 
-TaskMemoryNeed need_of(const TaskSpec& task, bool switches) {
+TaskMemoryNeed need_of(const TaskSpec& task, std::size_t record_bytes) {
   TaskMemoryNeed need;
   need.flash_bytes = baked::kTaskSpecBytes + task.name.size() + task.component.size() + 2;
-  need.ram_bytes = baked::kTaskRecordBytes + (switches ? baked::kSwitchRecordBytes : 0) + 2 * baked::kGroupHeadBytes;
+  need.ram_bytes = record_bytes + 2 * baked::kGroupHeadBytes;
   std::size_t group_bytes = 0;
   for (const PortSpec& port : task.ports) add_port(need, group_bytes, port);
   need.ram_bytes += kPayloadsOfTask * group_bytes;
@@ -76,7 +76,8 @@ std::size_t MemoryNeed::ram_bytes() const noexcept {
 
 MemoryNeed memory_need(const ApplicationSpec& spec, std::size_t n_acts, const Target& target) {
   MemoryNeed need;
-  for (const TaskSpec& task : spec.tasks) need.tasks.push_back(need_of(task, spec.sets.size() > 1));
+  need.record_bytes = baked::kTaskRecordBytes + (spec.sets.size() > 1 ? baked::kSwitchRecordBytes : 0);
+  for (const TaskSpec& task : spec.tasks) need.tasks.push_back(need_of(task, need.record_bytes));
   std::size_t& flash = need.shared_flash_bytes;
   flash = baked::kApplicationSpecBytes + n_acts * baked::kScriptActBytes;
   flash += baked::kTaskIdBytes * (spec.init_order.size() + spec.start.size() + spec.on_order.size() +

@@ -22,6 +22,7 @@ struct TaskMemoryNeed {
 
 struct MemoryNeed {
   std::vector<TaskMemoryNeed> tasks;
+  std::size_t record_bytes = 0;        ///< of each task, part of its ram_bytes: all that has a fixed size
   std::size_t shared_flash_bytes = 0;  ///< tables of no single task
   std::size_t shared_ram_bytes = 0;    ///< operator variables and given constants
   std::size_t stack_bytes = 0;         ///< both stacks

@@ -2,9 +2,11 @@
 // Compiled with the tables of one application: tests/bake/CMakeLists.txt.
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <fstream>
 #include <vector>
 
+#include "chimera/bake/room.h"
 #include "chimera/runtime/executive/baked.h"
 #include "chimera/runtime/plan/switch_plan.h"
 #include "chimera/runtime/testing/spec_equal.h"
@@ -16,10 +18,22 @@ namespace chimera::baked_application_test {
 TEST(BakedApplication, IsTheApplicationOfTheDescription) {
   const Verdict verdict = verify(read_description_file(BAKED_DESCRIPTION), built_library());
   ASSERT_TRUE(verdict.configuration) << verdict.report.text();
-  ApplicationSpec expected = verdict.configuration->spec();
-  std::vector<TaskSpec> tasks(expected.tasks.begin(), expected.tasks.end());
-  for (TaskSpec& task : tasks) task.budget = task.min_time = {};  // of another machine
+  const ApplicationSpec& described = verdict.configuration->spec();
+  ApplicationSpec expected = described;
+  std::vector<TaskSpec> tasks(described.tasks.begin(), described.tasks.end());
+  std::deque<std::vector<PortSpec>> ports;
+  for (TaskSpec& task : tasks) {
+    task.budget = task.min_time = {};  // of another machine
+    for (PortSpec& port : ports.emplace_back(task.ports.begin(), task.ports.end())) bake::fit(port, described);
+    task.ports = ports.back();
+  }
   expected.tasks = tasks;
+  std::vector<GivenSpec> operators(described.operators.begin(), described.operators.end());
+  for (GivenSpec& given : operators) bake::fit(given, described);
+  expected.operators = operators;
+  std::vector<ConstantSpec> constants(described.constants.begin(), described.constants.end());
+  for (std::size_t c = 0; c < constants.size(); ++c) bake::fit(constants[c], ConstantId(c), expected);
+  expected.constants = constants;
   EXPECT_EQ(testing::first_difference(baked::kSpec, expected), "");
 }
 

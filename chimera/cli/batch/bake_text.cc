@@ -47,7 +47,8 @@ std::string bake_text(const Configuration& configuration, const bake::Target& ta
          std::to_string(bake::kDoubleCompare) +
          " instructions)\n" + "flash: tables " + kib(result.memory.flash_bytes()) + " of " + kib(target.flash.bytes) +
          "\nRAM: at least " + kib(result.memory.ram_bytes()) + " of " + kib(target.ram.bytes) + ", with stacks of " +
-         kib(target.stack_bytes) + " and " + kib(target.handler_stack_bytes) +
+         kib(target.stack_bytes) + " and " + kib(target.handler_stack_bytes) + ", and records of " +
+         std::to_string(result.memory.record_bytes) + " B for each task" +
          "\nCode and the other members of components: known to the compiler of the target.\nparts of the runtime: " +
          join(used(result), " ") + "\n";
 }

@@ -21,8 +21,8 @@ inline constexpr std::size_t kSwitchPlanBytes = 48, kHandoverBytes = 28;
 inline constexpr std::size_t kLivePortBytes = 48;  ///< the live half of a port, in the state of its component
 
 // In RAM, of each task. All that has a fixed size: what its job, its state and its place in the queue need.
-inline constexpr std::size_t kTaskRecordBytes = 9999;
-inline constexpr std::size_t kSwitchRecordBytes = 9999;  ///< more, in an image with switches
+inline constexpr std::size_t kTaskRecordBytes = 816;
+inline constexpr std::size_t kSwitchRecordBytes = 336;  ///< more, in an image with switches
 inline constexpr std::size_t kGroupHeadBytes = 40;      ///< of a group of values; a task has two
 // Of each port, beside its live half and its values.
 inline constexpr std::size_t kInputBytes = 28, kOutputBytes = 64, kConstantPortBytes = 12, kResourcePortBytes = 8;

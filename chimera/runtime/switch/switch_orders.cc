@@ -90,7 +90,7 @@ Nanoseconds SwitchOrders::lead() const noexcept {
   Nanoseconds longest;
   for (std::size_t t = 0; t < statuses_.size(); ++t)
     if (is_on(TaskId(t)))
-      longest = std::max(longest, members_.profile(TaskId(t)).execution[static_cast<int>(Method::kCycle)].max);
+      longest = std::max<Nanoseconds>(longest, members_.profile(TaskId(t)).execution[CHIMERA_CYCLE].max);
   return lead_of(plan_, spec_->tasks, longest);
 }
 
