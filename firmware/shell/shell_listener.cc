@@ -117,7 +117,7 @@ void ShellListener::note_news(const Task& task, Nanoseconds now) noexcept {
   Seen& seen = seen_[task.id.index];
   const auto faults = static_cast<std::uint32_t>(task.faults.count);
   if (faults != seen.faults) {
-    const FaultRecord& log = task.faults;
+    const TaskFaults& log = task.faults;
     events_.note(log.at, ShellEventKind::kFault, task.id, faults - seen.faults, log.method, log.last.code)
         .text.assign(log.last.text);
     seen.faults = faults;

@@ -20,7 +20,7 @@ T load(const std::byte* at) noexcept {
 /// One number of a profile and its name.
 struct Counter {
   const char* name;
-  std::uint64_t Profile::*count;
+  Count Profile::*count;
 };
 
 constexpr Counter kCounters[] = {{"cycles", &Profile::cycles},     {"missed", &Profile::missed},
@@ -94,12 +94,13 @@ bool put_profile(TextLine& line, const Task& task, std::size_t row, Nanoseconds 
       return true;
     case 5:
       if (task.faults.count == 0) return false;
-      line.put("the last at %t in %z, code %d:", task.faults.at - origin, method_name(task.faults.method),
-               task.faults.last.code);
+      line.put("the last at %t in %z", task.faults.at - origin, method_name(task.faults.method));
+      if constexpr (mechanisms::kCopies) line.put(", code %d:", task.faults.last.code);
       return true;
-    case 6:
+    case 6:  // an image keeps the text of one task only; `events` has it
+      if (!mechanisms::kCopies || task.faults.count == 0) return false;
       line.put("%z", task.faults.last.text);
-      return task.faults.count != 0;
+      return true;
     default: return false;
   }
 }
