@@ -253,10 +253,12 @@ TEST(Bake, WritesAPlanForEachPairOfConfigurations) {
                       "constexpr TaskId kLeaving1[] = {\n    TaskId(0u),\n};\n"
                       "constexpr TaskId kStaying1[] = {\n    TaskId(2u),\n};\n"
                       "constexpr Handover kHandovers1[] = {\n"
-                      "    {.variable = VariableId(0u), .from = {.task = TaskId(0u)}, .to = {.task = TaskId(1u)}},\n};\n"),
+                      "    {.variable = VariableId(0u), .from = {.task = TaskId(0u)}, "
+                      ".to = {.task = TaskId(1u)}},\n};\n"),
             std::string::npos)
       << text;
-  EXPECT_NE(text.find("constexpr SwitchPlan kPlans[] = {\n    {},\n    {.before = 0, .after = 1, .arriving = kArriving1,"),
+  EXPECT_NE(text.find("constexpr SwitchPlan kPlans[] = {\n    {},\n"
+                      "    {.before = 0, .after = 1, .arriving = kArriving1,"),
             std::string::npos)
       << text;
   EXPECT_NE(text.find(".plans = kPlans}"), std::string::npos);

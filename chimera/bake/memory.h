@@ -31,7 +31,7 @@ struct MemoryNeed {
   std::size_t ram_bytes() const noexcept;  ///< with the stacks
 };
 
-/// What switches need in an image with more than one configuration: in all, for each task, for each variable.
+/// RAM for switches in an image with more than one configuration: in all, for each task, for each variable.
 inline constexpr std::size_t kSwitchBytes = 1024, kSwitchTaskBytes = 250, kSwitchVariableBytes = 290;
 /// Instructions of the compiler's library on a core without double precision, as measured on a Cortex-M3.
 inline constexpr std::size_t kDoubleAdd = 75, kDoubleMultiply = 53, kDoubleDivide = 581, kDoubleCompare = 49;

@@ -15,8 +15,8 @@ def bake(tree, folder, tasks, target=""):
     (folder / "board.yaml").write_text(TARGET + target)
     environment = dict(os.environ, ASAN_OPTIONS="detect_leaks=0:handle_segv=0", CHIMERA_PATH=str(tree / "components"))
     out = folder / f"out{len(list(folder.iterdir()))}"
-    done = subprocess.run([tree / "bin" / "chimera", "bake", folder / "d.yaml", "--target", folder / "board.yaml", "--out",
-                           out], capture_output=True, text=True, env=environment, stdin=subprocess.DEVNULL)
+    command = [tree / "bin" / "chimera", "bake", folder / "d.yaml", "--target", folder / "board.yaml", "--out", out]
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, stdin=subprocess.DEVNULL)
     return done, out.is_dir()
 
 
@@ -45,7 +45,7 @@ def main():
         expect("one needs the board", bake(tree, folder, "  button: {resources: {pin: x}}\n",
                                            "resources: {button: {pin: test0}}\n"),
                True, 0, ["'init' is not tried here, because it needs the board: button"])
-    print("\n".join(found) or "refusals of init are told")
+    print("\n".join(found) or "bake refuses what init refuses")
     return 1 if found else 0
 
 

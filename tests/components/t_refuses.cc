@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Refuses `init` or `on` when it is called for the n-th time, without exceptions, so that a microcontroller can have it.
+// Refuses `init` or `on` from the n-th call on, without exceptions, so that a microcontroller can have it.
 #include "chimera/task/component.h"
 
 using namespace chimera;

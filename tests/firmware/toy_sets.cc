@@ -72,8 +72,9 @@ class ToyTables {
     std::string sets;
     for (const std::string& each : sets_) sets += "    " + each + ",\n";
     return "#include \"tests/firmware/toys/toys.h\"\n" + declared_ + "namespace chimera::baked_toys {\nnamespace {\n" +
-           tables_.text() + "const Set kAllSets[] = {\n" + sets + "};\n}\nconstinit const std::span<const Toy> kToys = " +
-           toys + ";\nconst std::span<const Set> kSets = kAllSets;\n}\n";
+           tables_.text() + "constinit const Set kAllSets[] = {\n" + sets +
+           "};\n}\nconstinit const std::span<const Toy> kToys = " + toys +
+           ";\nconstinit const std::span<const Set> kSets = kAllSets;\n}\n";
   }
 
  private:

@@ -11,7 +11,7 @@
 
 namespace chimera::cli {
 
-/// What was found, in the order of initialisation.
+/// Results in the order of initialisation.
 struct DeskInit {
   std::vector<std::string> refusals;  ///< "task 'pid': 'init' refuses: kp must be above 0"
   std::vector<std::string> untried;   ///< tasks whose `init` needs a pin or an interrupt, or a constant of such a task
