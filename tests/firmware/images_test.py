@@ -7,7 +7,6 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools" / "firmware"))
-import digest  # noqa: E402
 import image as images  # noqa: E402
 import sizes  # noqa: E402
 
@@ -21,9 +20,7 @@ def complaints(built):
         return
     lines = built.run()
     yield from images.unpunctual(lines, built.periods())
-    difference = digest.difference(built.host_digest(), digest.of_image(lines))
-    if difference:
-        yield difference
+    yield from built.differences(lines)
 
 
 def main():

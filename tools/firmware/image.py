@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An image of firmware/images: what it is made of, and how it is baked, linked, run and compared with the host."""
+"""An image, as image.yaml says: what it is made of, and how it is baked, linked, run and compared with the host."""
 import dataclasses
 import json
 import math
@@ -15,7 +15,7 @@ import sizes
 import yaml
 
 IMAGES = build.ROOT / "firmware" / "images"
-KEYS = {"application", "targets", "for", "at", "components", "instruction_ns"}
+KEYS = {"application", "targets", "for", "at", "components", "instruction_ns", "equal"}
 
 
 class ImageError(Exception):
@@ -24,26 +24,38 @@ class ImageError(Exception):
 
 @dataclasses.dataclass
 class Image:
-    """firmware/images/NAME/image.yaml"""
+    """NAME/image.yaml"""
     name: str
+    folder: pathlib.Path            # of that file
     application: pathlib.Path       # a description
-    targets: list                   # of firmware/targets
+    targets: list                   # of firmware/targets, or NAME/TARGET.yaml
     duration: str                   # "60 s"
     acts: list                      # as of --at
     folders: list                   # of components, beside library/
     instruction_ns: int             # time of an instruction in QEMU
+    equal: list                     # pairs of tasks with equal digests
 
     @staticmethod
     def read(name):
+        """The image of that name in firmware/images."""
         path = IMAGES / name / "image.yaml"
         if not path.is_file():
             raise ImageError(f"no image {name}; there are: {', '.join(names())}")
-        keys = yaml.safe_load(path.read_text())
+        return Image.of_file(path)
+
+    @staticmethod
+    def of_file(path):
+        try:
+            keys = yaml.safe_load(path.read_text())
+        except (OSError, yaml.YAMLError) as error:
+            raise ImageError(f"{path}: {error}") from None
         if not isinstance(keys, dict) or not {"application", "targets", "for"} <= set(keys) <= KEYS:
-            raise ImageError(f"{path}: has application, targets and for; it can have at, components, instruction_ns")
-        return Image(name, (path.parent / keys["application"]).resolve(), keys["targets"], keys["for"],
-                     keys.get("at", []), [(path.parent / each).resolve() for each in keys.get("components", [])],
-                     keys.get("instruction_ns", qemu.INSTRUCTION_NS))
+            raise ImageError(f"{path}: has application, targets and for; it can have at, components, equal, "
+                             "instruction_ns")
+        folder = path.resolve().parent
+        return Image(folder.name, folder, (folder / keys["application"]).resolve(), keys["targets"], keys["for"],
+                     keys.get("at", []), [(folder / each).resolve() for each in keys.get("components", [])],
+                     keys.get("instruction_ns", qemu.INSTRUCTION_NS), keys.get("equal", []))
 
     def components(self):
         """The names of the components of the application."""
@@ -57,7 +69,9 @@ def names():
 
 def call(command, tree):
     """Runs the program of the host. Raises ImageError with what it said."""
-    environment = dict(os.environ, ASAN_OPTIONS="detect_leaks=0", CHIMERA_PATH=str(tree / "components"))
+    environment = dict(os.environ, ASAN_OPTIONS="detect_leaks=0")
+    if (tree / "components").is_dir():  # an installed program finds its own
+        environment["CHIMERA_PATH"] = str(tree / "components")
     done = subprocess.run(list(map(str, command)), stdin=subprocess.DEVNULL, capture_output=True, text=True,
                           env=environment)
     if done.returncode != 0:
@@ -65,7 +79,7 @@ def call(command, tree):
 
 
 class Built:
-    """An image for one target. `tree` is a build tree of the host with the program and the components."""
+    """An image for one target. `tree` is a build tree, or a folder that Chimera is installed in."""
 
     def __init__(self, image, target, tree, out):
         self.image, self.target, self.tree = image, target, tree
@@ -78,7 +92,7 @@ class Built:
         call([self.tree / "bin" / "chimera", *words, "--for", self.image.duration, *acts], self.tree)
 
     def bake(self):
-        own = IMAGES / self.image.name / f"{self.target}.yaml"  # with the resources of this application
+        own = self.image.folder / f"{self.target}.yaml"  # with the resources of this application
         target = own if own.is_file() else self.target
         self._run("bake", self.image.application, "--target", target, "--out", self.out / "baked")
 
@@ -109,6 +123,12 @@ class Built:
         path = self.out / "host.digest"
         self._run("run", self.image.application, "--virtual", "--digest", path)
         return digest.of_host(path.read_text())
+
+    def differences(self, lines):
+        """Sentences about what differs from the host, and in pairs of tasks with equal digests."""
+        found = digest.of_image(lines)
+        difference = digest.difference(self.host_digest(), found)
+        return ([difference] if difference else []) + list(digest.unequal(found, self.image.equal))
 
     def run(self, limit_s=qemu.LIMIT_S):
         """The lines of the image. Raises ImageError if it does not end by itself."""
