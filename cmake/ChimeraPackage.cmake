@@ -32,6 +32,17 @@ foreach(program chimera chimera-guard chimera-rtpu chimera-manager chimera-descr
   install(PROGRAMS ${CMAKE_BINARY_DIR}/bin/${program} DESTINATION bin COMPONENT sdk)
 endforeach()
 install(DIRECTORY share/chimera DESTINATION share COMPONENT sdk PATTERN completion EXCLUDE)
+# What an image of a microcontroller is made of, in the folders of the checkout (tools/firmware/build.py). Components of
+# the library are beside their data sheets.
+set(sources FILES_MATCHING PATTERN "*.h" PATTERN "*.cc" PATTERN "*.ld" REGEX "_(test|stress|fuzz)\\.cc$" EXCLUDE
+  REGEX "/(hosted|preemptive|virtual|testing|images|targets|[a-z_]*_corpus)$" EXCLUDE)
+foreach(folder base platform/bare table task schedule runtime)
+  cmake_path(GET folder PARENT_PATH above)
+  install(DIRECTORY chimera/${folder} DESTINATION share/chimera/chimera/${above} COMPONENT sdk ${sources})
+endforeach()
+install(FILES chimera/platform/clock.h DESTINATION share/chimera/chimera/platform COMPONENT sdk)
+install(DIRECTORY firmware DESTINATION share/chimera COMPONENT sdk ${sources})
+install(DIRECTORY tools/firmware DESTINATION share/chimera/tools COMPONENT sdk FILES_MATCHING PATTERN "*.py")
 if(CHIMERA_WEB)
   install(PROGRAMS ${CMAKE_BINARY_DIR}/bin/chimera-web DESTINATION bin COMPONENT page)
   install(DIRECTORY ${CMAKE_BINARY_DIR}/page DESTINATION share/chimera COMPONENT page)

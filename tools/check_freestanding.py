@@ -27,7 +27,7 @@ TAKEN = ("gain pid_joint tderiv accel brake car ccui control dashboard deadband 
          "join_priority joint_trajectory limit lowpass motor notch position rate_limit select servo_axis "
          "signal_generator split_pm split_pm_override unit_convert watchdog wheels")
 COMPONENTS = tuple(f"library/{name}/{name}.cc" for name in TAKEN.split())
-IN_C = ("tests/components/t_paper.c", "tests/components/t_parts.c", "tests/components/t_tderiv.c")
+IN_C = tuple(f"tests/components/t_{name}.c" for name in ("paper", "parts", "tderiv", "limit", "pid_joint"))
 FREESTANDING = ("-std=c++20", "-ffreestanding", "-fno-exceptions", "-fno-rtti", "-fno-threadsafe-statics",
                 "-DCHIMERA_BARE")
 ARM = "arm-none-eabi-g++"

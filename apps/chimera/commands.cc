@@ -14,8 +14,8 @@ namespace {
 const std::vector<FileCommand>& file_commands() {
   static const std::vector<FileCommand> kRows = {
       check_row(),    schedule_row(), bake_row(), run_row(), idle_row(), attend_row(), sweep_row(), web_row(),
-      list_row(),     describe_row(), test_row(), new_row(), new_component_row(), new_application_row(), pages_row(),
-      version_row(),  shell_row()};
+      list_row(),     describe_row(), test_row(), new_row(), new_component_row(), new_application_row(),
+      new_firmware_row(), pages_row(), version_row(), shell_row()};
   return kRows;
 }
 

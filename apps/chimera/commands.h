@@ -25,6 +25,7 @@ FileCommand test_row();
 FileCommand new_row();
 FileCommand new_component_row();
 FileCommand new_application_row();
+FileCommand new_firmware_row();
 FileCommand run_row();
 FileCommand idle_row();
 FileCommand attend_row();

@@ -53,6 +53,7 @@ int new_component(const Call& call, const Workplace&) {
 }
 
 int new_application(const Call& call, const Workplace&) { return make(cli::NewKind::kApplication, call); }
+int new_firmware(const Call& call, const Workplace&) { return make(cli::NewKind::kFirmware, call); }
 
 }  // namespace
 
@@ -157,7 +158,7 @@ FileCommand new_row() {
                     .help = "Make a project that builds and passes its tests at once",
                     .json = nullptr,
                     .manual = "Makes a project that builds and passes its tests at once, in a folder called as the "
-                              "project: `component` or `app`.",
+                              "project: `component`, `app` or `firmware`.",
                     .has_commands = true}};
 }
 
@@ -190,4 +191,16 @@ FileCommand new_application_row() {
                     .json = nullptr,
                     .example = "chimera new app pendulum"},
           .carry_out = new_application};
+}
+
+FileCommand new_firmware_row() {
+  return {.words = {.name = "new firmware",
+                    .help = "An application for a microcontroller, and a script that runs it in QEMU",
+                    .operands = "NAME",
+                    .least = 1,
+                    .most = 1,
+                    .operand_help = kProjectName,
+                    .json = nullptr,
+                    .example = "chimera new firmware thermostat"},
+          .carry_out = new_firmware};
 }

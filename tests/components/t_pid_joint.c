@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The component pid_joint of the library, in C. twins_test.cc compares the two. */
-#include <math.h>
 
 #include "tests/components/finite_input.h"
 
@@ -47,13 +46,20 @@ static int judgeAll(t_pid_jointLocal_t *local) {
   return found;
 }
 
+/* As floor, which an image does not have. */
+static double wholeBelow(double x) {
+  if (!(__builtin_fabs(x) < 0x1p52)) return x;
+  const double cut = (double)(int64_t)x;
+  return __builtin_copysign(cut > x ? cut - 1 : cut, x);
+}
+
 static double errorOf(t_pid_jointLocal_t *local, uint32_t i) {
   static const double pi = 0x1.921fb54442d18p+1;
   SVAR_IN(q_ref);
   SVAR_IN(q);
   SVAR_IN(is_continuous);
   const double angle = q_ref[i] - q[i];
-  return is_continuous[i] ? angle - 2 * pi * floor(angle / (2 * pi) + 0.5) : angle;
+  return is_continuous[i] ? angle - 2 * pi * wholeBelow(angle / (2 * pi) + 0.5) : angle;
 }
 
 /* Continues from the last torque. Waits for an input that no task wrote or that is not finite. */
@@ -95,7 +101,7 @@ int t_pid_jointOn(t_pid_jointLocal_t *local) {
   SVAR_OUT(tau);
   const int isOutdated = SVAR_INHERITED(tau) >= 0 && !SVAR_HANDED_OVER(tau);
   for (uint32_t i = 0; i < SVAR_SIZE(tau); ++i)
-    if (isOutdated || isnan(tau[i])) tau[i] = 0;
+    if (isOutdated || __builtin_isnan(tau[i])) tau[i] = 0;
   begin(local);
   return PBO_OK;
 }
@@ -111,7 +117,7 @@ int t_pid_jointCycle(t_pid_jointLocal_t *local) {
   if (inputs != PBO_OK) return inputs;
   if (!local->isStarted) begin(local);
   for (uint32_t i = 0; i < SVAR_SIZE(tau); ++i) torque[i] = step(local, i);
-  for (uint32_t i = 0; i < SVAR_SIZE(tau) && local->isStarted; ++i) local->isStarted = isfinite(torque[i]);
+  for (uint32_t i = 0; i < SVAR_SIZE(tau) && local->isStarted; ++i) local->isStarted = __builtin_isfinite(torque[i]);
   if (!local->isStarted) return PBO_FAULT("the torque is not finite: the gains or the inputs are too large");
   for (uint32_t i = 0; i < SVAR_SIZE(tau); ++i) tau[i] = torque[i];
   return PBO_OK;

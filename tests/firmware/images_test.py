@@ -44,9 +44,7 @@ def complaints(built):
         return
     lines = built.run()
     yield from images.unpunctual(lines, built.periods())
-    difference = built.difference(lines)
-    if difference:
-        yield difference
+    yield from built.differences(lines)
     yield from complaints_about_profile(built, lines)
 
 

@@ -158,7 +158,7 @@ def main():
             print(f"{program} is not installed")
             return 77
     tree = pathlib.Path(sys.argv[1]).resolve()
-    image = images.Image.read("workbench", ROOT / "tests" / "firmware" / "workbench")
+    image = images.Image.of_file(ROOT / "tests" / "firmware" / "workbench" / "image.yaml")
     built = images.Built(image, image.targets[0], tree, tree / "firmware")
     built.bake()
     built.link()

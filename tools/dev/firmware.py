@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """./dev firmware: bakes, links and runs images for microcontrollers, and compares them with the host."""
 import argparse
-import json
 import os
 import pathlib
 import sys
@@ -9,11 +8,8 @@ import sys
 import common
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "firmware"))
-import build  # noqa: E402
 import image as images  # noqa: E402
-import qemu  # noqa: E402
-import recorded_profile  # noqa: E402
-import sizes  # noqa: E402
+import make  # noqa: E402
 
 OUT = common.BUILD / "firmware"
 
@@ -41,33 +37,6 @@ def host_is_ready(image, tree):
     return common.configure_with_tests(tree) and common.compile_tree(tree, *targets)
 
 
-def show(image, target, arguments):
-    """True if the image was linked and, where QEMU has the machine, its digest is that of the host."""
-    built = images.Built(image, target, common.BUILD / arguments.tree, OUT)
-    common.step(f"{image.name} for {target}: bake, compile, link")
-    built.bake()
-    built.link()
-    print("\n".join(sizes.text(built.sizes(), arguments.detail)))
-    complaints = built.complaints()
-    if complaints:
-        print("\n".join(complaints))
-        return False
-    if arguments.no_run or built.machine() is None:
-        common.step(f"{image.name} for {target}: linked" + ("" if arguments.no_run else "; QEMU has no such machine"))
-        return True
-    common.step(f"{image.name} for {target}: run for {image.duration} in QEMU and on this machine")
-    lines = built.run()
-    print("\n".join(f"   {line}" for line in lines if not line.startswith("digest ")))
-    if arguments.profile:
-        profile = recorded_profile.of_image(lines, built.out / "baked")
-        pathlib.Path(arguments.profile).write_text(json.dumps(profile, indent=2) + "\n")
-        common.step(f"{image.name} for {target}: its profile is in {arguments.profile}")
-    print("".join(f"   {line}\n" for line in images.unpunctual(lines, built.periods())), end="")
-    found = built.difference(lines)
-    common.step(f"{image.name} for {target}: " + (found or "its digest is equal to that of this machine"))
-    return not found
-
-
 def main():
     arguments = parse_arguments()
     os.environ.setdefault("LC_ALL", "C")
@@ -78,8 +47,9 @@ def main():
             if not host_is_ready(image, arguments.tree):
                 return 1
             for target in [arguments.target] if arguments.target else image.targets:
-                good = show(image, target, arguments) and good
-    except (images.ImageError, build.BuildError, qemu.QemuError) as error:
+                good = make.make(image, target, common.BUILD / arguments.tree, OUT, not arguments.no_run,
+                                 arguments.detail, arguments.profile) and good
+    except make.ERRORS as error:
         print(f"./dev firmware: {error}", file=sys.stderr)
         return 1
     return 0 if good else 1

@@ -3,6 +3,7 @@
 usage: build.py BAKED OUT [COMPONENT_FOLDER ...]   (OUT/image.elf; component folders beside library/)"""
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -17,7 +18,7 @@ NO_PRODUCT = re.compile(r"_(test|stress|fuzz)\.cc$")
 DESK = {"schedule/" + name for name in ("analysis.cc", "level.cc", "worst_window.cc", "response.cc", "data_age.cc",
                                         "transition.cc", "change_window.cc")}
 COMMON = ("-Os -ffreestanding -ffp-contract=off -fsigned-char -ffunction-sections -fdata-sections -g1 "
-          f"-ffile-prefix-map={ROOT}/= -DCHIMERA_BARE -Wall -Wextra -Werror -Wno-psabi "
+          "-DCHIMERA_BARE -Wall -Wextra -Werror -Wno-psabi "
           "-Wno-nonnull "  # what an image lacks is null
           "-Wno-missing-field-initializers")  # tables name what differs from the default
 CXX = ("-std=c++20 -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-asynchronous-unwind-tables "
@@ -25,6 +26,9 @@ CXX = ("-std=c++20 -fno-exceptions -fno-rtti -fno-threadsafe-statics -fno-asynch
 # QEMU's machine of each board that it simulates. It has none with a Cortex-M0+; a Cortex-M3 has all its instructions.
 SIMULATED = {"mps2": {"cortex-m0plus": "mps2-an385", "cortex-m3": "mps2-an385", "cortex-m4": "mps2-an386"},
              "stm32vldiscovery": {"cortex-m3": "stm32vldiscovery"}}
+
+
+PACKAGES = {"arm-none-eabi-g++": "gcc-arm-none-eabi libstdc++-arm-none-eabi-dev libnewlib-dev", "ninja": "ninja-build"}
 
 
 class BuildError(Exception):
@@ -50,6 +54,19 @@ def source_of_component(name, folders):
     return None
 
 
+def need(*programs):
+    """Raises BuildError if one of PACKAGES is not installed."""
+    missing = [program for program in programs if shutil.which(program) is None]
+    if missing:
+        raise BuildError(f"{' and '.join(missing)}: not installed. On Debian or Ubuntu: sudo apt install "
+                         f"--no-install-recommends {' '.join(PACKAGES[program] for program in missing)}")
+
+
+def quoted(text):
+    """One word of a command of ninja."""
+    return shlex.quote(text).replace("$", "$$")
+
+
 def word(path):
     return str(path).replace("$", "$$").replace(" ", "$ ").replace(":", "$:")
 
@@ -62,15 +79,18 @@ def write_if_new(path, text):
 def rules(baked, out, board, folders, program):
     """The text of build.ninja, and the components without a source. `program` as of build()."""
     cache = shutil.which("ccache") or ""
-    common = (f"@{baked}/cpu.flags {COMMON} -I{ROOT} -I{baked} -DCHIMERA_MECHANISMS='<mechanisms.h>' "
+    flags = quoted(f"@{baked}/cpu.flags")
+    common = (f"{flags} {COMMON} {quoted(f'-ffile-prefix-map={ROOT}/=')} {quoted(f'-I{ROOT}')} {quoted(f'-I{baked}')} "
+              f"-DCHIMERA_MECHANISMS='<mechanisms.h>' "
               f"-DCHIMERA_BOARD='\"firmware/boards/{board}/chip.h\"'"
               + (" -DCHIMERA_SIMULATED" if board in SIMULATED else ""))
     text = [f"rule cxx\n  command = {cache} arm-none-eabi-g++ {CXX} {common} $more -MD -MF $out.d -c $in -o $out",
             "  depfile = $out.d\n  deps = gcc\n  description = $in",
             f"rule cc\n  command = {cache} arm-none-eabi-gcc -std=c11 {common} -MD -MF $out.d -c $in -o $out",
             "  depfile = $out.d\n  deps = gcc\n  description = $in",
-            f"rule link\n  command = arm-none-eabi-g++ @{baked}/cpu.flags -nostdlib -nostartfiles -Wl,--gc-sections "
-            f"-Wl,-L,{baked} -T {ROOT}/firmware/boards/image.ld -Wl,-Map,$out.map -o $out @$out.rsp -lgcc",
+            f"rule link\n  command = arm-none-eabi-g++ {flags} -nostdlib -nostartfiles -Wl,--gc-sections "
+            f"{quoted(f'-L{baked}')} -T {quoted(f'{ROOT}/firmware/boards/image.ld')} -Wl,-Map,$out.map -o $out "
+            "@$out.rsp -lgcc",
             "  rspfile = $out.rsp\n  rspfile_content = $in_newline\n  description = link $out"]
     objects, missing = [], []
 
@@ -94,7 +114,8 @@ def rules(baked, out, board, folders, program):
         compiled(path, f"program/{path.stem}.o", flags)
     text.append(f"build baked/tables.cc.o: cxx {word(baked / 'tables.cc')}")
     objects.append("baked/tables.cc.o")
-    text.append(f"build image.elf: link {' '.join(objects)} | {ROOT}/firmware/boards/image.ld {baked}/memory.ld")
+    text.append(f"build image.elf: link {' '.join(objects)} | {word(ROOT / 'firmware/boards/image.ld')} "
+                f"{word(baked / 'memory.ld')}")
     return "\n".join(text) + "\n", missing
 
 
@@ -117,6 +138,7 @@ def explained(log, missing):
 
 def build(baked, out, board, folders=(), program=None):
     """OUT/image.elf, up to date. `program`: (file, flags) in place of the sources in firmware/. Raises BuildError."""
+    need("arm-none-eabi-g++", "ninja")
     out = out.resolve()
     out.mkdir(parents=True, exist_ok=True)
     text, missing = rules(baked.resolve(), out, board, folders, program)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An image of firmware/images: what it is made of, and how it is baked, linked, run and compared with the host."""
+"""An image, as image.yaml says: what it is made of, and how it is baked, linked, run and compared with the host."""
 import dataclasses
 import json
 import math
@@ -16,7 +16,7 @@ import sizes
 import yaml
 
 IMAGES = build.ROOT / "firmware" / "images"
-KEYS = {"application", "targets", "for", "at", "components", "instruction_ns"}
+KEYS = {"application", "targets", "for", "at", "components", "instruction_ns", "equal"}
 
 
 class ImageError(Exception):
@@ -25,29 +25,39 @@ class ImageError(Exception):
 
 @dataclasses.dataclass
 class Image:
-    """firmware/images/NAME/image.yaml"""
+    """NAME/image.yaml"""
     name: str
-    folder: pathlib.Path
+    folder: pathlib.Path            # of that file
     application: pathlib.Path       # a description
-    targets: list                   # of firmware/targets
+    targets: list                   # of firmware/targets, or NAME/TARGET.yaml
     duration: str                   # "60 s"; "": it does not end by itself
     acts: list                      # as of --at
     folders: list                   # of components, beside library/
     instruction_ns: int             # time of an instruction in QEMU
+    equal: list                     # pairs of tasks with equal digests
 
     @staticmethod
-    def read(name, folder=None):
-        """The image of that name, or of another folder."""
-        path = (folder or IMAGES / name) / "image.yaml"
+    def read(name):
+        """The image of that name in firmware/images."""
+        path = IMAGES / name / "image.yaml"
         if not path.is_file():
             raise ImageError(f"no image {name}; there are: {', '.join(names())}")
-        keys = yaml.safe_load(path.read_text())
+        return Image.of_file(path)
+
+    @staticmethod
+    def of_file(path):
+        try:
+            keys = yaml.safe_load(path.read_text())
+        except (OSError, yaml.YAMLError) as error:
+            raise ImageError(f"{path}: {error}") from None
         if not isinstance(keys, dict) or not {"application", "targets"} <= set(keys) <= KEYS:
-            raise ImageError(f"{path}: has application and targets; it can have for, at, components, instruction_ns")
-        folders = [(path.parent / each).resolve() for each in keys.get("components", [])]
-        return Image(name, path.parent, (path.parent / keys["application"]).resolve(), keys["targets"],
-                     keys.get("for", ""), keys.get("at", []), folders,
-                     keys.get("instruction_ns", qemu.INSTRUCTION_NS))
+            raise ImageError(f"{path}: has application and targets; it can have for, at, components, equal, "
+                             "instruction_ns")
+        folder = path.resolve().parent
+        return Image(folder.name, folder, (folder / keys["application"]).resolve(), keys["targets"],
+                     keys.get("for", ""), keys.get("at", []),
+                     [(folder / each).resolve() for each in keys.get("components", [])],
+                     keys.get("instruction_ns", qemu.INSTRUCTION_NS), keys.get("equal", []))
 
     def components(self):
         """The names of the components of the application."""
@@ -61,7 +71,9 @@ def names():
 
 def call(command, tree):
     """What the program of the host printed. Raises ImageError with it if the program failed."""
-    environment = dict(os.environ, ASAN_OPTIONS="detect_leaks=0", CHIMERA_PATH=str(tree / "components"))
+    environment = dict(os.environ, ASAN_OPTIONS="detect_leaks=0")
+    if (tree / "components").is_dir():  # an installed program finds its own
+        environment["CHIMERA_PATH"] = str(tree / "components")
     done = subprocess.run(list(map(str, command)), stdin=subprocess.DEVNULL, capture_output=True, text=True,
                           env=environment)
     if done.returncode != 0:
@@ -70,7 +82,7 @@ def call(command, tree):
 
 
 class Built:
-    """An image for one target. `tree` is a build tree of the host with the program and the components."""
+    """An image for one target. `tree` is a build tree, or a folder that Chimera is installed in."""
 
     def __init__(self, image, target, tree, out):
         self.image, self.target, self.tree = image, target, tree
@@ -115,12 +127,15 @@ class Built:
         """The running image, to talk to."""
         return qemu.Session(self.machine(), self.elf, self.image.instruction_ns)
 
-    def difference(self, lines):
-        """One sentence about where digest or receipts of the image differ from those of the host; "" if nowhere."""
+    def differences(self, lines):
+        """Sentences about what differs from the host: the first difference of the digest or of a receipt, and pairs of
+        tasks whose digests are to be equal."""
         path = self.out / "host.digest"
         run = json.loads(self._run("run", self.image.application, "--virtual", "--json", "--digest", path))
-        return (digest.difference(digest.of_host(path.read_text()), digest.of_image(lines)) or
-                receipts.difference(receipts.of_host(run), receipts.of_image(lines)))
+        found = digest.of_image(lines)
+        difference = (digest.difference(digest.of_host(path.read_text()), found) or
+                      receipts.difference(receipts.of_host(run), receipts.of_image(lines)))
+        return ([difference] if difference else []) + list(digest.unequal(found, self.image.equal))
 
     def run(self, limit_s=qemu.LIMIT_S):
         """The lines of the image. Raises ImageError if it does not end by itself."""

@@ -3,6 +3,7 @@
 15 million instructions a second. Idle time takes no time of the host.
 usage: qemu.py MACHINE IMAGE [LIMIT_S]   prints the lines of the serial port"""
 import queue
+import shutil
 import subprocess
 import sys
 import threading
@@ -17,6 +18,9 @@ class QemuError(Exception):
 
 
 def command(machine, image, instruction_ns):
+    if shutil.which("qemu-system-arm") is None:
+        raise QemuError("qemu-system-arm: not installed. On Debian or Ubuntu: sudo apt install --no-install-recommends "
+                        "qemu-system-arm")
     shift = instruction_ns.bit_length() - 1
     if instruction_ns != 1 << shift or shift > 10:
         raise QemuError(f"instruction_ns {instruction_ns}: QEMU takes a power of two, 1 to 1024")

@@ -21,7 +21,7 @@ constexpr std::size_t kLongestName = 40;
 
 /// The values of @NAME@ and the other marks of the templates.
 struct Filling {
-  std::string name, type, package, program, schema;
+  std::string name, type, package, program, schema, firmware;
 };
 
 struct NewFile {
@@ -59,18 +59,28 @@ std::string template_name(NewKind kind) {
     case NewKind::kComponent: return "component";
     case NewKind::kComponentInC: return "component_c";
     case NewKind::kHardwareComponent: return "component_hardware";
+    case NewKind::kFirmware: return "firmware";
     case NewKind::kApplication: break;
   }
   return "app";
 }
 
-/// share/chimera/templates of the installation, or of the checkout around a build tree (build/PRESET).
+/// A folder of the installation, or `in_checkout` of the checkout around a build tree (build/PRESET).
+Result<fs::path> folder_of(const fs::path& prefix, const char* what, const fs::path& place,
+                           const fs::path& in_checkout) {
+  for (const fs::path& folder : {prefix / place, prefix.parent_path().parent_path() / in_checkout})
+    if (fs::is_directory(folder)) return folder;
+  return (Message() << "there are no " << what << ": no " << place.string()
+                    << "; the Debian package chimera-dev has them")
+      .error(ErrorCode::kNotFound, prefix.string());
+}
 Result<fs::path> template_folder(const fs::path& prefix, NewKind kind) {
   const fs::path place = fs::path("share/chimera/templates") / template_name(kind);
-  for (const fs::path& root : {prefix, prefix.parent_path().parent_path()})
-    if (fs::is_directory(root / place)) return root / place;
-  return (Message() << "there are no templates: no " << place.string() << "; the Debian package chimera-dev has them")
-      .error(ErrorCode::kNotFound, prefix.string());
+  return folder_of(prefix, "templates", place, place);
+}
+/// The programs that make an image.
+Result<fs::path> firmware_tools(const fs::path& prefix) {
+  return folder_of(prefix, "sources of images", "share/chimera/tools/firmware", "tools/firmware");
 }
 
 /// The file by which editors complete and check a description, or "": none is installed.
@@ -90,6 +100,7 @@ NewFile fill_in(const fs::path& file, const Filling& words) {
   replace(made.text, "@TYPE@", words.type);
   replace(made.text, "@PACKAGE@", words.package);
   replace(made.text, "@PROGRAM@", words.program);
+  replace(made.text, "@FIRMWARE@", words.firmware);
   if (words.schema.empty() && made.text.starts_with("# yaml-language-server"))
     made.text.erase(0, made.text.find('\n') + 1);
   replace(made.text, "@SCHEMA@", words.schema);
@@ -110,13 +121,15 @@ Result<void> check(const NewRequest& request) {
   return {};
 }
 
-std::string next_steps(const fs::path& folder, const std::string& package, const std::vector<NewFile>& files) {
-  const bool has_script = std::any_of(files.begin(), files.end(), [](const NewFile& file) { return file.is_program; });
+std::string next_steps(const fs::path& folder, const std::string& package, const std::vector<NewFile>& files,
+                       NewKind kind) {
   std::string text = "made " + folder.string() + ":";
   for (const NewFile& file : files) text += " " + file.path;
-  return text + "\nnext:\n  cd " + folder.string() + "\n  cmake -B build -Dchimera_DIR=" + package +
+  text += "\nnext:\n  cd " + folder.string();
+  if (kind == NewKind::kFirmware) return text + "\n  ./run.sh\n";
+  return text + "\n  cmake -B build -Dchimera_DIR=" + package +
          "\n  cmake --build build\n  ctest --test-dir build --output-on-failure\n" +
-         (has_script ? "  ./run.sh --virtual\n" : "");
+         (kind == NewKind::kApplication ? "  ./run.sh --virtual\n" : "");
 }
 
 Result<std::string> make(const NewRequest& request, const fs::path& program) {
@@ -124,8 +137,13 @@ Result<std::string> make(const NewRequest& request, const fs::path& program) {
   const fs::path prefix = fs::absolute(program).parent_path().parent_path();
   const auto templates = template_folder(prefix, request.kind);
   if (!templates) return templates.error();
-  const Filling words{request.name, type_of(request.name), shell_word((prefix / "lib/cmake/chimera").string()),
-                      shell_word(fs::absolute(program).string()), schema(prefix)};
+  Filling words{request.name, type_of(request.name), shell_word((prefix / "lib/cmake/chimera").string()),
+                shell_word(fs::absolute(program).string()), schema(prefix), ""};
+  if (request.kind == NewKind::kFirmware) {
+    const auto tools = firmware_tools(prefix);
+    if (!tools) return tools.error();
+    words.firmware = shell_word(tools->string());
+  }
   std::vector<fs::path> sources;
   for (const auto& entry : fs::directory_iterator(*templates)) sources.push_back(entry.path());
   std::sort(sources.begin(), sources.end());
@@ -147,7 +165,7 @@ Result<std::string> make(const NewRequest& request, const fs::path& program) {
     if (!out) return (Message() << "cannot be written").error(ErrorCode::kSystem, (folder / file.path).string());
     if (file.is_program) fs::permissions(folder / file.path, fs::perms::owner_exec, fs::perm_options::add);
   }
-  return next_steps(folder, words.package, files);
+  return next_steps(folder, words.package, files, request.kind);
 }
 
 }  // namespace

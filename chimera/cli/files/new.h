@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `chimera new component NAME` and `chimera new app NAME`: a small project that builds and passes its tests at once,
-// anywhere, from the templates in share/chimera/templates.
+// `chimera new component NAME`, `app NAME` and `firmware NAME`: a small project that builds and passes its
+// tests at once, anywhere, from the templates in share/chimera/templates.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace chimera::cli {
 
-enum class NewKind { kComponent, kComponentInC, kHardwareComponent, kApplication };
+enum class NewKind { kComponent, kComponentInC, kHardwareComponent, kApplication, kFirmware };
 
 struct NewRequest {
   NewKind kind = NewKind::kComponent;

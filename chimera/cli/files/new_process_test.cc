@@ -86,6 +86,14 @@ TEST_F(New, WritesAProjectWithoutOurLicence) {
   EXPECT_EQ(text("x9_y/CMakeLists.txt").find('@'), std::string::npos);
 }
 
+TEST_F(New, FirmwareNamesTheToolsOfTheTree) {
+  const CommandResult made = make(NewKind::kFirmware, "mine");
+  EXPECT_EQ(made.out, "made " + folder_ + "/mine: CMakeLists.txt mine.yaml mine_filter.cc README.md board.yaml "
+                      "image.yaml run.sh\nnext:\n  cd " + folder_ + "/mine\n  ./run.sh\n");
+  EXPECT_EQ(run(folder_ + "/mine/run.sh --help >" + folder_ + "/help"), 0) << log();
+  EXPECT_NE(text("help").find("usage: make.py "), std::string::npos) << text("help");
+}
+
 TEST_F(New, ADescriptionNamesTheSchemaForEditors) {
   ASSERT_EQ(make(NewKind::kApplication, "loop").code, kOk);
   const std::string head = "# yaml-language-server: $schema=", line = text("loop/loop.yaml");
