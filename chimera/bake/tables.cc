@@ -91,7 +91,8 @@ class Tables {
     for (const TaskSpec& task : spec_.tasks) components.insert(task.component);
     std::string text =
         "// Made by `chimera bake`: docs/formats/baked.md. A change belongs into the description or the target.\n"
-        "#include \"chimera/runtime/executive/baked.h\"\n#include \"chimera/runtime/executive/baked_sizes.h\"\n\nextern \"C\" {\n";
+        "#include \"chimera/runtime/executive/baked.h\"\n"
+        "#include \"chimera/runtime/executive/baked_sizes.h\"\n\nextern \"C\" {\n";
     for (const std::string_view name : components)
       text += "extern const chimera_component chimera_component_" + std::string(name) + ";\n";
     return text + "}\n\nnamespace chimera::baked {\nnamespace {\n\n[[maybe_unused]] constexpr std::byte operator\"\"_b("

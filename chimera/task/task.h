@@ -16,7 +16,7 @@
 #include "chimera/task/declared_port.h"
 #include "chimera/task/fault_record.h"
 #include "chimera/task/profile.h"
-#include "chimera/task/signal_list.h"
+#include "chimera/task/signal.h"
 #include "chimera/task/state_machine.h"
 #include "chimera/task/task_spec.h"
 

@@ -36,7 +36,7 @@ struct alignas(kCacheLine) JobRecord {
   Task* task = nullptr;
   /// A job starts while now + start_margin <= deadline.
   [[no_unique_address]] ValueIf<mechanisms::kReactions, Nanoseconds> start_margin;
-  /// Of execution time for one job; kNever: none.
+  /// The execution time of one job stays within it; kNever: no limit.
   [[no_unique_address]] ValueIf<mechanisms::kBudgets, Nanoseconds> budget;
   decltype(TaskFaults::told) told_seen = 0, faults_seen = 0;  ///< FaultRecord::told and count, at the last check
   std::uint32_t dropped = 0;                     ///< releases since the last completed cycle

@@ -10,6 +10,11 @@
 namespace chimera {
 namespace {
 
+// A signal to one task may begin before that to another one has ended.
+constexpr bool kSignalsOverlap = mechanisms::kService || mechanisms::kConstants;
+
+std::size_t place_of(TaskId task) noexcept { return kSignalsOverlap ? task.index : 0; }
+
 bool has_changed_outputs(const Task& task) noexcept {
   return std::memcmp(task.group.staging(), task.group.published() + 1, task.group.payload_bytes()) != 0;
 }
@@ -95,7 +100,7 @@ SignalReport TaskLife::carry_out(TaskId id, Signal signal, Nanoseconds now) {
     const SignalReport settled = settle_off(id, now);
     if (signal == Signal::kOff || next(task.state, signal, false).kind == Next::Kind::kImpossible) return settled;
   }
-  Progress& progress = progress_of(id);
+  Progress& progress = progress_[place_of(id)];
   progress = Progress{};
   progress.is_moved = is_moving_;
   progress.report = {true, false, Refusal::kNone, signal, id, task.state, task.state};
@@ -122,7 +127,7 @@ bool TaskLife::follow_constants(Task& task, Nanoseconds now) {
   const std::uint64_t faults = task.faults.count;
   (void)advance(task, next(State::kOff, Signal::kReinit, false), now);
   if (task.state == State::kOff && task.faults.count == faults) return true;
-  SignalReport& report = progress_of(task.id).report;
+  SignalReport& report = progress_[place_of(task.id)].report;
   report.is_accepted = false;
   report.why = Refusal::kFault;
   return false;
@@ -181,7 +186,7 @@ SignalReport TaskLife::settle_off(TaskId id, Nanoseconds now) {
 
 SignalReport TaskLife::finish_slow(TaskId id, Nanoseconds now) {
   Task& task = set_.tasks()[id.index];
-  Progress& progress = progress_of(id);
+  Progress& progress = progress_[place_of(id)];
   const SlowMethods::Outcome outcome = set_.slow().finish(task);
   if (outcome.is_construction) {
     (void)go_on_constructed(task, outcome.answer, now);
@@ -195,7 +200,7 @@ SignalReport TaskLife::finish_slow(TaskId id, Nanoseconds now) {
 
 // The state of the component is constructed, or is not: init is next.
 SignalReport TaskLife::go_on_constructed(Task& task, Answer answer, Nanoseconds now) {
-  SignalReport& report = progress_of(task.id).report;
+  SignalReport& report = progress_[place_of(task.id)].report;
   if (answer == Answer::kOk) return advance(task, next(State::kNotCreated, Signal::kSpawn, false), now);
   report.is_accepted = report.is_deferred = false;
   report.why = Refusal::kFault;
@@ -203,7 +208,7 @@ SignalReport TaskLife::go_on_constructed(Task& task, Answer answer, Nanoseconds 
 }
 
 SignalReport TaskLife::advance(Task& task, Next at, Nanoseconds now) {
-  SignalReport& report = progress_of(task.id).report;
+  SignalReport& report = progress_[place_of(task.id)].report;
   report.is_deferred = !follow(task, at, now);
   report.after = task.state;
   if (!report.is_deferred && !set_.slow().is_there() && task.state == State::kNotCreated) set_.methods().destroy(task);
@@ -213,7 +218,7 @@ SignalReport TaskLife::advance(Task& task, Next at, Nanoseconds now) {
 
 // Runs the steps that `at` starts until a state is reached (true), or until the service thread has the next one.
 bool TaskLife::follow(Task& task, Next at, Nanoseconds now) {
-  Progress& progress = progress_of(task.id);
+  Progress& progress = progress_[place_of(task.id)];
   while (at.kind == Next::Kind::kStep) {
     const StepRule& step = rule(at.step);
     const Nanoseconds began = read_clock(now);
@@ -236,7 +241,7 @@ bool TaskLife::follow(Task& task, Next at, Nanoseconds now) {
 
 // The step `began` here, or here again after the service thread had it.
 Next TaskLife::conclude(Task& task, const StepRule& step, Answer answer, Nanoseconds now, Nanoseconds began) {
-  Progress& progress = progress_of(task.id);
+  Progress& progress = progress_[place_of(task.id)];
   progress.has_new_constants = false;
   if (answer == Answer::kOk) answer = after_ok(task, step, now);
   task.profile.add_call(step.method, progress.used + (read_clock(now) - began));
@@ -270,7 +275,7 @@ Answer TaskLife::after_ok(Task& task, const StepRule& step, Nanoseconds now) {
       record_fault(task, step.method, why.c_str(), now);
       return Answer::kFault;
     }
-    progress_of(task.id).has_new_constants = set_.constants().has_new();
+    progress_[place_of(task.id)].has_new_constants = set_.constants().has_new();
   }
   // Outputs that clear did not change keep the age of their publication.
   if (step.step == Step::kClear && !has_changed_outputs(task)) return Answer::kOk;

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <span>
 
-#include "chimera/base/mechanisms.h"
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/job/job_clock.h"
 #include "chimera/runtime/life/signal_judge.h"
@@ -81,8 +80,6 @@ class TaskLife {
   SignalJudge& judge() noexcept { return judge_; }
 
  private:
-  /// A signal to one task begins before that to another one has ended.
-  static constexpr bool kSignalsOverlap = mechanisms::kService || mechanisms::kConstants;
   /// The signal that a task is carrying out.
   struct Progress {
     SignalReport report;
@@ -92,7 +89,6 @@ class TaskLife {
     bool is_moved = false;  ///< by move()
   };
 
-  Progress& progress_of(TaskId task) noexcept { return progress_[kSignalsOverlap ? task.index : 0]; }
   SignalReport carry_out(TaskId task, Signal signal, Nanoseconds now);
   void turn_off_started(Nanoseconds now);
   SignalReport show(Task& task);

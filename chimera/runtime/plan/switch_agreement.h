@@ -32,7 +32,7 @@
 namespace chimera {
 
 inline constexpr std::uint32_t kMaxContexts = 16;        // bits in TurnWord::missing
-/// Of an application that can be switched; an image has less room.
+/// The largest number of tasks of an application that can be switched; an image has less room.
 inline constexpr std::size_t kMostTasksOfImage = 64, kMaxSwitchedTasks = mechanisms::kPeers ? 256 : kMostTasksOfImage;
 
 /// A set of tasks, as bits. Plain value.
