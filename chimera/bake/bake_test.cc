@@ -158,8 +158,13 @@ TEST(Bake, GivesATaskTheInterruptOfTheTarget) {
 TEST(Bake, RefusesEventsOfTasksAndInterruptsThatCannotHaveThem) {
   EXPECT_EQ(refusal({.text = "tasks: {waiter: {}, other: {component: waiter, alias: {y: z}}, sink: {}}\n",
                      .target = "uart: {address: 64, interrupt: timer1, baud: 9600}\n"
-                               "events: {waiter: timer0, other: timer0, sink: timer1, other_task: timer0}\n"}),
-            "");
+                               "events: {waiter: timer0, other: timer0, sink: timer1}\n"}),
+            "t.yaml:10:33: error: the interrupt 'timer0' belongs to task 'waiter' [resource-twice]\n"
+            "  give each task an interrupt of its own\n"
+            "t.yaml:10:41: error: task 'sink' has no method 'sync', so it takes no events [not-built]\n"
+            "  take the line out of 'events'\n"
+            "t.yaml:10:47: error: the interrupt 'timer1' belongs to 'uart' [resource-twice]\n"
+            "  give each task an interrupt of its own\n");
 }
 
 TEST(Bake, RefusesAResourceWithoutATextInTheTarget) {

@@ -32,7 +32,7 @@ class BareUart {
     NoInterrupts off;
     pump();
     if (ring_out_.free() < text.size()) return ++lost_out_, false;
-    for (const char c : text) ring_out_.add(static_cast<std::uint8_t>(c));
+    for (const char c : text) put(static_cast<std::uint8_t>(c));
     pump();
     return true;
   }
@@ -60,6 +60,15 @@ class BareUart {
  private:
   enum class Line : std::uint8_t { kNone, kOwn, kOfPeer };
 
+  // Most lines find the port idle: then no byte takes the way through the ring.
+  void put(std::uint8_t byte) noexcept {
+    if (line_ == Line::kOfPeer || ring_out_.size() != 0 || !port_.can_send()) {
+      ring_out_.add(byte);
+      return;
+    }
+    line_ = byte == '\n' ? Line::kNone : Line::kOwn;
+    port_.send(byte);
+  }
   void pump() noexcept {
     bool is_full = false;
     for (int byte = 0; !(is_full = !port_.can_send()) && (byte = next()) >= 0;)
