@@ -66,6 +66,7 @@ SEES_THE_SYSTEM = {
     "library/modbus_io/": "a serial line, a socket",
     "library/serial_frame/": "a serial line",
     "library/tball/": "an input device",
+    "library/terminal/": "the mode of a terminal",
     "library/udp_frame/": "a socket",
     "library/vision/": "a socket",
 }

@@ -10,6 +10,7 @@ import threading
 import tty
 import unittest
 
+LIBRARY = pathlib.Path(__file__).resolve().parents[2] / "library"
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "processes"))
 from system import BUILD, RTPUS, Refused, System, await_that  # noqa: E402
 
@@ -127,6 +128,22 @@ class Devices(unittest.TestCase):
             system.signal("clear", "driver")
             system.signal("on", "driver")
             system.await_value("connected", True)
+
+    def test_menus_on_a_terminal(self):
+        self.line.echo = False
+        self.line.plug()
+        text = RTPUS.replace("  second: {cpu: 1, policy: edf}\n", "") + (
+            LIBRARY / "display_manager" / "display_manager.test.yaml").read_text().split("tasks:\n")[1]
+        text = text.replace("  display_manager:", f"""tasks:
+  terminal: {{rtpu: first, rate: 20 Hz, resources: {{device: {self.name}}}}}
+  display_manager:
+    rtpu: first""", 1)
+        with System(text) as system:
+            await_that(lambda: b"21.5" in self.line.heard, system.told)
+            self.line.say(b"j\r")  # to the settings
+            await_that(lambda: b"wanted" in self.line.heard, system.told)
+            self.line.say(b"\r27.25\r")
+            system.await_value("wanted", 27.25)
 
     def test_a_terminal_that_hangs_up(self):
         self.line.echo = False

@@ -18,7 +18,8 @@ for file in bin/chimera bin/chimera-rtpu bin/chimera-guard \
   share/chimera/schema/run.schema.json share/chimera/templates/component/CMakeLists.txt \
   share/bash-completion/completions/chimera share/man/man1/chimera.1 share/chimera/examples/README.md \
   share/chimera/README.md share/chimera/docs/formats/component-test.md share/chimera/docs/howto/operate.md \
-  share/chimera/library/README.md share/chimera/library/gain/README.md; do
+  share/chimera/library/README.md share/chimera/library/gain/README.md share/chimera/tools/firmware/make.py \
+  share/chimera/firmware/boards/image.ld share/chimera/firmware/targets/mps2-an385.yaml; do
   [ -s "$file" ] || fail "$file is missing"
 done
 [ -z "$(find . -name 't_*.so')" ] || fail "test components are no library"

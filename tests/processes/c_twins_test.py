@@ -19,14 +19,15 @@ class CTwins(unittest.TestCase):
     def judged(self):
         """False if a release was dropped: of twins, only one may have lost a cycle then."""
         with System(text(), name="c_twins") as system:
-            await_that(lambda: all(system.value(f"compared_{name}") >= 100 for name in TWINS), system.told)
+            await_that(lambda: system.task("t_limit")["faults"] > 40, system.told)
             different = {name: system.value(f"different_{name}") for name in TWINS}
+            compared = [system.value(f"compared_{name}") for name in TWINS]
             tasks = {task["task"]: task for task in system.call("status")["tasks"]}
             if any(task["dropped"] > 0 for task in tasks.values()):
                 return False
             self.assertEqual(different, dict.fromkeys(TWINS, 0))
+            self.assertGreater(min(compared), 200)
             for name in ("limit", "t_limit"):
-                self.assertGreater(tasks[name]["faults"], 10, "an infinite input is a fault")
                 self.assertEqual(tasks[name]["fault"], "cycle: x is not a finite number")
         return True
 
