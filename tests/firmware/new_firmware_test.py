@@ -45,9 +45,11 @@ def complaints(tree, place):
     print(said)
     if code != 0 or not said.endswith(EQUAL):
         yield f"run.sh: exit {code}"
-    strays = {path.suffix for path in prefix.rglob("*") if path.suffix == ".pyc" or path.name.endswith("_test.cc")}
-    if strays:
-        yield f"the installation has {strays}"
+    sources = [prefix / "share" / "chimera" / part for part in ("chimera", "firmware", "tools")]
+    installed = [path for folder in sources for path in folder.rglob("*")]
+    strays = [str(path) for path in installed if path.suffix == ".pyc" or path.name.endswith("_test.cc")]
+    if strays or not installed:
+        yield f"installed, but not needed: {strays}"
     code, said = run([script], work, PATH=without_compiler(place))
     if code == 0 or not said.endswith(ADVICE):
         yield f"run.sh without a compiler: exit {code}, it says\n{said}"

@@ -43,10 +43,11 @@ class Fnv {
   std::uint64_t& hash_;
 };
 
-/// Since the origin. A task that was never ON has no release: its publication counts at the origin, whose instant on
-/// the clock differs between machines.
+/// Since the origin. Before its first `on` a task has no release: what it publishes counts at the origin, whose instant
+/// on the clock differs between machines.
 Nanoseconds release_of(const Task& task, Nanoseconds origin) noexcept {
-  return task.last_release == Nanoseconds{} ? Nanoseconds{} : task.last_release - origin;
+  const bool has_release = task.state == State::kOn || task.profile.cycles > 0;
+  return has_release ? task.last_release - origin : Nanoseconds{};
 }
 
 void add_output(Fnv& hash, const DeclaredPort& declared, const Output& output, const std::byte* at) noexcept {

@@ -40,6 +40,7 @@ class DigestTest : public ::testing::Test, public DigestLines {
       outputs[i] = {&live[i], &specs[i], offsets[i], counts[i] * sizes[i]};
     }
     task.id = TaskId(0u);
+    task.state = State::kOn;
     task.component = &component;
     task.ports = DeclaredPorts(component);
     task.outputs = outputs;
@@ -166,9 +167,12 @@ TEST_F(DigestTest, HandsOverALineForEachSecondOfReleases) {
 }
 
 TEST_F(DigestTest, CountsAPublicationBeforeTheFirstOnAtTheOrigin) {
-  const std::uint64_t at_origin = hash(0);
-  EXPECT_EQ(hash(-kOrigin.count / milliseconds(1).count), at_origin) << "its last release is none";
-  EXPECT_NE(hash(1 - kOrigin.count / milliseconds(1).count), at_origin);
+  const std::uint64_t at_origin = hash(0), before = hash(-kOrigin.count / milliseconds(1).count);
+  EXPECT_NE(before, at_origin) << "a release at the zero of the clock";
+  task.state = State::kOff;
+  EXPECT_EQ(hash(-kOrigin.count / milliseconds(1).count), at_origin);
+  task.profile.cycles = 1;
+  EXPECT_EQ(hash(-kOrigin.count / milliseconds(1).count), before) << "it was ON";
 }
 
 TEST_F(DigestTest, HashesMethodCodeAndTextOfFaults) {
