@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "chimera/units/testing/unit_samples.h"
@@ -278,14 +279,21 @@ TEST(Bake, CountsTheMemoryOfSwitches) {
 }
 
 TEST(Bake, SaysWhichSwitchesAreSlowByTheProfile) {
-  RecordedProfile profile = profile_of(600, 10);
+  RecordedProfile profile = profile_of(7000, 10);
   profile.tasks.push_back(profile.tasks[0]);
   profile.tasks.back().task = "spare";
-  const BakeResult result = baked({.text = kTwoSets, .profile = &profile});
+  profile.tasks.back().worst = profile.tasks.back().mean = milliseconds(6);
+  const BakeResult result = baked(
+      {.text = "tasks: {source: {rate: 100 Hz}, spare: {component: source, rate: 100 Hz, offset: 5 ms, "
+               "deadline: 7 ms}, sink: {rate: 10 Hz}}\n"
+               "configurations: {a: [source, sink], b: [spare, sink]}\nstart: a\n",
+       .profile = &profile});
   ASSERT_TRUE(result.is_baked()) << result.description.text();
-  ASSERT_EQ(result.notes.size(), 3u) << result.notes.back();
-  EXPECT_TRUE(result.notes[1].starts_with("the switch from 'a' to 'b' turns tasks OFF first: otherwise task "))
-      << result.notes[1];
+  const auto is_it = [](const std::string& note) {
+    return note.starts_with("the switch from 'a' to 'b' turns tasks OFF first: otherwise task 'spare' could miss its "
+                            "deadline of 7 ms (");
+  };
+  EXPECT_TRUE(std::ranges::any_of(result.notes, is_it)) << result.notes.back();
   EXPECT_NE(result.files.back().text.find(".deadline = &kDeadline1"), std::string::npos);
 }
 
@@ -293,8 +301,8 @@ TEST(Bake, LeavesBudgetsOutWithoutAProfile) {
   const BakeResult result = baked({.text = "tasks: {source: {budget: 2 ms, on_overrun: hold}, sink: {}}\n"});
   ASSERT_TRUE(result.is_baked());
   EXPECT_EQ(result.files.back().text.find(".budget"), std::string::npos);
-  ASSERT_EQ(result.notes.size(), 2u);
-  EXPECT_NE(result.notes[1].find("left out: 'source'"), std::string::npos) << result.notes[1];
+  ASSERT_FALSE(result.notes.empty());
+  EXPECT_NE(result.notes.back().find("left out: 'source'"), std::string::npos) << result.notes.back();
 }
 
 TEST(Bake, TurnsOnTheMechanismsThatAreUsed) {

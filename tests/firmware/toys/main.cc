@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs each set of toys on a clock that steps, and sends its records: "set SEED", "record KIND TASK AT A B".
-#include <new>
+#include <cstddef>
 
 #include "chimera/base/setup_memory.h"
 #include "chimera/runtime/executive/executive.h"
@@ -12,19 +12,32 @@
 namespace chimera::baked_toys {
 namespace {
 
-/// Computing on a clock that steps.
-class TwinClock final : public JobClock {
+/// A clock that steps, for the executive and for its jobs.
+class SteppedClock final : public Clock {
  public:
-  explicit TwinClock(VirtualClock& clock) noexcept : clock_(clock) {}
+  Nanoseconds now() noexcept override { return now_; }
+  WaitEnd wait_until(Nanoseconds instant) noexcept override {
+    if (instant > now_) now_ = instant;
+    return WaitEnd::kReached;
+  }
+  void advance(Nanoseconds span) noexcept { now_ += span; }
+
+ private:
+  Nanoseconds now_;
+};
+
+class SteppedJobClock final : public JobClock {
+ public:
+  explicit SteppedJobClock(SteppedClock& clock) noexcept : clock_(clock) {}
   Nanoseconds now() noexcept override { return clock_.now(); }
   void spend(Nanoseconds time) noexcept override { clock_.advance(time); }
 
  private:
-  VirtualClock& clock_;
+  SteppedClock& clock_;
 };
 
 alignas(16) std::byte arena[64 * 1024];
-constinit TapRing ring{};
+alignas(TapRing) std::byte ring_bytes[sizeof(TapRing)];  // zeroed memory is an empty ring
 
 void send(Message& text) {
   text << "\n";
@@ -39,8 +52,8 @@ void run(const Set& each, Tap& tap, TapReader& reader) {
   TaskSet set(*each.spec, ContextPlace{}, memory);
   Message refused("refused");
   if (!set.build(*each.components)) return send(refused);
-  VirtualClock clock;
-  TwinClock job_clock(clock);
+  SteppedClock clock;
+  SteppedJobClock job_clock(clock);
   RunOptions options;
   options.policy = each.run->policy;
   options.script = Script(each.run->acts);
@@ -63,8 +76,9 @@ void run(const Set& each, Tap& tap, TapReader& reader) {
 int main() {
   using namespace chimera;
   firmware::begin_board();
-  Tap tap(baked_toys::ring);
-  TapReader reader(baked_toys::ring);
+  TapRing& ring = *reinterpret_cast<TapRing*>(baked_toys::ring_bytes);
+  Tap tap(ring);
+  TapReader reader(ring);
   for (const baked_toys::Set& each : baked_toys::kSets) baked_toys::run(each, tap, reader);
   firmware::uart().flush();
   return 0;
