@@ -77,7 +77,7 @@ void BoundarySignals::act(const ScriptAct& act, Nanoseconds now) noexcept {
   }
   Task& task = set_.tasks()[act.task.index];
   if (mechanisms::kSwitch && orders_ != nullptr) orders_->note_word(act.task, act.signal);
-  if (mechanisms::kServers && act.signal == Signal::kWakeup) return ring(task, now);
+  if (act.signal == Signal::kWakeup) return ring(task, now);
   if (may_touch(act.task)) return carry_out(task, act.signal, now);
   // A task with a job under way takes the signal like one that it sent itself: after the job and its error handling.
   task.has_news = true;

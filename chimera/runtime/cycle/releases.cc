@@ -121,10 +121,7 @@ Releases::Releases(TaskSet& set, JobClock& clock, const RunOptions& options)
 
 void Releases::begin(Nanoseconds origin) noexcept {
   origin_ = origin;
-  if (mechanisms::kDigest && digest_ != nullptr) {
-    digest_->begin(origin);
-    for (Task& task : set_.tasks()) task.last_release = origin;  // of what a task publishes before its first cycle
-  }
+  if (mechanisms::kDigest && digest_ != nullptr) digest_->begin(origin);
   queue_.set_origin(origin);
   if constexpr (mechanisms::kSwitch) {
     if (*switches_) (*switches_)->begin(origin);

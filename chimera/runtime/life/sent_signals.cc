@@ -22,7 +22,7 @@ bool SentSignals::ring(TaskId id) noexcept {
 void SentSignals::deliver(Task& task) noexcept {
   for (const SentSignal& sent : task.outbox) {
     Task& target = tasks_[sent.target.index];
-    if (mechanisms::kServers && sent.signal == Signal::kWakeup && is_mine(sent.target)) {
+    if (sent.signal == Signal::kWakeup && is_mine(sent.target)) {
       (void)ring(sent.target);
       continue;
     }

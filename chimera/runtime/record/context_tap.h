@@ -37,6 +37,10 @@ class ContextTap {
     record(TapKind::kFault, task.faults.at, task.id, static_cast<std::uint64_t>(task.faults.method));
     if (mechanisms::kDigest && digest_ != nullptr) digest_->add_faults(task);
   }
+  /// Leaves what `on` of an armed task published out of the digest: its instant depends on the machine.
+  void pass_over(TaskId task) noexcept {
+    if (mechanisms::kDigest && digest_ != nullptr) rows_[task.index].last = tasks_[task.index].group.sequence();
+  }
   /// The release of a job, when the job is about to begin or will not run.
   void record_release(const Job& job) noexcept {
     const std::int64_t left = job.deadline == kNever ? 0 : (job.deadline - job.release).count;

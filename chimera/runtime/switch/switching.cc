@@ -266,6 +266,7 @@ bool Switching::arm(Task& next, Nanoseconds now) noexcept {
   const Nanoseconds began = parts_.clock.now();
   constants.put_in_force(order_.constants_after());
   const SignalReport report = parts_.set.life().arm(next.id, now);
+  parts_.tap.pass_over(next.id);
   constants.put_in_force(order_.constants);
   parts_.tap.record(TapKind::kSignal, now, next.id, static_cast<std::uint64_t>(Signal::kOn), report ? 1 : 0);
   parts_.settlement.record_faults(next);
