@@ -2,6 +2,7 @@
 // Refuses, by name, what needs Linux or more than one non-preemptive loop.
 #include "chimera/bake/refusals.h"
 #include "chimera/base/hosted/wording.h"
+#include "chimera/runtime/plan/switch_agreement.h"
 
 namespace chimera::bake {
 namespace {
