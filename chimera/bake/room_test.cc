@@ -10,18 +10,27 @@ namespace chimera::bake {
 namespace {
 
 struct Scene {
+  Scene() {
+    constants[0].type = CHIMERA_INT32;
+    constants[0].element_bytes = 4;
+    constants[0].value = std::as_bytes(std::span(&joints, 1));
+    constants[1].value = numbers;
+    port.constant = ConstantId(1u);
+    port.element_bytes = 8;
+    port.extent[0] = {.max = 10, .constant = ConstantId(0u)};
+    port.value = numbers;
+    task.ports = {&port, 1};
+    spec.tasks = {&task, 1};
+    spec.constants = constants;
+  }
+
   std::int32_t joints = 2;
   std::array<std::byte, 80> numbers{};
   PortOf producer{TaskId(0u), 0};
-  ConstantSpec constants[2] = {
-      {.name = "joints", .type = CHIMERA_INT32, .element_bytes = 4, .value = std::as_bytes(std::span(&joints, 1))},
-      {.name = "gains", .value = numbers}};
-  PortSpec port{.constant = ConstantId(1u),
-                .element_bytes = 8,
-                .extent = {{.max = 10, .constant = ConstantId(0u)}, {}},
-                .value = numbers};
-  TaskSpec task{.ports = {&port, 1}};
-  ApplicationSpec spec{.tasks = {&task, 1}, .constants = constants};
+  ConstantSpec constants[2];
+  PortSpec port;
+  TaskSpec task;
+  ApplicationSpec spec;
 };
 
 TEST(Room, IsThatOfTheConstantOfTheDescription) {
@@ -31,7 +40,10 @@ TEST(Room, IsThatOfTheConstantOfTheDescription) {
   EXPECT_EQ(scene.port.value.size(), 16u);
   fit(scene.constants[1], ConstantId(1u), scene.spec);
   EXPECT_EQ(scene.constants[1].value.size(), 16u);
-  GivenSpec given{.extent = {{.max = 10, .constant = ConstantId(0u)}, {}}, .value = scene.numbers};
+  GivenSpec given;
+  given.element_bytes = 8;
+  given.extent[0] = {.max = 10, .constant = ConstantId(0u)};
+  given.value = scene.numbers;
   fit(given, scene.spec);
   EXPECT_EQ(given.value.size(), 16u);
   EXPECT_EQ(given.extent[0].max, 2u);

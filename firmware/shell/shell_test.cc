@@ -283,7 +283,10 @@ TEST(Shell, HandsOutWholeRowsOnly) {
 
 TEST(Shell, StatusShowsHowTheImageBegan) {
   ShellScene scene;
-  const Boot boot{.is_warm = true, .warm_boots = 1, .cause = ResetCause::kWatchdog};
+  Boot boot;
+  boot.is_warm = true;
+  boot.warm_boots = 1;
+  boot.cause = ResetCause::kWatchdog;
   scene.use({}, nullptr, &boot);
   EXPECT_TRUE(scene.ask("status").ends_with("warm boot 1: watchdog\nok\n"));
 }

@@ -98,7 +98,7 @@ TEST(BakedApplication, HasThePlanThatIsMadeWhileRunning) {
 
 TEST(BakedApplication, MakesAPlanWhenATaskIsInAnotherStateThanTheBakedOneAssumes) {
   const ApplicationSpec& spec = baked::kSpec;
-  if (spec.plans == nullptr) return EXPECT_LT(spec.sets.size(), 2u);
+  if (spec.sets.size() < 2) GTEST_SKIP() << "this application has one configuration, and no switch";
   HeapMemory memory;
   SwitchPlanner planner;
   planner.prepare(spec, memory);

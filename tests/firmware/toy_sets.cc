@@ -114,7 +114,7 @@ std::string tables_of(RandomSet& random, const bake::Target& target, ToyTables& 
   }
   spec.tasks = tasks;
   const baked::Run run{random.policy, milliseconds(1), kDuration, random.acts};
-  const auto used = bake::mechanisms(spec, run);
+  const auto used = bake::mechanisms(spec, run, target);
   if (mechanisms.empty()) mechanisms = used;
   for (std::size_t m = 0; m < used.size(); ++m) mechanisms[m].is_used = mechanisms[m].is_used || used[m].is_used;
   return bake::tables_text(spec, run, target);
