@@ -2,7 +2,7 @@
 // Row 19: one cycle of each component that uses a line. A component that sends in its cycle is compared with the bare
 // system calls for its bytes, while the other end answers in this loop. A component that sends beside its cycles is
 // compared with the law of its cycle, and its exchange with that of libmodbus.
-// Components: serial_frame udp_frame modbus_io
+// Components: serial_frame udp_frame terminal modbus_io
 #include <arpa/inet.h>
 #include <fcntl.h>
 #include <netinet/in.h>
@@ -137,6 +137,18 @@ void serial_and_udp() {
   exchange("udp_frame", "bare calls, loopback", rig, bare, line, 4);
 }
 
+/// A line without a key typed and without a picture that waits.
+bool quiet_terminal(int argc, char** argv) {
+  std::string path, other;
+  const Line bare = pseudo_terminal(path), line = pseudo_terminal(other);
+  const auto give = [&](ArmRig& rig) { rig.resource("device", other.c_str()); };
+  const auto read = [&](std::uint64_t n) {
+    std::uint8_t keys[16];
+    for (; n > 0; --n) bench::keep(::read(bare.ours, keys, sizeof keys));
+  };
+  return bench::measure(19, {{"terminal", "read of a quiet line", give, read}}, argc, argv) == 0;
+}
+
 #ifdef CHIMERA_MODBUS
 /// A device in a process of its own, which libmodbus serves. Its port.
 struct ModbusDevice {
@@ -247,7 +259,8 @@ int main(int argc, char** argv) {
   const bench::Stage stage;
   try {
     serial_and_udp();
-    return modbus(argc, argv) ? 0 : 1;
+    const bool is_well = quiet_terminal(argc, argv);
+    return modbus(argc, argv) && is_well ? 0 : 1;
   } catch (const std::exception& wrong) {
     std::fprintf(stderr, "row 19: %s\n", wrong.what());
     return 1;

@@ -9,6 +9,7 @@
 #include "firmware/boards/board.h"
 #include "firmware/boot/kept.h"
 #include "firmware/boot/stacks.h"
+#include "firmware/boot/stop.h"
 #include "firmware/serial_text.h"
 #include "firmware/shell/shell_rows.h"
 
@@ -89,9 +90,15 @@ int Image::run() {
   clock.wait_until(clock.last_tick() + clock.tick());
   if constexpr (mechanisms::kSwitch) receipts_->begin(clock.last_tick());
   executive_->start(clock.last_tick());
+  is_in_setup = false;
   const RunEnd why = executive_->run(boot_.starts_off ? kNever : baked::kRun.duration);
   executive_->releases().end(clock.now());
   return end(why);
+}
+
+void Image::stop_for_want_of_ram(std::size_t bytes) noexcept {
+  stop(ResetCause::kAssertion, 0,
+       (Message("setup needs more than the ") << bytes << " bytes of RAM behind the stacks").view());
 }
 
 void Image::make_executive() {

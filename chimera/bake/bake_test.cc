@@ -199,7 +199,7 @@ TEST(Bake, RefusesAWrongNumberOfResourceTexts) {
 
 TEST(Bake, RefusesValuesThatExceedTheRam) {
   EXPECT_EQ(refusal({.text = "tasks: {wide: {}}\n"}),
-            "t.yaml:6:6: error: stacks, records, ports and values of the tasks need at least 34.6 KiB; 'ram' has 20.0 "
+            "t.yaml:6:6: error: stacks, records, ports and values of the tasks need at least 82.1 KiB; 'ram' has 20.0 "
             "KiB [table-limit]\n  use fewer tasks and smaller lists, smaller stacks, or a chip with more RAM\n");
 }
 

@@ -36,15 +36,20 @@ class SetupMemory {
 };
 
 /// Memory from given bytes, which must outlive all values in it. Requires: enough bytes; used() returns the number
-/// needed.
+/// needed. `too_small` says so, and does not return.
 class GivenMemory final : public SetupMemory {
  public:
-  explicit GivenMemory(std::span<std::byte> bytes) noexcept : bytes_(bytes) {}
+  using TooSmall = void (*)(std::size_t bytes);
+
+  explicit GivenMemory(std::span<std::byte> bytes, TooSmall too_small = nullptr) noexcept
+      : bytes_(bytes), too_small_(too_small) {}
 
   std::span<std::byte> take_bytes(std::size_t size, std::size_t alignment) override {
     const auto begin = reinterpret_cast<std::uintptr_t>(bytes_.data());
     const std::size_t at = ((begin + used_ + alignment - 1) & ~(alignment - 1)) - begin;
-    CHIMERA_ASSERT(at <= bytes_.size() && size <= bytes_.size() - at);
+    const bool fits = at <= bytes_.size() && size <= bytes_.size() - at;
+    if (!fits && too_small_ != nullptr) too_small_(bytes_.size());
+    CHIMERA_ASSERT(fits);
     used_ = at + size;
     if (size != 0) std::memset(bytes_.data() + at, 0, size);
     return bytes_.subspan(at, size);
@@ -54,6 +59,7 @@ class GivenMemory final : public SetupMemory {
 
  private:
   std::span<std::byte> bytes_;
+  TooSmall too_small_;
   std::size_t used_ = 0;
 };
 

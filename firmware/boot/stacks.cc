@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Both stacks lie at the end of the RAM, that of interrupts above that of the program (image.ld).
+// Both stacks lie at the begin of the RAM, that of interrupts above that of the program (image.ld).
 #include "firmware/boot/stacks.h"
 
 #include <cstdint>
@@ -41,10 +41,11 @@ void guard_stacks() noexcept {
   paint({image_stack_begin, reinterpret_cast<std::uint32_t*>(program_stack_pointer() - kOwnBytes)});
   paint({image_handler_stack_begin, reinterpret_cast<std::uint32_t*>(handler_stack_pointer())});
   constexpr std::uint32_t kDefaultMap = 4, kEnable = 1;
+  // Faults of their own: one whose frame finds no room on the stack ends in the hard fault, and does not lock up.
+  bare::register_at(0xe000'ed24) |= 7u << 16;
   const std::uint32_t regions = bare::register_at(0xe000'ed90) >> 8 & 0xff;
-  if (regions < 2) return;
-  protect(0, image_stack_begin);
-  protect(1, image_handler_stack_begin);
+  if (regions < 1) return;
+  protect(0, image_handler_stack_begin);
   bare::register_at(0xe000'ed94) = kDefaultMap | kEnable;
   asm volatile("dsb\n\tisb" ::: "memory");
 }
@@ -56,12 +57,12 @@ std::uint32_t interrupted_program() noexcept {
   return reinterpret_cast<const std::uint32_t*>(program_stack_pointer())[6];
 }
 
-// The frame of an exception takes 32 bytes below the pointer. If they reach into the guard, the processor notes that
+// The frame of an exception takes 32 bytes below the pointer. If they reach below the RAM, the processor notes that
 // (ARMv7-M), and moves the pointer all the same.
 bool is_program_stack_overrun() noexcept {
   if (program_stack_pointer() < reinterpret_cast<std::uintptr_t>(image_stack_begin + kGuardWords)) return true;
 #if __ARM_ARCH >= 7
-  constexpr std::uint32_t kStackingFailed = 1u << 4;
+  constexpr std::uint32_t kStackingFailed = 1u << 12;
   return (bare::register_at(0xe000'ed28) & kStackingFailed) != 0;
 #else
   return false;

@@ -55,6 +55,7 @@ void stop(ResetCause cause, std::uint32_t pc, std::string_view words) noexcept {
     uart().send("\n");
     uart().flush();
   }
+  if (is_in_setup && cause == ResetCause::kAssertion) end_simulation(1);
   bare::reset_chip();
 }
 

@@ -31,8 +31,8 @@ def command(machine, image, instruction_ns):
 
 def run(machine, image, limit_s=LIMIT_S, instruction_ns=INSTRUCTION_NS):
     """(lines of the serial port, exit code). Raises QemuError if the image does not end within the limit."""
-    with subprocess.Popen(command(machine, image, instruction_ns), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, text=True, errors="replace") as process:
+    with subprocess.Popen([*command(machine, image, instruction_ns), "-no-reboot"], stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace") as process:
         try:
             out, err = process.communicate(timeout=limit_s)
         except subprocess.TimeoutExpired:

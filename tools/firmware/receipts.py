@@ -13,6 +13,8 @@ def of_image(lines):
     for line in lines:
         if switch := SWITCH.fullmatch(line):
             number, before, after, end, why, _, lost = switch.groups()
+            if why == "nothing-to-do":  # has no number, and no receipt on the host
+                continue
             found[number] = f"{before} to {after} {end} {why} lost {lost}"
         elif step := STEP.fullmatch(line):
             steps.setdefault(step[1], []).append(f" {step[2]} {step[3]} {step[4]}")

@@ -114,7 +114,7 @@ void TaskSet::on_set_changed() noexcept {
   for (Task& task : tasks_) {
     if (!is_mine(task.id)) continue;
     if (task.standing == Standing::kWarm && !task.is_warm()) task.standing = Standing::kPlain;
-    if constexpr (!mechanisms::kPeers) continue;  // no other process is told
+    if constexpr (!mechanisms::kPeers) continue;  // no other process reads the changes
     const TaskStatus now{task.shown_state(), task.in_service(), memories_[task.id.index].incarnation()};
     TaskStatus& listed = listed_[task.id.index];
     if (now != listed) changes_.add_status(task.id, listed, now);
