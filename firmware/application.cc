@@ -63,6 +63,12 @@ void print_stacks() {
                       << used_of(handlers) << " of " << handlers.words.size_bytes());
 }
 
+/// Bytes that arrive or leave end no wait of setup.
+void wait_for(Clock& clock, Nanoseconds instant) {
+  while (clock.wait_until(instant) == WaitEnd::kWoken) {
+  }
+}
+
 int refused(std::string_view words) {
   send_line(Message("refused ") << words);
   send_line(Message("end refused"));
@@ -87,7 +93,7 @@ int Image::run() {
   clock_->serve(served_);
   // The grid of releases begins at a tick, so that every release is at a tick.
   bare::BareClock& clock = board_clock();
-  clock.wait_until(clock.last_tick() + clock.tick());
+  wait_for(clock, clock.last_tick() + clock.tick());
   if constexpr (mechanisms::kSwitch) receipts_->begin(clock.last_tick());
   executive_->start(clock.last_tick());
   is_in_setup = false;
@@ -131,7 +137,7 @@ void Image::make_executive() {
 bool Image::start() {
   bare::BareClock& clock = board_clock();
   const auto wait = [this, &clock](Nanoseconds at) {
-    clock.wait_until(at);
+    wait_for(clock, at);
     return method_clock_->now();
   };
   const SignalReport started = set_->life().start(clock.now(), wait);
