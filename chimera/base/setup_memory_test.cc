@@ -34,7 +34,7 @@ TEST_F(GivenMemoryTest, GivesOnePieceBehindTheOtherEachAligned) {
 TEST_F(GivenMemoryTest, GivesItsLastByteAndNoMore) {
   EXPECT_EQ(memory.take_bytes(256, 1).size(), 256u);
   EXPECT_EQ(memory.take<Line>(0).size(), 0u);
-  EXPECT_DEATH((void)memory.take_bytes(1, 1), "size");
+  EXPECT_DEATH((void)memory.take_bytes(1, 1), "fits");
 }
 
 }  // namespace

@@ -420,7 +420,7 @@ TEST_F(ServedTest, StatusHasTheServerAndTheTimeSinceOn) {
 
 TEST_F(ServedTest, RefusesARingForATaskThatCannotAnswer) {
   EXPECT_EQ(refusal("ring", {{"tasks", {"lamp", "sensor"}}}),
-            "-32000 sensor is not behind a server: it has no doorbell "
+            "-32000 sensor has no doorbell: neither a server nor events release it "
             "{\"kind\":\"no-server\",\"remedy\":\"give it 'server:' in the description\",\"where\":\"sensor\"}");
   EXPECT_EQ(refusal("ring", {{"tasks", {"lmp"}}}),
             "-32005 no task 'lmp'; did you mean 'lamp'? {\"nearest\":\"lamp\",\"where\":\"lmp\"}");

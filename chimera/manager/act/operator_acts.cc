@@ -68,7 +68,7 @@ std::variant<std::vector<TaskId>, RpcResponse> tasks_named(const ManagerState& s
 RpcResponse judge_ring(const ManagerState& state, TaskId task) {
   const std::string name = state.name(task);
   if (!state.spec().tasks[task.index].has_doorbell())
-    return RpcResponse::refused("no-server", name + " is not behind a server: it has no doorbell", name,
+    return RpcResponse::refused("no-server", name + " has no doorbell: neither a server nor events release it", name,
                                 "give it 'server:' in the description");
   const State now = state.state(task);
   if (now == State::kOn) return {};
