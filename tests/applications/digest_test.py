@@ -17,7 +17,7 @@ PINNED = {
     (CAR + "pedals.yaml", "70 s"):
         "8549c261d9a509a9500a39010107607d65e9b1ec2162d0e1efad652feaf34280",
     (CAR + "variants.yaml", "60 s", *SWITCHES):
-        "6cb676df11151300d91ddd2be341c8a5e72cef4d7c8fcfdf1565c17d400e4911",
+        "4e6be2071a0b0f9f76dc2860e5bd1f65e06d93b4e61795119b71497b110ca986",
     (SERVO, "2 s", "--expect", "max |q[0]| <= 1.01 rad", "--expect", "q[1] <= -0.499 rad"):
         "b2beae26806a28a370f93fd21fef53daefd0874e1c02fb3d7afa746e142cce1e",
 }
