@@ -53,10 +53,10 @@ struct alignas(kCacheLine) JobRecord {
   [[no_unique_address]] TaskMisses history;  ///< kept if misses are tolerated
 
   /// A job may start: its release is not to be skipped, and enough time is left.
-  bool lets_start(Nanoseconds now, Nanoseconds deadline) const noexcept {
+  [[gnu::always_inline]] bool lets_start(const Nanoseconds& now, const Nanoseconds& deadline) const noexcept {
     return !mechanisms::kReactions || (!skip_next && now + start_margin <= deadline);
   }
-  bool is_within_budget(Nanoseconds used) const noexcept { return !mechanisms::kBudgets || used <= budget; }
+  [[gnu::always_inline]] bool is_within_budget(const Nanoseconds& used) const noexcept { return !mechanisms::kBudgets || used <= budget; }
 };
 
 }  // namespace chimera
