@@ -56,7 +56,9 @@ struct alignas(kCacheLine) JobRecord {
   [[gnu::always_inline]] bool lets_start(const Nanoseconds& now, const Nanoseconds& deadline) const noexcept {
     return !mechanisms::kReactions || (!skip_next && now + start_margin <= deadline);
   }
-  [[gnu::always_inline]] bool is_within_budget(const Nanoseconds& used) const noexcept { return !mechanisms::kBudgets || used <= budget; }
+  [[gnu::always_inline]] bool is_within_budget(const Nanoseconds& used) const noexcept {
+    return !mechanisms::kBudgets || used <= budget;
+  }
 };
 
 }  // namespace chimera
