@@ -102,7 +102,7 @@ int Image::run() {
   return end(why);
 }
 
-void Image::stop_for_want_of_ram(std::size_t bytes) noexcept {
+void Image::stop_ram_too_small(std::size_t bytes) noexcept {
   stop(ResetCause::kAssertion, 0,
        (Message("setup needs more than the ") << bytes << " bytes of RAM behind the stacks").view());
 }

@@ -21,7 +21,7 @@ class Image {
  public:
   /// Takes the parts from `memory`. `boot` is how the image began; it outlives this.
   Image(std::span<std::byte> memory, const Boot& boot) noexcept
-      : memory_(memory, stop_for_want_of_ram), memory_bytes_(memory.size()), boot_(boot) {}
+      : memory_(memory, stop_ram_too_small), memory_bytes_(memory.size()), boot_(boot) {}
   Image(const Image&) = delete;
   Image& operator=(const Image&) = delete;
 
@@ -34,7 +34,7 @@ class Image {
   T& make(Arguments&&... arguments) {
     return *::new (memory_.take_bytes(sizeof(T), alignof(T)).data()) T(static_cast<Arguments&&>(arguments)...);
   }
-  static void stop_for_want_of_ram(std::size_t bytes) noexcept;
+  static void stop_ram_too_small(std::size_t bytes) noexcept;
   void make_executive();
   bool start();
   int end(RunEnd end);

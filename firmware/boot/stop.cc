@@ -14,8 +14,19 @@
 namespace chimera::firmware {
 namespace {
 
-// SYS_EXIT of semihosting: 0x20026 is success, any other reason a failure.
+constinit bool is_over = false;
+
+[[noreturn]] void sleep_for_ever() noexcept {
+  for (;;) {
+    bare::wait_for_interrupt();
+    if constexpr (mechanisms::kWatchdog) board_watchdog().stroke();
+  }
+}
+
+// SYS_EXIT of semihosting: 0x20026 is success, any other reason a failure. A chip without a debugger has a hard fault
+// there.
 [[noreturn]] void end_simulation(int code) noexcept {
+  is_over = true;
 #ifdef CHIMERA_SIMULATED
   register std::uint32_t operation asm("r0") = 0x18;
   register std::uint32_t reason asm("r1") = code == 0 ? 0x20026 : 0x20024;
@@ -23,10 +34,7 @@ namespace {
 #else
   static_cast<void>(code);
 #endif
-  for (;;) {
-    bare::wait_for_interrupt();
-    if constexpr (mechanisms::kWatchdog) board_watchdog().stroke();
-  }
+  sleep_for_ever();
 }
 
 constexpr const char* kExceptions[] = {"no exception", "reset", "NMI",        "hard fault",
@@ -60,6 +68,7 @@ void stop(ResetCause cause, std::uint32_t pc, std::string_view words) noexcept {
 }
 
 void stop_at_exception(std::uint32_t number, std::uint32_t pc) noexcept {
+  if (is_over) sleep_for_ever();
   constexpr std::uint32_t kNmi = 2;
   Message words;
   const bool is_watchdog = mechanisms::kWatchdog && number == kNmi;

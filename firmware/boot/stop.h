@@ -12,7 +12,7 @@ namespace chimera::firmware {
 /// Sends what is left, then ends the simulation: 0 is success. On a chip without debugger it sleeps for ever, and
 /// strokes the watchdog.
 [[noreturn]] void end_image(int code) noexcept;
-/// True until the executive runs. A mistake that the image finds before comes again at each boot: stop() then ends it.
+/// True until the executive runs. An assertion that fails in setup fails again at each boot, so stop() ends the image.
 inline constinit bool is_in_setup = true;
 /// The image cannot go on: does the safe writes of the target, notes the end in the record, sends "stop WORDS", and
 /// resets the chip. `pc` is the address of the instruction; 0: unknown. Context: any.

@@ -98,7 +98,10 @@ TEST(BakedApplication, HasThePlanThatIsMadeWhileRunning) {
 
 TEST(BakedApplication, MakesAPlanWhenATaskIsInAnotherStateThanTheBakedOneAssumes) {
   const ApplicationSpec& spec = baked::kSpec;
-  if (spec.sets.size() < 2) GTEST_SKIP() << "this application has one configuration, and no switch";
+  if (spec.plans == nullptr) {
+    EXPECT_LT(spec.sets.size(), 2u) << "without a switch there are no plans";
+    return;
+  }
   HeapMemory memory;
   SwitchPlanner planner;
   planner.prepare(spec, memory);
