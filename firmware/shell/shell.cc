@@ -18,16 +18,17 @@ static_assert(static_cast<int>(Verb::kReinit) == static_cast<int>(Signal::kReini
 
 }  // namespace
 
-void Shell::receive(std::uint8_t byte) noexcept {
+bool Shell::receive(std::uint8_t byte) noexcept {
   const std::uint32_t needed = is_losing_ ? 2 : 1;
   if (in_.free() < needed) {
     is_losing_ = true;
     lost_.store(lost_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
-    return;
+    return false;
   }
   if (is_losing_) in_.add(kLostMark);
   is_losing_ = false;
   in_.add(byte);
+  return true;
 }
 
 bool Shell::has_work() const noexcept {
@@ -120,7 +121,7 @@ bool Shell::refuse_line() noexcept {
       return true;
     case LineReader::Fault::kLost:
       if (const std::uint32_t lost = lost_bytes() - lost_told_; lost != 0) {
-        why_.put("%u bytes of this line or before it were lost: wait for each answer", lost);
+        why_.put("at least %u bytes of this line or before it were lost: wait for each answer", lost);
         lost_told_ += lost;
         return true;
       }

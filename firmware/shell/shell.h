@@ -51,7 +51,7 @@ class Shell final : public bare::SerialPeer {
   // For the interrupts of the serial line. Context: any, one at a time; wait-free.
 
   /// Bytes that do not fit are counted, and the line that they belong to is refused.
-  void receive(std::uint8_t byte) noexcept override;
+  bool receive(std::uint8_t byte) noexcept override;
   /// A byte of a row that is whole, or -1.
   int next_byte() noexcept override;
 
@@ -62,7 +62,7 @@ class Shell final : public bare::SerialPeer {
   /// Does one piece of work: reads up to 32 bytes, looks at up to 16 names or 128 words of a stack, makes at most one
   /// row, reads or shows one number, or sends up to 64 bytes. `now` is on the clock of the executor.
   void step(Nanoseconds now) noexcept;
-  /// Bytes that arrived and did not fit.
+  /// Bytes that receive() did not take. Those that the port lost while it was held are not among them.
   std::uint32_t lost_bytes() const noexcept { return lost_.load(std::memory_order_relaxed); }
 
  private:

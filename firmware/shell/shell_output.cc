@@ -66,7 +66,7 @@ bool Shell::make_last_status_row(std::size_t row) noexcept {
     return true;
   }
   if (row > 2 || lost_bytes() == 0) return false;
-  line_.put("input: %u bytes lost", lost_bytes());
+  line_.put("input: at least %u bytes lost", lost_bytes());
   return true;
 }
 

@@ -36,9 +36,13 @@ class BareUart {
     pump();
     return true;
   }
-  /// The peer may have a line to send. Context: cycle; wait-free.
+  /// The peer may have a line to send, or room for bytes again. Context: cycle; wait-free.
   void go_on() noexcept {
     NoInterrupts off;
+    if (is_held_) {
+      port_.ask_to_receive(true);
+      take_in();  // what arrived meanwhile interrupts no more
+    }
     pump();
   }
   /// Waits until all texts of send() are sent. Context: setup; blocks.
@@ -48,10 +52,7 @@ class BareUart {
   /// Call from the interrupts of the port. Context: interrupt; wait-free.
   void on_interrupt() noexcept {
     port_.acknowledge();
-    while (port_.has_received()) {
-      const std::uint8_t byte = port_.receive();
-      if (peer_ != nullptr) peer_->receive(byte);
-    }
+    take_in();
     pump();
   }
   /// Texts of send() that did not fit in. Context: any; wait-free.
@@ -60,6 +61,13 @@ class BareUart {
  private:
   enum class Line : std::uint8_t { kNone, kOwn, kOfPeer };
 
+  // A line that sends faster than the peer reads interrupts no more until go_on(): it takes no time from the jobs.
+  void take_in() noexcept {
+    if (!port_.has_received()) return;
+    const std::uint8_t byte = port_.receive();
+    is_held_ = peer_ != nullptr && !peer_->receive(byte);
+    if (is_held_) port_.ask_to_receive(false);
+  }
   // Most lines find the port idle: then no byte takes the way through the ring.
   void put(std::uint8_t byte) noexcept {
     if (line_ == Line::kOfPeer || ring_out_.size() != 0 || !port_.can_send()) {
@@ -89,6 +97,7 @@ class BareUart {
   ByteRing<kSendBytes> ring_out_;
   SerialPeer* peer_ = nullptr;
   std::uint32_t lost_out_ = 0;
+  bool is_held_ = false;  // the port does not interrupt for bytes that arrive
   Line line_ = Line::kNone;
 };
 

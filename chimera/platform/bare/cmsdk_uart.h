@@ -22,6 +22,10 @@ class CmsdkUart {
   std::uint8_t receive() noexcept { return static_cast<std::uint8_t>(at().data); }
   /// Asks for an interrupt when a byte can be sent, or not. This port interrupts once for each byte that it sent.
   void ask_to_send(bool) noexcept {}
+  /// Asks for an interrupt for each byte that arrives from now on, or not.
+  void ask_to_receive(bool ask) noexcept {
+    at().control = ask ? at().control | kInterruptReceived : at().control & ~kInterruptReceived;
+  }
   /// Call at the begin of the interrupt.
   void acknowledge() noexcept { at().interrupts = kInterrupts; }
 

@@ -9,8 +9,8 @@ namespace chimera::bare {
 /// Context of everything: interrupt, or with interrupts off; wait-free.
 class SerialPeer {
  public:
-  /// A byte arrived.
-  virtual void receive(std::uint8_t byte) noexcept = 0;
+  /// A byte arrived; false if there is no room for it. Then no byte comes until BareUart::go_on().
+  virtual bool receive(std::uint8_t byte) noexcept = 0;
   /// The next byte to send; -1: there is none. From the first byte of a line on, all bytes up to its '\n' are there.
   virtual int next_byte() noexcept = 0;
 

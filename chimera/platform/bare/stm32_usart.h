@@ -21,6 +21,10 @@ class Stm32Usart {
   void send(std::uint8_t byte) noexcept { at().data = byte; }
   bool has_received() noexcept { return (at().state & kReceiveFull) != 0; }
   std::uint8_t receive() noexcept { return static_cast<std::uint8_t>(at().data); }
+  /// Asks for an interrupt for each byte that arrives, or not.
+  void ask_to_receive(bool ask) noexcept {
+    at().control = ask ? at().control | kInterruptReceived : at().control & ~kInterruptReceived;
+  }
   /// Asks for an interrupt when a byte can be sent, or not.
   void ask_to_send(bool ask) noexcept {
     at().control = ask ? at().control | kInterruptSendEmpty : at().control & ~kInterruptSendEmpty;
