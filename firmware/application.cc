@@ -10,6 +10,7 @@
 #include "firmware/boot/kept.h"
 #include "firmware/boot/stacks.h"
 #include "firmware/boot/stop.h"
+#include "firmware/link_on_uart.h"
 #include "firmware/serial_text.h"
 #include "firmware/shell/shell_rows.h"
 
@@ -122,6 +123,10 @@ void Image::make_executive() {
     options.events = event_interrupts = &make<EventInterrupts>(baked::kTarget.events, memory_);
   if constexpr (mechanisms::kSwitch) options.receipts = receipts_ = &make<ReceiptLinesOut>(baked::kSpec);
   if constexpr (mechanisms::kShell) options.guest = served_.listener = &make<ShellListener>(*set_, memory_);
+  LinkOnUart* link = nullptr;
+  if constexpr (mechanisms::kLink)
+    options.guest = link = &make<LinkOnUart>(
+        *set_, HostLink::Times{baked::kRun.link_period, baked::kRun.link_stale_after, baked::kRun.tick}, memory_);
   executive_ = &make<Executive>(*set_, *clock_, *method_clock_, options);
   static std::array<Stack, 2> stacks;
   stacks = {program_stack(), handler_stack()};
@@ -132,6 +137,7 @@ void Image::make_executive() {
                                             &boot_});
     uart().attach(*served_.shell);
   }
+  if constexpr (mechanisms::kLink) uart().attach(*link);
 }
 
 bool Image::start() {
@@ -152,7 +158,7 @@ int Image::end(RunEnd end) {
   if constexpr (mechanisms::kDigest) digest_->end();
   print_tasks(*set_);
   print_stacks();
-  if (mechanisms::kShell && uart().lost_out() != 0) send_line(Message() << "lost " << uart().lost_out());
+  if (mechanisms::kSerial && uart().lost_out() != 0) send_line(Message() << "lost " << uart().lost_out());
   send_line(Message() << "end " << end_word(end));
   return 0;
 }

@@ -19,7 +19,7 @@ inline Message& add_hex(Message& text, std::uint64_t bits, int digits) noexcept 
 
 /// Sends the text as one line, or counts it as lost: BareUart::send. Context: cycle; wait-free.
 inline void send_line(Message& text) noexcept {
-  if constexpr (mechanisms::kShell) uart().send((text << "\n").view());
+  if constexpr (mechanisms::kSerial) uart().send((text << "\n").view());
 }
 inline void send_line(Message&& text) noexcept { send_line(text); }
 

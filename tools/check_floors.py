@@ -16,7 +16,7 @@ FLOOR = {"base": 0, "platform": 1, "table": 2, "task": 3, "schedule": 4, "runtim
 # Rooms of one floor: a room imports only those with lower numbers. "" is the folder itself.
 INSIDE = {"cli": {"": 0, "command": 0, "files": 1, "print": 1, "live": 2, "run": 3, "batch": 4},
           "runtime": {"": 0, "record": 1, "job": 2, "plan": 3, "state": 4, "life": 5, "switch": 6, "cycle": 7,
-                      "executive": 8, "hosted": 8, "preemptive": 9, "virtual": 9},
+                      "executive": 8, "link": 8, "hosted": 8, "preemptive": 9, "virtual": 9},
           "manager": {"state": 0, "watch": 1, "answer": 2, "switch": 3, "act": 4, "": 5},
           "control": {"receipt": 0, "": 1},
           "description": {"": 0, "edit": 1}}

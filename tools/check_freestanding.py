@@ -18,8 +18,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent / "check"))
 import sources  # noqa: E402
 
 FOLDERS = ("base", "table", "task", "schedule", "runtime", "runtime/record", "runtime/job", "runtime/plan",
-           "runtime/state", "runtime/life", "runtime/switch", "runtime/cycle", "runtime/executive")
-FILE = re.compile(rf"(chimera/({'|'.join(FOLDERS)})|firmware/(shell|watch))/[^/]+"
+           "runtime/state", "runtime/life", "runtime/switch", "runtime/cycle", "runtime/executive", "runtime/link")
+FILE = re.compile(rf"(chimera/({'|'.join(FOLDERS)})|firmware/(shell|watch|link))/[^/]+"
                   r"(?<!_test)(?<!_stress)(?<!_fuzz)\.(h|cc)$")
 HOSTED = re.compile(r'^[ \t]*#[ \t]*include[ \t]*"(chimera/\w+/hosted/[^"]+)"', re.MULTILINE)
 # Components that a microcontroller may take; the first three are compiled for x86-64, too.

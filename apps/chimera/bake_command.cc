@@ -14,13 +14,13 @@ namespace {
 int bake_image(const Call& call, const Workplace& workplace) {
   cli::BakeRequest request{.file = call.operand(0),
                            .target = call.value("--target"),
+                           .rtpu = call.value("--rtpu"),
                            .profile = call.value("--profile"),
                            .out = call.value("--out"),
                            .at = call.values("--at"),
                            .settings = settings_of(call),
                            .json = call.json};
-  if (request.target.empty() || request.out.empty())
-    return print({"", "chimera bake: give --target NAME and --out DIR\n", cli::kUsage});
+  if (request.out.empty()) return print({"", "chimera bake: give --out DIR\n", cli::kUsage});
   if (!read_duration(call, "--for", request.duration)) return cli::kUsage;
   return print(cli::bake(request, workplace));
 }
@@ -37,15 +37,20 @@ FileCommand bake_row() {
                     .operand_help = "the description",
                     .options = {{.name = "--target",
                                  .value = "NAME",
-                                 .help = "the board: a name of firmware/targets, or a file NAME.yaml; required",
+                                 .help = "the board: a name of firmware/targets, or a file NAME.yaml",
                                  .manual = "The board: a name of firmware/targets, or a file NAME.yaml "
-                                           "(docs/formats/target.md). Required.",
+                                           "(docs/formats/target.md). Required unless FILE has a board.",
                                  .kind = WordKind::kFile},
                                 {.name = "--out",
                                  .value = "DIR",
                                  .help = "the folder of the files; required",
                                  .manual = "The folder of the files, which is made if it is missing. Required.",
                                  .kind = WordKind::kFile},
+                                {.name = "--rtpu",
+                                 .value = "NAME",
+                                 .help = "the board to bake; default: the first rtpu with 'target'",
+                                 .manual = "The rtpu of FILE to bake: one with 'target' and 'link' "
+                                           "(docs/formats/link.md). Default: the first one."},
                                 {.name = "--profile",
                                  .value = "FILE",
                                  .help = "prove all deadlines by this profile, recorded on the target",

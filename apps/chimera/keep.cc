@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cstdio>
 
+#include "apps/chimera/board_images.h"
 #include "chimera/cli/files/file_refusal.h"
 #include "chimera/cli/run/run_plan.h"
 #include "chimera/keeper/keeper.h"
@@ -58,7 +59,7 @@ Result<std::vector<CpuClaim>> claim_cpus(const cli::RunPlan& plan, int priority)
   if (priority == 0 || !may_be_realtime(priority)) return claims;
   std::vector<std::uint32_t> cpus;
   for (const ConfiguredTask& task : plan.configuration.tasks())
-    cpus.push_back(plan.configuration.rtpus()[task.rtpu].cpu);
+    if (const RtpuSpec& rtpu = plan.configuration.rtpus()[task.rtpu]; !rtpu.link.is_there()) cpus.push_back(rtpu.cpu);
   std::sort(cpus.begin(), cpus.end());
   cpus.erase(std::unique(cpus.begin(), cpus.end()), cpus.end());
   for (const std::uint32_t cpu : cpus) {
@@ -195,6 +196,8 @@ int keep(const KeepRequest& request, const Workplace& workplace) {
   int wrong = cli::kRefused;
   const auto plan = cli::plan_run(request.run, workplace, stdout, stderr, &wrong);
   if (!plan) return wrong;
+  const auto boards = take_boards(*plan, request.run.file, workplace, request.flash);
+  if (!boards) return cli::refuse_run(request.run, boards.error(), stdout, stderr);
   const auto code = keep(request, *plan);
   return code ? *code : cli::refuse_run(request.run, code.error(), stdout, stderr);
 }

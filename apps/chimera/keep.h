@@ -12,6 +12,7 @@
 /// The request of a run, and the other settings of the keeper.
 struct KeepRequest {
   chimera::cli::RunRequest run;
+  bool flash = false;             ///< build and load the images of boards
   std::vector<std::string> face;  ///< the arguments of `chimera attend` that stand on the command line of `run`
   std::optional<std::uint32_t> observe_group, operate_group, configure_group;
 };

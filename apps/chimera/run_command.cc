@@ -153,6 +153,11 @@ const std::vector<Option>& real_time_options() {
                  "no control protocol.",
        .kind = WordKind::kOneOf,
        .words = "process none"},
+      {.name = "--flash",
+       .help = "real time: build the images of boards, and start them in QEMU",
+       .manual = "Real time: builds the image of each rtpu with `target` under build/boards, and starts it in QEMU, at "
+                 "the other end of its `link`, until the run ends. If QEMU has no such board, or the `link` names a "
+                 "device, load the image with your programmer, and run without `--flash`."},
       {.name = "--observe-group",
        .value = "GROUP",
        .help = "real time: members of this group may observe: read states, values and events",
@@ -236,6 +241,8 @@ bool AskedRun::read(const Call& call) {
     wrong = "--start-limit belongs to real time with a process for each rtpu";
   if (!run.log.empty() && (run.virtual_time || run.one_process))
     wrong = "--log belongs to real time with a process for each rtpu";
+  if (call.has("--flash") && (run.virtual_time || run.one_process))
+    wrong = "--flash belongs to real time with a process for each rtpu";
   if (!call.value("--timeline").empty() && run.duration == kNever) wrong = "--timeline needs --for";
   if (!call.value("--timeline").empty() && run.json) wrong = "--timeline and --json exclude each other";
   if (wrong != nullptr) std::fprintf(stderr, "%s\n", wrong);
@@ -295,6 +302,7 @@ int run(const Call& call, const Workplace& workplace) {
   if (const auto log = log_of(asked.run); !log) return print_refusal(log.error());
   if (!asked.run.virtual_time && !asked.run.one_process) {
     kept.run = asked.run;
+    kept.flash = call.has("--flash");
     kept.face = words_for_attend(call);
     return keep(kept, workplace);
   }

@@ -7,6 +7,7 @@
 #include "chimera/base/hosted/wording.h"
 #include "chimera/description/criticality.h"
 #include "chimera/text/time_text.h"
+#include "chimera/verify/board_links.h"
 
 namespace chimera {
 namespace {
@@ -41,6 +42,9 @@ std::string late_text(const ApplicationSpec& spec, TaskId from, TaskId to) {
   const auto helps = [](const std::string& change, const TaskSpec& of) {
     return "; remedy: " + change + " of " + in_quotes(of.name);
   };
+  if (const Nanoseconds delay = link_delay(spec, from, to); delay.count > 0)
+    return reader + " is at the other end of a link, which takes up to " + time_text(delay) +
+           "; remedy: a higher 'rate' of the link";
   if (a.rtpu != b.rtpu) return reader + " runs on another rtpu" + helps("rtpu: " + std::string(rtpu.name), b);
   if (a.has_doorbell() || b.has_doorbell()) return "events release one of the two";
   const bool is_more_critical = has_criticalities(rtpu.policy) && a.criticality != b.criticality;

@@ -4,6 +4,7 @@
 
 #include "chimera/analysis/schedule_parts.h"
 #include "chimera/schedule/data_age.h"
+#include "chimera/verify/board_links.h"
 
 namespace chimera {
 namespace {
@@ -85,6 +86,8 @@ class Walk {
       path.tasks.push_back(set_.tasks[i]);
     }
     path.age = worst_data_age(chain);
+    for (std::size_t k = 0; k + 1 < path_.size() && path.age != kNever; ++k)
+      path.age += link_delay(configuration_.spec(), TaskId(path.tasks[k]), TaskId(path.tasks[k + 1]));
     schedule_.paths.push_back(std::move(path));
   }
 

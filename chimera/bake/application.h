@@ -25,6 +25,9 @@ class BakedApplication {
   BakedApplication(const BakedApplication&) = delete;
   BakedApplication& operator=(const BakedApplication&) = delete;
 
+  /// No task goes ON by itself: the other side of a link asks for each.
+  void start_nothing() noexcept { spec_.start = {}; }
+
   const ApplicationSpec& spec() const noexcept { return spec_; }
   /// Acts of the description with values as large as the image has room for.
   std::vector<ScriptAct> acts(std::span<const ScriptAct> acts) const;

@@ -80,13 +80,16 @@ BakeResult bake(const BakeInput& input) {
   refuse_unserved(configuration, target, result.description);
   if (input.profile != nullptr) refuse_late(configuration, *input.profile, target, result.description);
   refuse_unknown(configuration, target, result.target);
+  if (input.link.is_there()) refuse_link(configuration, input.link, target, result.description, result.target);
 
-  const BakedApplication application(configuration, target, input.profile);
+  BakedApplication application(configuration, target, input.profile);
+  if (input.link.is_there()) application.start_nothing();
   const ApplicationSpec& spec = application.spec();
   const std::vector<ScriptAct> acts = application.acts(input.acts);
   const baked::Run run{spec.rtpus.empty() ? Policy::kEdf : spec.rtpus[0].policy, target.tick.value, input.duration,
-                       acts};
+                       acts, input.link.period, input.link.stale_after};
   result.memory = memory_need(spec, input.acts.size(), target);
+  if (input.link.is_there()) result.memory.shared_ram_bytes += link_ram(spec);
   result.mechanisms = mechanisms(spec, run, target);
   note_slow_switches(spec, result.notes);
   refuse_memory(result.memory, target, result.target);

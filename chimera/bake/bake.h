@@ -30,6 +30,7 @@ struct BakeInput {
   const RecordedProfile* profile = nullptr;  ///< recorded on the target; null: deadlines are not judged
   std::span<const ScriptAct> acts;           ///< in order of time
   Nanoseconds duration = kNever;
+  LinkSpec link = {};                        ///< of a board whose part this is; then no task is ON at the start
 };
 
 struct BakeResult {

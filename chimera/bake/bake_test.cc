@@ -313,7 +313,7 @@ TEST(Bake, TurnsOnTheMechanismsThatAreUsed) {
   EXPECT_EQ(used({.text = "tasks: {source: {on_fault: {restart: 2, within: 1 s, then: error}}, sink: {on_miss: hold}}\n"
                           "configurations: {all: [source, sink], one: [source]}\nstart: all\n",
                   .target = "watchdog: 1 s\nuart: {address: 64, interrupt: timer0, baud: 9600}\n"}),
-            (std::set<std::string>{"kSignals", "kSwitch", "kRestart", "kReactions", "kShell", "kWatchdog"}));
+            (std::set<std::string>{"kSignals", "kSwitch", "kRestart", "kReactions", "kSerial", "kShell", "kWatchdog"}));
 }
 
 }  // namespace chimera::bake::bake_test

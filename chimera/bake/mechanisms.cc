@@ -28,7 +28,7 @@ std::vector<Mechanism> mechanisms(const ApplicationSpec& spec, const baked::Run&
           {"kRestart", !spec.restarts.empty()},
           {"kTap", false},
           {"kBlame", false},
-          {"kSwitch", switches},
+          {"kSwitch", switches && run.link_period.count == 0},  // else Linux switches
           {"kTransitions", false},
           {"kConstants", has_constants},
           {"kOperators", !spec.operators.empty()},
@@ -38,7 +38,9 @@ std::vector<Mechanism> mechanisms(const ApplicationSpec& spec, const baked::Run&
           {"kReactions", reacts},
           {"kBudgets", any_task([](const TaskSpec& task) { return task.budget.count > 0; })},
           {"kDigest", run.duration != kNever},
-          {"kShell", target.uart.has_value()},
+          {"kSerial", target.uart.has_value()},
+          {"kShell", target.uart.has_value() && run.link_period.count == 0},  // else Linux is the shell
+          {"kLink", run.link_period.count > 0},
           {"kWatchdog", target.watchdog.count > 0},
           {"kInterrupts", !target.events.empty()},
           {"kStale", !spec.stale.empty()}};

@@ -17,9 +17,9 @@ struct Mechanism {
   bool is_used = false;
 };
 
-/// Every constant of chimera/base/mechanisms.h, in its order, then those of firmware/: kShell (the serial line: output
-/// and commands), kWatchdog, kInterrupts (interrupts release jobs). What the methods of a component send is not known
-/// before they run, so kSignals is always used. Context: setup.
+/// Every constant of chimera/base/mechanisms.h, in its order, then those of firmware/: kSerial (the serial line),
+/// kShell (commands on it), kLink (Linux on it), kWatchdog, kInterrupts (interrupts release jobs). What the methods of
+/// a component send is not known before they run, so kSignals is always used. Context: setup.
 std::vector<Mechanism> mechanisms(const ApplicationSpec& spec, const baked::Run& run, const Target& target);
 /// The text of mechanisms.h. Context: setup.
 std::string mechanisms_text(const std::vector<Mechanism>& mechanisms);

@@ -5,6 +5,9 @@
 #include <algorithm>
 
 #include "chimera/runtime/executive/baked_sizes.h"
+#include "chimera/runtime/hosted/heap_memory.h"
+#include "chimera/runtime/link/frame.h"
+#include "chimera/runtime/link/link_layout.h"
 
 namespace chimera::bake {
 namespace {
@@ -72,6 +75,15 @@ std::size_t MemoryNeed::ram_bytes() const noexcept {
   std::size_t bytes = shared_ram_bytes + stack_bytes;
   for (const TaskMemoryNeed& task : tasks) bytes += task.ram_bytes;
   return bytes;
+}
+
+std::size_t link_ram(const ApplicationSpec& part) {
+  HeapMemory memory;
+  board_link::LinkLayout layout;
+  layout.plan(part, RtpuId(0u), memory);
+  const std::size_t frame = layout.most_from_board_bytes();
+  return sizeof(board_link::FrameReader) + layout.to_board_bytes() + frame + board_link::line_bytes(frame) +
+         sizeof(board_link::Import) * layout.imports().size() + sizeof(board_link::Export) * layout.exports().size();
 }
 
 MemoryNeed memory_need(const ApplicationSpec& spec, std::size_t n_acts, const Target& target) {

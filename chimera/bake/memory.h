@@ -38,6 +38,8 @@ inline constexpr std::size_t kDoubleAdd = 75, kDoubleMultiply = 53, kDoubleDivid
 /// Longest slice of the shell, and cycles of the core for one instruction: an upper bound without wait states.
 inline constexpr std::size_t kShellInstructions = 2000, kCyclesPerInstruction = 2;
 
+/// RAM of the link to Linux: a frame of each direction. Context: setup.
+std::size_t link_ram(const ApplicationSpec& part);
 /// Context: setup.
 MemoryNeed memory_need(const ApplicationSpec& spec, std::size_t n_acts, const Target& target);
 

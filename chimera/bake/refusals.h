@@ -22,6 +22,9 @@ void refuse_features(const Configuration& configuration, const Library& library,
 void refuse_unserved(const Configuration& configuration, const Target& target, Report& report);
 /// Tasks, ports, pins and interrupts that the target names and that do not exist. `report` is of the target's file.
 void refuse_unknown(const Configuration& configuration, const Target& target, Report& report);
+/// A target without a serial line, another baud, a rate of broken ticks. `configuration`: the part of the board.
+void refuse_link(const Configuration& configuration, const LinkSpec& link, const Target& target, Report& description,
+                 Report& of_target);
 /// Tables, records or stacks that exceed flash or RAM. `report` is of the target's file.
 void refuse_memory(const MemoryNeed& need, const Target& target, Report& report);
 /// Deadlines that are not guaranteed in some configuration by the times of the profile, which was recorded on the

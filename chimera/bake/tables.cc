@@ -319,6 +319,8 @@ class Tables {
         .add_text("policy", enumerator("Policy", kPolicies, run_.policy, Policy::kEdf))
         .add("tick", run_.tick, {})
         .add("duration", run_.duration, kNever)
+        .add("link_period", run_.link_period, {})
+        .add("link_stale_after", run_.link_stale_after, {})
         .add_text("acts", all_.list("ScriptAct", "kActs", run_.acts, [&](auto& a, auto i) { return act(a, i); }))
         .text();
   }

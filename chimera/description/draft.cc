@@ -6,6 +6,7 @@
 
 #include "chimera/base/hosted/ordinary_file.h"
 #include "chimera/description/criticality.h"
+#include "chimera/description/draft_link.h"
 #include "chimera/description/draft_values.h"
 #include "chimera/description/keys.h"
 #include "chimera/description/yaml_reader.h"
@@ -333,6 +334,7 @@ void read_rtpus(const Node& node, Draft& draft, Report& report) {
       if (const Node* executor = item.find("executor"))
         if (const auto index = read_choice(*executor, kExecutors, "'executor' of " + what, report))
           rtpu.preemptive = {index->value == 1, index->at};
+      read_board(item, rtpu, report);
     }
     draft.rtpus.push_back(std::move(rtpu));
   }

@@ -106,12 +106,27 @@ struct DraftTask {
 };
 
 inline constexpr std::uint32_t kLastCpu = 1023;
+/// The number of rtpu i, a board, among the CPUs is this and i: its load is no load of a CPU of Linux.
+inline constexpr std::uint32_t kFirstBoardCpu = kLastCpu + 1;
+
+/// `{serial: DEVICE, rate: R, stale_after: T}`, or `udp: ADDRESS`
+struct DraftLink {
+  Place at;
+  bool is_udp = false;
+  Word address;  ///< path of a device, or "HOST:PORT"
+  Located<std::uint32_t> baud{115200, {}};
+  Located<Rate> rate;
+  Located<Nanoseconds> stale_after;
+};
 
 struct DraftRtpu {
   Word name;
   Located<std::uint32_t> cpu;
   Located<Policy> policy{Policy::kEdf, {}};
   Located<bool> preemptive{false, {}};
+  std::optional<Word> target = {};  ///< of a board; there if `link` is
+  std::optional<DraftLink> link = {};
+  bool is_board() const noexcept { return target && link; }
 };
 
 struct DraftSet {

@@ -11,7 +11,10 @@ namespace chimera {
 inline constexpr std::array<std::string_view, 9> kFileKeys = {
     "version", "subsystem", "constants", "rtpus", "tasks", "operator", "configurations", "start", "sequence"};
 
-inline constexpr std::array<std::string_view, 3> kRtpuKeys = {"cpu", "policy", "executor"};
+inline constexpr std::array<std::string_view, 5> kRtpuKeys = {"cpu", "policy", "executor", "target", "link"};
+
+/// Keys of `link` of an rtpu.
+inline constexpr std::array<std::string_view, 5> kLinkKeys = {"serial", "udp", "baud", "rate", "stale_after"};
 
 inline constexpr std::array<std::string_view, 25> kTaskKeys = {
     "component",     "rtpu",   "rate",        "deadline",    "offset",   "budget",   "min",        "criticality",

@@ -8,7 +8,7 @@
 
 namespace chimera {
 
-inline constexpr std::array<std::string_view, 85> kRules = {
+inline constexpr std::array<std::string_view, 87> kRules = {
     // the text
     "file-unreadable",
     "text-size",
@@ -81,6 +81,8 @@ inline constexpr std::array<std::string_view, 85> kRules = {
     // processors
     "rtpu-unknown",
     "rtpu-band",
+    "board-rtpu",
+    "link-time",
     // spares, servers, sets
     "standby-unknown",
     "standby-outputs",

@@ -59,7 +59,7 @@ void CyclingThread::run() {
   thread_id_ = this_thread();
   use_decimal_point();
   const int ceiling = priority_of(place_.spec, place_.me, place_.priority);
-  const RealtimeGrant grant = enter_realtime({ceiling, static_cast<int>(self().cpu), true, place_.room});
+  const RealtimeGrant grant = enter_realtime({ceiling, own_cpu(), true, place_.room});
   if (self().preemptive)
     make_threads(grant.priority ? ceiling : 0);
   else

@@ -61,6 +61,8 @@ class CyclingThread {
  private:
   void run();
   const RtpuSpec& self() const { return place_.spec.rtpus[place_.me]; }
+  /// -1: any CPU, because the tasks of a board run there.
+  int own_cpu() const { return self().link.is_there() ? -1 : static_cast<int>(self().cpu); }
   BlockHead& head() const { return place_.others.block().head(); }
   RunOptions options();
   void answer_stop(Releases& releases, Nanoseconds now) noexcept;

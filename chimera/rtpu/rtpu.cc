@@ -17,6 +17,7 @@
 #include "chimera/platform/signal_queue.h"
 #include "chimera/platform/thread.h"
 #include "chimera/platform/wake.h"
+#include "chimera/rtpu/board_tasks.h"
 #include "chimera/rtpu/components.h"
 #include "chimera/rtpu/cycling_thread.h"
 #include "chimera/rtpu/guard_link.h"
@@ -50,6 +51,7 @@ class Rtpu {
  private:
   Result<void> map();
   Result<void> make_segment();
+  Result<void> find_components();
   Result<void> make_tasks();
   void announce();
   void listen(int timeout_ms);
@@ -82,6 +84,7 @@ class Rtpu {
   MemoryRegion segment_;
   BlockOwner block_;
   std::vector<const chimera_component*> components_;
+  std::unique_ptr<BoardTasks> board_;
   std::unique_ptr<ServiceThread> service_;
   std::unique_ptr<PeerLinks> others_;
   BackgroundWriter writer_;
@@ -161,17 +164,29 @@ Result<void> Rtpu::make_segment() {
   return {};
 }
 
-Result<void> Rtpu::make_tasks() {
-  const ApplicationSpec& spec = image_->spec();
-  BlockHead& head = block_.head();
-  std::atomic<std::uint32_t>& making = decision_->making[start_.peer];
+// Of a board: stand-ins for its tasks, and the line to them.
+Result<void> Rtpu::find_components() {
+  if (self().link.is_there()) {
+    board_ = std::make_unique<BoardTasks>(image_->spec(), RtpuId(start_.peer));
+    components_ = board_->components();
+    return {};
+  }
   const auto object_bytes = FrozenBytes::open(start_.objects);
   if (!object_bytes) return object_bytes.error();
   const auto objects = SealedObjects::open(object_bytes->bytes());
   if (!objects) return objects.error();
-  auto components = load_components(*image_, *objects, RtpuId(start_.peer), head.serving, making);
+  auto components = load_components(*image_, *objects, RtpuId(start_.peer), block_.head().serving,
+                                    decision_->making[start_.peer]);
   if (!components) return components.error();
   components_ = *std::move(components);
+  return {};
+}
+
+Result<void> Rtpu::make_tasks() {
+  BlockHead& head = block_.head();
+  std::atomic<std::uint32_t>& making = decision_->making[start_.peer];
+  if (auto found = find_components(); !found) return found;
+  const ApplicationSpec& spec = board_ ? board_->spec() : image_->spec();
   service_ = std::make_unique<ServiceThread>(spec.tasks.size(), Doorbell(bell()));
   others_ = std::make_unique<PeerLinks>(spec, start_.peer, segment_.writable(), block_, *decision_, *keeper_, *peers_);
   ContextPlace place;
@@ -211,12 +226,14 @@ void Rtpu::announce() {
 }
 
 int Rtpu::run() {
+  if (board_) board_->line().start(over_);
   service_->start(*tasks_);
   cycling_->start();
   while (!cycling_->has_ended()) {
     listen(kSuperviseEveryMs);
     attend();
     if (has_lost_thread()) return kThreadLost;
+    if (board_ && !is_ending_ && board_->line().has_ended()) return kBoardLost;
     if (hangs()) return kMethodHangs;
     if (!is_ending_ && edge_->hanging().any()) {
       is_giving_up_ = give_up(edge_->hanging().job(), edge_->hanging().age(), edge_->hanging().used());
@@ -314,6 +331,7 @@ void Rtpu::end(bool is_alone) {
   if (is_ending_ && (is_alone || !ends_alone_)) return;
   if (!is_ending_) hang_watch_->begin_end(wall_.now());
   is_ending_ = true;
+  if (board_) board_->line().end_waits();
   ends_alone_ = is_alone;
   edge_->rtpu_end().tell(is_alone);
   Doorbell(bell()).ring();
@@ -362,7 +380,8 @@ int run_rtpu(const RtpuStart& start) {
   if (rtpu.is_without_keeper()) end_children_of_this_rtpu();
   // A process other than the keeper sent SIGTERM. The keeper then sees this signal as the cause of the death.
   if (code == kTerminated) end_by_signal(SIGTERM);
-  if (code == kMethodHangs || code == kThreadLost) std::_Exit(code);  // threads may run component code: no destructor
+  // Threads may run component code: no destructor.
+  if (code == kMethodHangs || code == kThreadLost || code == kBoardLost) std::_Exit(code);
   return code;
 }
 

@@ -11,6 +11,8 @@ namespace chimera {
 
 /// Exit code of an rtpu one of whose threads is gone.
 inline constexpr int kThreadLost = 6;
+/// Exit code of the rtpu of a board that is silent or was restarted: a successor waits for the board.
+inline constexpr int kBoardLost = 7;
 
 /// Arguments of the start of an rtpu, which takes ownership of the descriptors.
 struct RtpuStart {

@@ -61,12 +61,23 @@ struct GivenSpec {
   std::uint32_t listed[CHIMERA_MAX_EXTENTS] = {};  ///< as PortSpec::listed
 };
 
+/// The line between Linux and a board: docs/formats/link.md.
+struct LinkSpec {
+  std::string_view address;     ///< path of a device, or "HOST:PORT" of UDP; "": the rtpu is no board
+  bool is_udp = false;
+  std::uint32_t baud = 115200;  ///< of a device
+  Nanoseconds period;           ///< between two frames of each direction
+  Nanoseconds stale_after;      ///< without a frame for this time values of the other side are not valid
+  constexpr bool is_there() const noexcept { return !address.empty(); }
+};
+
 /// A real-time processing unit.
 struct RtpuSpec {
   std::string_view name;
   std::uint32_t cpu = 0;
   Policy policy = Policy::kEdf;
   bool preemptive = false;  ///< a thread for each task; else one loop, the executive
+  LinkSpec link = {};       ///< of a board, whose tasks run there
 };
 
 /// The standby takes over the outputs of the primary when that fails. Both have the same outputs.

@@ -209,7 +209,8 @@ class SpecMaker {
   void make() {
     number_variables();
     for (const DraftRtpu& rtpu : model_.rtpus)
-      parts_.rtpus.push_back({keep(parts_, rtpu.name.text), rtpu.cpu.value, rtpu.policy.value, rtpu.preemptive.value});
+      parts_.rtpus.push_back({keep(parts_, rtpu.name.text), rtpu.cpu.value, rtpu.policy.value, rtpu.preemptive.value,
+                              link_spec(rtpu)});
     make_ports();
     for (std::size_t t = 0; t < model_.tasks.size(); ++t)
       parts_.task_specs.push_back(task_spec(model_, model_.tasks[t], parts_.tasks[t], parts_.ports[t]));
@@ -218,6 +219,13 @@ class SpecMaker {
   }
 
  private:
+  LinkSpec link_spec(const DraftRtpu& rtpu) {
+    if (!rtpu.is_board()) return {};
+    const DraftLink& link = *rtpu.link;
+    return {keep(parts_, link.address.text), link.is_udp, link.baud.value, link.rate.value.period,
+            link.stale_after.value};
+  }
+
   /// Numbers state variables and constants separately, in the order of the model.
   void number_variables() {
     for (std::size_t v = 0; v < model_.variables.size(); ++v) {

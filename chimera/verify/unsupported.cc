@@ -44,6 +44,9 @@ class Refusals {
     if (!is_virtual() && spec.policy == Policy::kLlf)
       refuse(configuration_.draft().rtpus[index].policy.at, "policy llf in real time",
              "use muf-laxity, or run --virtual");
+    if (spec.link.is_there() && executor_ == Executor::kOneProcess)
+      refuse(configuration_.draft().rtpus[index].link->at,
+             "'link' of rtpu '" + std::string(spec.name) + "' in one process", "run without --isolation none");
   }
 
   // A switch or a takeover may lead to each configuration. In one process all tasks run on the CPU of the first rtpu.

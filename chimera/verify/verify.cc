@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "chimera/catalogue/library.h"
+#include "chimera/verify/board_links.h"
 #include "chimera/verify/model.h"
 #include "chimera/verify/outline.h"
 #include "chimera/verify/rules/rules.h"
@@ -53,6 +54,13 @@ void judge_order(Model& model) {
   warn_of_unused(model);
 }
 
+/// The links of boards are judged by the whole, so only when all else is legal.
+void judge_boards(const Configuration& configuration, Verdict& verdict) {
+  const std::size_t before = verdict.report.errors();
+  judge_board_links(configuration, verdict.report);
+  if (verdict.report.errors() != before) verdict.configuration.reset();
+}
+
 Verdict judge(const Draft& draft, const Library& library, Report report, Overload overload,
               std::optional<Outline>* outline = nullptr) {
   Verdict verdict{std::nullopt, std::move(report)};
@@ -74,7 +82,7 @@ Verdict judge(const Draft& draft, const Library& library, Report report, Overloa
   };
   const auto overloads = std::ranges::count_if(verdict.report.faults(), is_overload);
   if (verdict.report.errors() == static_cast<std::size_t>(overload == Overload::kShown ? overloads : 0))
-    verdict.configuration.emplace(model);
+    judge_boards(verdict.configuration.emplace(model), verdict);
   if (outline != nullptr) *outline = outline_of(model);
   verdict.report.sort();
   return verdict;

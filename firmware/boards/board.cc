@@ -20,7 +20,7 @@ constinit BoardWatchdog the_watchdog;
 void begin_board() noexcept {
   begin_chip();
   const baked::TargetSpec& target = baked::kTarget;
-  if constexpr (mechanisms::kShell) {
+  if constexpr (mechanisms::kSerial) {
     the_uart.begin(target.uart.address, target.clock_hz, target.uart.baud);
     for (const unsigned number : kUartInterrupts) bare::enable_interrupt(number);
   }

@@ -43,7 +43,7 @@ constexpr const char* kExceptions[] = {"no exception", "reset", "NMI",        "h
 }  // namespace
 
 void end_image(int code) noexcept {
-  if constexpr (mechanisms::kShell) uart().flush();
+  if constexpr (mechanisms::kSerial) uart().flush();
   end_simulation(code);
 }
 
@@ -55,7 +55,7 @@ void stop(ResetCause cause, std::uint32_t pc, std::string_view words) noexcept {
   is_stopping = true;
   for (const baked::RegisterWrite& write : baked::kTarget.safe_writes) bare::register_at(write.address) = write.value;
   note_end(reset_record(), cause, running_method(), pc);
-  if constexpr (mechanisms::kShell) {
+  if constexpr (mechanisms::kSerial) {
     uart().flush();
     uart().send("stop ");
     uart().send(words.substr(0, kSendBytes - 1));

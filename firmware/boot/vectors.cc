@@ -89,7 +89,7 @@ constexpr VectorTable vectors() {
   table.handlers[0] = image_reset;
   table.handlers[14] = on_tick;
   for (unsigned number = 0; number < kInterrupts; ++number) table.handlers[15 + number] = on_event;
-  if constexpr (mechanisms::kShell)
+  if constexpr (mechanisms::kSerial)
     for (const unsigned number : kUartInterrupts) table.handlers[15 + number] = on_uart;
   return table;
 }

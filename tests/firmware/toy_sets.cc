@@ -113,7 +113,8 @@ std::string tables_of(RandomSet& random, const bake::Target& target, ToyTables& 
     tasks[t].component = tasks[t].aperiodic ? "toy_polled" : "toy";
   }
   spec.tasks = tasks;
-  const baked::Run run{random.policy, milliseconds(1), kDuration, random.acts};
+  const baked::Run run{.policy = random.policy, .tick = milliseconds(1), .duration = kDuration, .acts = random.acts,
+                       .link_period = {}, .link_stale_after = {}};
   const auto used = bake::mechanisms(spec, run, target);
   if (mechanisms.empty()) mechanisms = used;
   for (std::size_t m = 0; m < used.size(); ++m) mechanisms[m].is_used = mechanisms[m].is_used || used[m].is_used;

@@ -29,7 +29,8 @@ def key_patterns(text):
     patterns = []
     for array_name, place in (("kFileKeys", r"(?!\w)"), ("kRtpuKeys", " of rtpu"), ("kTaskKeys", " of task"),
                               ("kTolerateKeys", " in 'tolerate'"), ("kServerKeys", " in 'server'"),
-                              ("kSetKeys", " of configuration"), ("kSequenceKeys", " in 'sequence'"),
+                              ("kLinkKeys", " in 'link'"), ("kSetKeys", " of configuration"),
+                              ("kSequenceKeys", " in 'sequence'"),
                               ("kStepKeys", " of step"),
                               ("kStandbyKeys", " in 'standby_for'")):
         for key in array(text, array_name):

@@ -32,7 +32,8 @@ Yaml12.add_constructor("tag:yaml.org,2002:int", lambda loader, node: int(node.va
 def keys_of(schema):
     task = schema["definitions"]["task"]["properties"]
     rtpu = schema["properties"]["rtpus"]["additionalProperties"]["properties"]
-    return {"kFileKeys": schema["properties"], "kRtpuKeys": rtpu, "kTaskKeys": task,
+    return {"kFileKeys": schema["properties"], "kRtpuKeys": rtpu,
+            "kLinkKeys": rtpu["link"]["properties"], "kTaskKeys": task,
             "kTolerateKeys": task["tolerate"]["properties"], "kServerKeys": task["server"]["properties"],
             "kSetKeys": schema["properties"]["configurations"]["additionalProperties"]["oneOf"][1]["properties"],
             "kSequenceKeys": schema["properties"]["sequence"]["oneOf"][1]["properties"],

@@ -19,6 +19,7 @@ CALLED = (
     ("from a descriptor, in virtual time", "in virtual time events from a descriptor"),
     ("'server' of task", "in an executive `server`"),
     ("'stack' of task", "`stack`"),
+    ("'link' of rtpu", "`link`"),
     ("\"isolation: process\", task", "`isolation: process` of a task"),
 )
 # Calls whose sentence stands in a variable: that of `what` in load() and in reaction().

@@ -10,8 +10,9 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDERS = ("base", "platform/bare", "table", "task", "schedule", "runtime", "runtime/record", "runtime/job",
-           "runtime/plan", "runtime/state", "runtime/life", "runtime/switch", "runtime/cycle", "runtime/executive")
-FIRMWARE = ("firmware", "firmware/boot", "firmware/boards", "firmware/shell", "firmware/watch")
+           "runtime/plan", "runtime/state", "runtime/life", "runtime/switch", "runtime/cycle", "runtime/executive",
+           "runtime/link")
+FIRMWARE = ("firmware", "firmware/boot", "firmware/boards", "firmware/link", "firmware/shell", "firmware/watch")
 TOGETHER = 8
 NO_PRODUCT = re.compile(r"_(test|stress|fuzz)\.cc$")
 # Analyses of the desk; an image carries their results.
@@ -152,7 +153,7 @@ def build(baked, out, board, folders=(), program=None):
 
 def main():
     baked, out = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-    board = re.search(r'\.board = "(\w+)"', (baked / "tables.cc").read_text())[1]
+    board = re.search(r'\.board = "([\w-]+)"', (baked / "tables.cc").read_text())[1]
     try:
         print(build(baked, out, board, [pathlib.Path(each) for each in sys.argv[3:]]))
     except BuildError as error:

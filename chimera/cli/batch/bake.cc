@@ -6,42 +6,21 @@
 #include <optional>
 
 #include "chimera/bake/bake.h"
-#include "chimera/base/hosted/ordinary_file.h"
+#include "chimera/bake/board_part.h"
 #include "chimera/base/hosted/wording.h"
 #include "chimera/cli/batch/bake_text.h"
 #include "chimera/cli/batch/desk_init.h"
+#include "chimera/cli/files/boards.h"
 #include "chimera/cli/files/file_refusal.h"
 #include "chimera/cli/files/output_file.h"
+#include "chimera/cli/files/target_file.h"
 #include "chimera/cli/run/run.h"
 #include "chimera/cli/run/run_plan.h"
-#include "chimera/description/yaml_reader.h"
 #include "chimera/text/time_text.h"
 #include "chimera/verify/verify.h"
 
 namespace chimera::cli {
 namespace {
-
-bool is_target_file(const std::string& target) { return target.ends_with(".yaml"); }
-
-std::string path_of(const std::string& name, const Workplace& workplace) {
-  return workplace.documents + "/firmware/targets/" + name + ".yaml";
-}
-
-/// The target's text is read before it is judged; a missing file is a refusal of its own.
-Result<bake::ReadTarget> target_of(const BakeRequest& request, const Workplace& workplace, std::string& file) {
-  file = is_target_file(request.target) ? request.target : path_of(request.target, workplace);
-  const auto text = read_ordinary(file, kMaxTextBytes + 1);
-  if (!text) {
-    const std::string of = "the target '" + request.target + "' cannot be read: ";
-    return Error{text.error().code, {of + text.error().message.c_str()}, {file}};
-  }
-  const auto find = [&workplace](const std::string& name, std::string& at) -> std::optional<std::string> {
-    at = path_of(name, workplace);
-    auto like = read_ordinary(at, kMaxTextBytes + 1);
-    return like ? std::optional(*std::move(like)) : std::nullopt;
-  };
-  return bake::read_target(*text, file, find);
-}
 
 /// Warnings about budgets are left out: they belong to the machine of the description.
 Report without_budgets(const Report& report) {
@@ -90,7 +69,7 @@ CommandResult report(const BakeRequest& request, const RunPlan& plan, const bake
 
 /// Both files are legal: what remains is whether they suit each other.
 CommandResult bake_for(const BakeRequest& request, const bake::Target& target, const std::string& target_file,
-                       RunPlan plan) {
+                       RunPlan plan, const LinkSpec& link) {
   if (!request.settings.empty()) {
     auto set = with_settings(plan.configuration, plan.library, request.settings, Overload::kTold);
     if (!set) return file_refusal(set.error(), request.json);
@@ -120,7 +99,8 @@ CommandResult bake_for(const BakeRequest& request, const bake::Target& target, c
                                         .library = plan.library,
                                         .profile = profile ? &*profile : nullptr,
                                         .acts = plan.acts,
-                                        .duration = request.duration});
+                                        .duration = request.duration,
+                                        .link = link});
   DeskInit inits;
   if (result.is_baked()) {
     inits = init_at_desk({plan.configuration, target, profile ? &*profile : nullptr}, plan.library);
@@ -134,21 +114,46 @@ CommandResult bake_for(const BakeRequest& request, const bake::Target& target, c
   return report(request, plan, target, result, inits);
 }
 
+/// Replaces the verdict by that of the part of a board, if the description has one. `target`: as asked for, else as the
+/// description says.
+Result<void> take_board(const BakeRequest& request, const Library& library, Verdict& verdict, LinkSpec& link,
+                        std::string& target) {
+  const RtpuId board = verdict.configuration ? board_named(*verdict.configuration, request.rtpu) : RtpuId();
+  if (board.is_valid()) {
+    const Configuration whole = *verdict.configuration;
+    if (target.empty()) target = whole.draft().rtpus[board.index].target->text;
+    link = whole.rtpus()[board.index].link;
+    verdict = bake::board_part(whole, board, library);
+    if (request.duration != kNever || !request.at.empty() || !request.settings.empty())
+      return Error{ErrorCode::kBadInput, {"--for, --at and --set are not for a board with a link: Linux decides"}, {}};
+    return {};
+  }
+  if (verdict.configuration && !request.rtpu.empty())
+    return Error{ErrorCode::kBadInput, {"'" + request.rtpu + "' is no rtpu with 'target' and 'link'"}, {request.file}};
+  if (target.empty() && verdict.configuration) return Error{ErrorCode::kBadInput, {"give --target NAME"}, {}};
+  if (target.empty()) target = "mps2-an385";  // the description is refused anyway
+  return {};
+}
+
 }  // namespace
 
 CommandResult bake(const BakeRequest& request, const Workplace& workplace) {
   auto library = workplace.library(request.file);
   if (!library) return file_refusal(library.error(), request.json);
-  std::string target_file;
-  const auto target = target_of(request, workplace, target_file);
-  if (!target) return file_refusal(target.error(), request.json);
   ReadDescription reading = read_description_file(request.file);
-  const Verdict verdict = verify(reading, *library, Overload::kTold);
+  Verdict verdict = verify(reading, *library, Overload::kTold);
+  LinkSpec link;
+  std::string name = request.target;
+  if (auto part = take_board(request, *library, verdict, link, name); !part)
+    return file_refusal(part.error(), request.json, kUsage);
+  std::string target_file;
+  const auto target = read_target_named(name, workplace, target_file);
+  if (!target) return file_refusal(target.error(), request.json);
   const Report description = without_budgets(verdict.report);
   if (!verdict.configuration || !target->target) return refuse(description, target->report, request.json);
   CommandResult output = bake_for(request, *target->target, target_file,
                                   RunPlan{*std::move(library), std::move(reading.text), *verdict.configuration,
-                                          {}, {}, {}, {}, {}, {}});
+                                          {}, {}, {}, {}, {}, {}}, link);
   if (!request.json) output.err = description.text() + output.err;
   return output;
 }

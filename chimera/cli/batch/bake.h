@@ -14,7 +14,8 @@ namespace chimera::cli {
 
 struct BakeRequest {
   std::string file;
-  std::string target;   ///< a name, or a path that ends in .yaml
+  std::string target;   ///< a name, or a path that ends in .yaml; "": as the description says of the board
+  std::string rtpu = {};  ///< the board to bake; "": the first one, or the whole description if it has none
   std::string profile;  ///< recorded on the target; "": deadlines are not judged
   std::string out;      ///< the folder of the files; made if it is missing
   std::vector<std::string> at;         ///< timed acts, run/script_text.h

@@ -5,6 +5,7 @@
 #include "chimera/analysis/link_age.h"
 #include "chimera/analysis/mode_report.h"
 #include "chimera/base/hosted/wording.h"
+#include "chimera/cli/files/boards.h"
 #include "chimera/cli/files/modes_text.h"
 #include "chimera/draw/graph_of.h"
 #include "chimera/runtime/hosted/together.h"
@@ -84,6 +85,7 @@ std::string verdict_text(const Configuration& configuration, bool with_cycles) {
   }
   for (std::size_t r = 0; r < configuration.rtpus().size(); ++r) {
     const RtpuSpec& rtpu = configuration.rtpus()[r];
+    if (rtpu.link.is_there()) continue;  // board_text()
     text += "  rtpu " + std::string(rtpu.name) + " on cpu " + std::to_string(rtpu.cpu) + ": " +
             load_text(configuration, RtpuId(r)) + "\n";
   }
@@ -97,11 +99,14 @@ CommandResult check(const CheckOptions& options, const Workplace& workplace) {
   Outlined outlined = verify_with_outline(reading, *library);
   if (options.json) offer_edits(reading, *library, outlined);
   Verdict& verdict = outlined.verdict;
+  Boards boards{{}, Report(options.file)};
   if (verdict.configuration) {
     auto set = with_settings(*verdict.configuration, *library, options.settings);
     if (!set) return file_refusal(set.error(), options.json);
     verdict.configuration = *std::move(set);
     verdict.report.add_all(faulty_objects(*verdict.configuration, *library));
+    boards = judge_boards(*verdict.configuration, *library, workplace);
+    verdict.report.add_all(boards.faults);
   }
   if (options.modes && verdict.configuration && verdict.report.is_legal())
     return check_modes(options, verdict, *library);
@@ -118,6 +123,7 @@ CommandResult check(const CheckOptions& options, const Workplace& workplace) {
   }
   if (options.graph.empty()) {
     output.out = verdict_text(*verdict.configuration, true);
+    for (const BoardImage& board : boards.images) output.out += board_text(*verdict.configuration, board);
     return output;
   }
   const draw::Graph graph = draw::graph_of(*verdict.configuration);

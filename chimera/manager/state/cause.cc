@@ -47,6 +47,7 @@ std::string cause_text(const ApplicationSpec& spec, const KeeperMessage& ended, 
   std::string text = "ended with status " + std::to_string(ended.code);
   if (ended.by_signal == 0 && ended.code == kDescriptorLost) text += " (its descriptors were closed)";
   if (ended.by_signal == 0 && ended.code == kThreadLost) text += " (a component ended one of its threads)";
+  if (ended.by_signal == 0 && ended.code == kBoardLost) text += " (its board is silent or was restarted)";
   if (ended.by_signal != 0) text = "ended by " + std::string(signal_text(ended.code).view());
   if (!made.empty()) {
     text += " " + made;

@@ -20,6 +20,8 @@ struct Run {
   Nanoseconds tick;                 ///< between two interrupts of the timer; every period and offset is a multiple
   Nanoseconds duration = kNever;    ///< of the run; kNever: it does not end by itself
   std::span<const ScriptAct> acts;  ///< in order of time
+  Nanoseconds link_period;          ///< between two frames to Linux (docs/formats/link.md); 0: no link
+  Nanoseconds link_stale_after;     ///< without a frame for this time values from Linux are not valid
 };
 
 /// A range of addresses.

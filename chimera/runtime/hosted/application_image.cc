@@ -43,7 +43,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::uint64_t kMagic = 0x31474d49'4d494843;  // "CHIMIMG1" in memory
-constexpr std::uint32_t kVersion = 12;
+constexpr std::uint32_t kVersion = 13;
 
 struct Header {
   std::uint64_t magic = kMagic;
@@ -219,6 +219,17 @@ void operator_fields(Archive& archive, ApplicationImage::Parts& parts, Applicati
   });
 }
 
+template <class Archive, class Link>
+void board_fields(Archive& archive, Link& link) {
+  archive.text(link.address);
+  archive.choice(link.is_udp, true);
+  archive.number(link.baud);
+  archive.number(link.period);
+  archive.number(link.stale_after);
+  archive.require(!link.is_there() || (link.baud > 0 && link.period > Nanoseconds{} &&
+                                       link.stale_after.count / 2 >= link.period.count), "a link out of range");
+}
+
 template <class Archive, class Condition>
 void condition_fields(Archive& archive, Condition& condition, std::size_t n_variables) {
   archive.number(condition.variable);
@@ -280,6 +291,7 @@ void image_fields(Archive& archive, ApplicationImage::Parts& parts, ApplicationS
     archive.number(rtpu.cpu);
     archive.choice(rtpu.policy, Policy::kMufLaxity);
     archive.choice(rtpu.preemptive, true);
+    board_fields(archive, rtpu.link);
   });
   const Counts counts = linked_fields(archive, parts, spec);
   archive.list(spec.tasks, parts.tasks, kMostTasks, "too many tasks", [&](auto& task) {

@@ -71,7 +71,9 @@ struct Sample {
   static constexpr VariableId kKi{0u}, kX{1u}, kKp{2u};
   static constexpr ConstantId kN{0u}, kM{1u};
 
-  RtpuSpec rtpus[2] = {{"spare", 3, Policy::kMuf}, {"servo", 1, Policy::kRm}};
+  LinkSpec link{"/dev/ttyS0", false, 9600, milliseconds(10), milliseconds(30)};
+  RtpuSpec rtpus[2] = {{"spare", 3, Policy::kMuf, false, link},
+                       {"servo", 1, Policy::kRm}};
   PortSpec ports[2], more_ports[6], spare_ports[2];
   TaskSpec tasks[3];
   Variable variables[3];

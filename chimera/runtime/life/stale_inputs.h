@@ -15,9 +15,11 @@ namespace chimera {
 
 class StaleInputs {
  public:
-  /// Makes the judge for the task with that memory. Values of the operator hold until the next one: they are never too
-  /// old. Context: setup.
-  static StaleInputs& make(Nanoseconds after, TaskMemory& task, std::span<const Variable> variables,
+  /// Makes the judge for the task with that memory; null: none of its inputs can be too old. `after`: its own limit,
+  /// kNever: none. Values of the operator hold until the next one: they are never too old. A value that a task of
+  /// another rtpu, a board, published is too old after `stale_after` of the link and a period of that task. Context:
+  /// setup.
+  static StaleInputs* make(Nanoseconds after, TaskId reader, TaskMemory& task, const ApplicationSpec& spec,
                            SetupMemory& memory);
   /// From now on the task's cycles are judged, if it has a StaleInputs (TaskHost::stale) and a cycle. Context: cycle
   /// boundary.
@@ -26,8 +28,7 @@ class StaleInputs {
  private:
   static std::int32_t cycle(void* instance, const chimera_call* call);
 
-  Nanoseconds after_;
-  std::span<bool> is_judged_;      // by input
+  std::span<Nanoseconds> limits_;  // by input; kNever: not judged
   std::span<chimera_slot> slots_;  // by input: in place of the one that is too old, with nothing valid
 };
 

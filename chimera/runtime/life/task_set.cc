@@ -81,9 +81,13 @@ void TaskSet::prepare_parts() {
   standbys_.prepare(spec_, life_.judge().rivals(), memory_);
   if (others() != nullptr) changes_.prepare(tasks_.size(), memory_);
   constants_.prepare(spec_, table_, memories_, others(), memory_);
-  for (const StaleSpec& stale : mechanisms::kStale ? spec_.stale : std::span<const StaleSpec>{})
-    if (TaskMemory& memory = memories_[stale.task.index]; memory.is_planned())
-      hosts_[stale.task.index].stale = &StaleInputs::make(stale.after, memory, spec_.variables, memory_);
+  for (std::size_t t = 0; mechanisms::kStale && t < tasks_.size(); ++t) {
+    if (!memories_[t].is_planned()) continue;
+    Nanoseconds after = kNever;
+    for (const StaleSpec& stale : spec_.stale)
+      if (stale.task.index == t) after = stale.after;
+    hosts_[t].stale = StaleInputs::make(after, TaskId(t), memories_[t], spec_, memory_);
+  }
   sources_.prepare(spec_, table_, tasks_, memories_, others(), place_.preemptive, memory_);
 }
 

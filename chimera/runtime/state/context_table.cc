@@ -61,13 +61,14 @@ std::span<std::byte> ContextTable::group(GroupId group) const noexcept {
   return table_.subspan(place.offset, group_bytes(place.payload_bytes));
 }
 
-void ContextTable::set_operator(std::size_t index, std::span<const std::byte> value, Nanoseconds now) noexcept {
+void ContextTable::set_operator(std::size_t index, std::span<const std::byte> value, Nanoseconds now,
+                                bool valid) noexcept {
   CHIMERA_ASSERT(index < operators_.size() && value.size() <= operators_[index].payload_bytes());
   const std::span<std::byte> bytes =
       mechanisms::kCopies ? group(own_.operator_group(index)) : own_operators_[index];
   GroupWriter to(bytes, operators_[index].payload_bytes());  // takes up where the last one stopped
   std::copy(value.begin(), value.end(), to.staging());
-  to.publish(now, 1);
+  to.publish(now, valid ? 1 : 0);
 }
 
 VariableReader ContextTable::reader_of(const PortOf& producer, std::uint32_t half) const noexcept {

@@ -31,9 +31,9 @@ class ContextTable {
   const PeerLayout& everything() const noexcept { return everything_; }
   /// The group of the operator variables, by their index in the spec; empty where they are not this context's.
   std::span<const GroupReader> operators() const noexcept { return operators_; }
-  /// Publishes a value of operator variable `index`. Requires: operators() has it; as many bytes as the description
-  /// gives.
-  void set_operator(std::size_t index, std::span<const std::byte> value, Nanoseconds now) noexcept;
+  /// Publishes a value of operator variable `index`; its readers see it as not valid if `valid` is false. Requires:
+  /// operators() has it; as many bytes as the description gives.
+  void set_operator(std::size_t index, std::span<const std::byte> value, Nanoseconds now, bool valid = true) noexcept;
 
   /// Places of the constants of a task of this context, in the order of its ports of that kind.
   std::span<const VariablePlace> constant_places(TaskId task) const noexcept {

@@ -122,6 +122,11 @@ inline std::string first_difference(const ApplicationSpec& a, const ApplicationS
   SpecDifference d;
   d.compare(a.name, b.name, "name");
   d.list(a.rtpus, b.rtpus, "rtpus", [&](const RtpuSpec& p, const RtpuSpec& q) {
+    d.compare(p.link.address, q.link.address, "link.address");
+    d.compare(p.link.is_udp, q.link.is_udp, "link.is_udp");
+    d.compare(p.link.baud, q.link.baud, "link.baud");
+    d.compare(p.link.period, q.link.period, "link.period");
+    d.compare(p.link.stale_after, q.link.stale_after, "link.stale_after");
     d.compare(p.name, q.name, "name");
     d.compare(p.cpu, q.cpu, "cpu");
     d.compare(p.policy, q.policy, "policy");

@@ -64,6 +64,8 @@ void compare_bands(Model& model, std::size_t above, std::size_t below) {
 void place_tasks(Model& model) {
   model.rtpus = model.draft.rtpus;
   if (model.rtpus.empty()) model.rtpus.push_back(default_rtpu());
+  for (std::size_t i = 0; i < model.rtpus.size(); ++i)
+    if (model.rtpus[i].is_board()) model.rtpus[i].cpu.value = kFirstBoardCpu + static_cast<std::uint32_t>(i);
   for (TaskModel& task : model.tasks) place(model, task);
 }
 
