@@ -35,6 +35,7 @@ const Library& library() {
        sample_component("wide", {port("z", CHIMERA_OUT_VAR, "[2000]")}),
        sample_component("device", {resource("tty"), port("y", CHIMERA_OUT_VAR)}),
        sample_component("key", {resource("pin"), port("y", CHIMERA_OUT_VAR)}),
+       sample_component("screen", {resource("device"), port("y", CHIMERA_IN_VAR)}),
        with(sample_component("writer", {port("y", CHIMERA_IN_VAR)}), true, false, false),
        with(sample_component("waiter", {port("y", CHIMERA_OUT_VAR)}), false, true, true)},
       our_units());
@@ -45,6 +46,7 @@ const std::string kTarget =
     "version: 1\ncpu: cortex-m3\nboard: mps2\nclock_hz: 25000000\nflash: {address: 0, size: 64 KiB}\n"
     "ram: {address: 0x20000000, size: 20 KiB}\ninterrupts: {timer0: 8, timer1: 9}\n"
     "pins: {led0: {register: 0x40028000, bit: 0, access: write}}\n";
+const std::string kUart = "uart: {address: 64, interrupt: timer1, baud: 9600}\n";
 const std::string kFit = "tasks: {source: {}, sink: {}}\n";
 
 struct Case {
@@ -190,6 +192,18 @@ TEST(Bake, RefusesUnknownLinesOfTheTarget) {
             "t.yaml:9:53: error: task 'sink' has no resource port 'tty' [word-unknown]\n  its resource ports: none\n");
 }
 
+TEST(Bake, GivesTheSerialLineToOneTask) {
+  const std::string text = "tasks: {source: {}, a: {component: screen, resources: {device: x}},\n"
+                           "  b: {component: screen, resources: {device: x}}}\n";
+  EXPECT_EQ(refusal({.text = text, .target = "resources: {a: {device: uart}, b: {device: uart}}\n"}),
+            "t.yaml:9:25: error: the target has no serial line 'uart' [word-unknown]\n  its serial lines: none\n"
+            "t.yaml:9:44: error: the target has no serial line 'uart' [word-unknown]\n  its serial lines: none\n");
+  EXPECT_EQ(refusal({.text = text, .target = kUart + "resources: {a: {device: uart}, b: {device: uart}}\n"}),
+            "t.yaml:10:44: error: 'uart' belongs to task 'a' [resource-twice]\n  take one of the two tasks out\n");
+  EXPECT_EQ(refusal({.text = text, .target = kUart + "resources: {a: {device: uart}, b: {device: urt}}\n"}),
+            "t.yaml:10:44: error: the target has no serial line 'urt' [word-unknown]\n  did you mean 'uart'?\n");
+}
+
 TEST(Bake, RefusesAWrongNumberOfResourceTexts) {
   EXPECT_NE(refusal({.text = "tasks: {device: {resources: {tty: a}}, sink: {}}\n",
                      .target = "resources: {device: {tty: [a, b]}}\n"})
@@ -314,6 +328,9 @@ TEST(Bake, TurnsOnTheMechanismsThatAreUsed) {
                           "configurations: {all: [source, sink], one: [source]}\nstart: all\n",
                   .target = "watchdog: 1 s\nuart: {address: 64, interrupt: timer0, baud: 9600}\n"}),
             (std::set<std::string>{"kSignals", "kSwitch", "kRestart", "kReactions", "kSerial", "kShell", "kWatchdog"}));
+  EXPECT_EQ(used({.text = "tasks: {source: {}, screen: {resources: {device: x}}}\n",
+                  .target = kUart + "resources: {screen: {device: uart}}\n"}),
+            (std::set<std::string>{"kSignals", "kSerial"}));
 }
 
 }  // namespace chimera::bake::bake_test

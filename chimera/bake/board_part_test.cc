@@ -13,11 +13,19 @@ PortDescriptor port(std::string name, std::uint32_t kind, std::string unit = "1"
   return {.name = std::move(name), .unit = std::move(unit), .kind = kind};
 }
 
+PortDescriptor device() {
+  PortDescriptor made = port("device", CHIMERA_RESOURCE);
+  made.type = CHIMERA_STRING;
+  made.element_size = 64;
+  return made;
+}
+
 const Library& library() {
   static const Library kLibrary = Library::of(
       {sample_component("source", {port("y", CHIMERA_OUT_VAR, "V")}),
        sample_component("axis", {port("y", CHIMERA_IN_VAR, "V"), port("q", CHIMERA_OUT_VAR, "rad")}),
-       sample_component("sink", {port("q", CHIMERA_IN_VAR, "rad")})},
+       sample_component("sink", {port("q", CHIMERA_IN_VAR, "rad")}),
+       sample_component("screen", {port("q", CHIMERA_IN_VAR, "rad"), device()})},
       our_units());
   return kLibrary;
 }
@@ -27,10 +35,10 @@ constexpr const char* kTarget =
     "ram: {address: 0x20000000, size: 20 KiB}\ninterrupts: {rx: 1}\n";
 constexpr const char* kUart = "uart: {address: 0x40004000, interrupt: rx, baud: 115200}\n";
 
-Configuration whole(const std::string& link = "serial: /dev/ttyUSB0") {
+Configuration whole(const std::string& link = "serial: /dev/ttyUSB0", const std::string& more = "") {
   const std::string text = "subsystem: s\nrtpus: {linux: {}, board: {target: t, link: {" + link +
                            ", rate: 10 Hz, stale_after: 500 ms}}}\n"
-                           "tasks: {source: {rtpu: linux}, axis: {rtpu: board}, sink: {rtpu: linux}}\n";
+                           "tasks: {source: {rtpu: linux}, axis: {rtpu: board}, sink: {rtpu: linux}" + more + "}\n";
   Verdict verdict = verify(read_description(text, "s.yaml"), library());
   EXPECT_TRUE(verdict.configuration) << verdict.report.text();
   return *verdict.configuration;
@@ -81,6 +89,15 @@ TEST(BoardPart, IsRefusedWithoutASerialLineOrWithAnotherSpeed) {
       << other.description.text();
   EXPECT_TRUE(baked(whole("udp: '10.0.0.1:5000', baud: 9600"), std::string(kTarget) + kUart).is_baked())
       << "UDP has no speed";
+}
+
+TEST(BoardPart, IsRefusedIfATaskHasTheSerialLine) {
+  const BakeResult result = baked(
+      whole("serial: /dev/ttyUSB0", ", screen: {rtpu: board, resources: {device: x}}"),
+      std::string(kTarget) + kUart + "resources: {screen: {device: uart}}\n");
+  EXPECT_EQ(result.target.text(),
+            "t.yaml:9:30: error: 'uart' belongs to task 'screen', and the image has a link [resource-twice]\n"
+            "  take 'link' or the task out of the description\n");
 }
 
 }  // namespace chimera::bake::board_part_test

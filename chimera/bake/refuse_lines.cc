@@ -17,6 +17,7 @@ std::string example(const std::string& task, const std::string& port) {
 /// A resource port of this name names a line of the target.
 bool is_pin(std::string_view port) noexcept { return port == "pin"; }
 bool is_interrupt(std::string_view port) noexcept { return port == "interrupt"; }
+bool is_serial(std::string_view port) noexcept { return port == "device"; }
 
 class UnknownLines {
  public:
@@ -67,6 +68,17 @@ class UnknownLines {
     if (is_interrupt(port) && !target_.interrupt(text.text))
       unknown(text, "the target has no interrupt " + in_quotes(text.text), names_of(target_.interrupts, name),
               "interrupts");
+    if (is_serial(port)) serial(text);
+  }
+
+  void serial(const Word& text) {
+    if (!target_.uart || text.text != "uart")
+      return unknown(text, "the target has no serial line " + in_quotes(text.text),
+                     target_.uart ? std::vector<std::string>{"uart"} : std::vector<std::string>{}, "serial lines");
+    const ResourceTexts& first = *target_.user_of_uart();
+    if (&first.texts[0] != &text)
+      refuse("resource-twice", text, "'uart' belongs to task " + in_quotes(first.task.text),
+             "take one of the two tasks out");
   }
 
   void judge(const EventLine& each) {

@@ -21,6 +21,11 @@ void refuse_link(const Configuration& configuration, const LinkSpec& link, const
                                 std::to_string(link.baud) + " baud, and 'uart' of the target " +
                                 in_quotes(target.name) + " has " + std::to_string(target.uart->baud),
                      .remedy = "write 'baud: " + std::to_string(target.uart->baud) + "' in 'link'"});
+  if (const ResourceTexts* const user = target.user_of_uart())
+    of_target.add({.rule = "resource-twice",
+                   .at = user->texts[0].at,
+                   .message = "'uart' belongs to task " + in_quotes(user->task.text) + ", and the image has a link",
+                   .remedy = "take 'link' or the task out of the description"});
   if (link.period.count % target.tick.value.count != 0)
     description.add({.rule = "link-time",
                      .at = at,

@@ -6,6 +6,8 @@
 
 namespace chimera::bake {
 
+bool is_of_board(std::string_view port) noexcept { return port == "pin" || port == "interrupt" || port == "device"; }
+
 std::optional<std::uint32_t> Target::interrupt(std::string_view interrupt_name) const {
   for (const NamedInterrupt& each : interrupts)
     if (each.name.text == interrupt_name) return each.number;
@@ -19,6 +21,13 @@ bool Target::has_pin(std::string_view pin_name) const {
 const ResourceTexts* Target::resource(std::string_view task, std::string_view port) const {
   for (const ResourceTexts& each : resources)
     if (each.task.text == task && each.port.text == port) return &each;
+  return nullptr;
+}
+
+const ResourceTexts* Target::user_of_uart() const {
+  for (const ResourceTexts& each : resources)
+    if (each.port.text == "device" && std::ranges::find(each.texts, "uart", &Word::text) != each.texts.end())
+      return &each;
   return nullptr;
 }
 

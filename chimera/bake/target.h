@@ -82,7 +82,14 @@ struct Target {
   bool has_pin(std::string_view pin_name) const;
   /// The texts for that port of the task; nullptr: the target has none.
   const ResourceTexts* resource(std::string_view task, std::string_view port) const;
+  /// The first resource port `device` with the text 'uart': its task has the serial line; nullptr: there is none.
+  const ResourceTexts* user_of_uart() const;
+  /// There is a serial line, and no task has it.
+  bool has_free_uart() const { return uart && user_of_uart() == nullptr; }
 };
+
+/// The text of a resource port of this name is a line of the target: `pin`, `interrupt`, `device`. Context: any.
+bool is_of_board(std::string_view port) noexcept;
 
 /// The text of the target of that name, for `like`; nullopt: there is none. `file` gets its name for messages.
 using FindTarget = std::function<std::optional<std::string>(const std::string& name, std::string& file)>;

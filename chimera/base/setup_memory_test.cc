@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdio>
+#include <cstdlib>
 
 namespace chimera {
 namespace {
@@ -35,6 +37,16 @@ TEST_F(GivenMemoryTest, GivesItsLastByteAndNoMore) {
   EXPECT_EQ(memory.take_bytes(256, 1).size(), 256u);
   EXPECT_EQ(memory.take<Line>(0).size(), 0u);
   EXPECT_DEATH((void)memory.take_bytes(1, 1), "fits");
+}
+
+TEST_F(GivenMemoryTest, TellsThatItIsTooSmall) {
+  const auto tell = [](std::size_t given) {
+    std::fprintf(stderr, "%zu bytes are too few\n", given);
+    std::_Exit(3);
+  };
+  GivenMemory told(bytes, tell);
+  EXPECT_EQ(told.take_bytes(256, 1).size(), 256u);
+  EXPECT_EXIT((void)told.take_bytes(1, 1), ::testing::ExitedWithCode(3), "256 bytes are too few");
 }
 
 }  // namespace

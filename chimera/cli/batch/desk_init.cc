@@ -56,9 +56,7 @@ class Lines {
 
 bool needs_the_board(const ConfiguredTask& task) {
   for (const ConfiguredPort& port : task.ports)
-    if (port.kind == CHIMERA_RESOURCE &&
-        (bake::declared_name(port) == "pin" || bake::declared_name(port) == "interrupt"))
-      return true;
+    if (port.kind == CHIMERA_RESOURCE && bake::is_of_board(bake::declared_name(port))) return true;
   return false;
 }
 

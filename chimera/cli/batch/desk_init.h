@@ -14,7 +14,8 @@ namespace chimera::cli {
 /// Results in the order of initialisation.
 struct DeskInit {
   std::vector<std::string> refusals;  ///< "task 'pid': 'init' refuses: kp must be above 0"
-  std::vector<std::string> untried;   ///< tasks whose `init` needs a pin or an interrupt, or a constant of such a task
+  /// Tasks whose `init` needs a pin, an interrupt or the serial line, or a constant of such a task.
+  std::vector<std::string> untried;
 };
 
 /// Calls `init` of each task once in virtual time, in a process of its own, then `kill`. Tasks that need a constant of

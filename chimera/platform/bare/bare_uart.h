@@ -41,7 +41,7 @@ class BareUart {
     NoInterrupts off;
     if (is_held_) {
       port_.ask_to_receive(true);
-      take_in();  // what arrived meanwhile interrupts no more
+      take_in();  // a byte that arrived before interrupts no more
     }
     pump();
   }
