@@ -4,6 +4,7 @@
 
 #include "chimera/analysis/schedule_report.h"
 #include "chimera/analysis/schedule_words.h"
+#include "chimera/description/cpu_text.h"
 #include "chimera/text/time_text.h"
 
 namespace chimera {
@@ -29,7 +30,7 @@ Fault fault_of(const Configuration& configuration, const CpuSchedule& cpu, const
   return {.rule = "unschedulable",
           .at = task.at,
           .message = "task '" + task.name + "' is not guaranteed to keep its deadline of " +
-                     time_text(row.work.deadline) + " on CPU " + std::to_string(cpu.verdict.cpu) +
+                     time_text(row.work.deadline) + " on " + cpu_text(cpu.verdict.cpu) +
                      (found.empty() ? "" : ": a cycle may take " + found),
           .found = found,
           .expected = "at most " + time_text(row.work.deadline),

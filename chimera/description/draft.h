@@ -13,6 +13,7 @@
 
 #include "chimera/base/time.h"
 #include "chimera/description/condition_text.h"
+#include "chimera/description/cpu_text.h"
 #include "chimera/description/node.h"
 #include "chimera/description/report.h"
 #include "chimera/description/sequence.h"
@@ -104,10 +105,6 @@ struct DraftTask {
   std::optional<Located<bool>> own_process;
   bool is_partial = false;  ///< some key could not be read: report nothing as missing in this task
 };
-
-inline constexpr std::uint32_t kLastCpu = 1023;
-/// The number of rtpu i, a board, among the CPUs is this and i: its load is no load of a CPU of Linux.
-inline constexpr std::uint32_t kFirstBoardCpu = kLastCpu + 1;
 
 /// `{serial: DEVICE, rate: R, stale_after: T}`, or `udp: ADDRESS`
 struct DraftLink {

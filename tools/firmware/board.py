@@ -2,6 +2,7 @@
 """Builds the image of a board of a description, and starts it in QEMU (docs/formats/link.md).
 usage: board.py CHIMERA FILE RTPU OUT         bakes and links OUT/image.elf
        board.py CHIMERA FILE RTPU OUT start   and runs it in QEMU until this process or its parent ends"""
+import contextlib
 import os
 import pathlib
 import re
@@ -50,8 +51,8 @@ def link_of(file, rtpu):
 
 def command(machine_name, elf):
     """Time passes as on the machine below, because Linux is at the other end."""
-    return ["qemu-system-arm", "-M", machine_name, "-kernel", str(elf), "-nographic", "-nodefaults", "-monitor", "none",
-            "-semihosting-config", "enable=on,target=native", "-serial", "stdio"]
+    return ["qemu-system-arm", "-M", machine_name, "-kernel", str(elf), "-nographic", "-nodefaults", "-nic", "none",
+            "-monitor", "none", "-semihosting-config", "enable=on,target=native", "-serial", "stdio"]
 
 
 class Line:
@@ -161,10 +162,13 @@ def main():
         if len(sys.argv) == 5:
             print(elf)
             return
+        if os.getppid() != parent:  # `chimera run` was interrupted
+            return
         qemu = Qemu(machine(out), elf, link_of(file, rtpu))
     except (BoardError, build.BuildError) as error:
         sys.exit(str(error))
-    print("started", flush=True)
+    with contextlib.suppress(BrokenPipeError):
+        os.write(sys.stdout.fileno(), b"started\n")
     serve(qemu, parent)
 
 

@@ -24,9 +24,9 @@ def command(machine, image, instruction_ns):
     shift = instruction_ns.bit_length() - 1
     if instruction_ns != 1 << shift or shift > 10:
         raise QemuError(f"instruction_ns {instruction_ns}: QEMU takes a power of two, 1 to 1024")
-    return ["qemu-system-arm", "-M", machine, "-kernel", str(image), "-nographic", "-nodefaults", "-monitor", "none",
-            "-icount", f"shift={shift},sleep=off,align=off", "-semihosting-config", "enable=on,target=native",
-            "-serial", "stdio"]
+    return ["qemu-system-arm", "-M", machine, "-kernel", str(image), "-nographic", "-nodefaults", "-nic", "none",
+            "-monitor", "none", "-serial", "stdio", "-icount", f"shift={shift},sleep=off,align=off",
+            "-semihosting-config", "enable=on,target=native"]
 
 
 def run(machine, image, limit_s=LIMIT_S, instruction_ns=INSTRUCTION_NS):

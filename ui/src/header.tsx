@@ -84,12 +84,14 @@ function MoreMenu({ machine, state }: { machine: Machine; state: MachineState })
   );
 }
 
+const FIRST_BOARD = 1024; // the number of the first board among the CPUs: chimera/description/cpu_text.h
+
 export function CpuBars({ status, previous }: { status: Status; previous: Status | null }) {
   return (
     <div className="cpus" role="group" aria-label="Load of each CPU">
       {loads(status, previous).map((load) => {
         const measured = load.measured === null ? "" : load.measured.toFixed(2);
-        const name = `cpu${load.cpu} ${load.rtpus.join(", ")}`;
+        const name = `${load.cpu < FIRST_BOARD ? `cpu${load.cpu}` : "board"} ${load.rtpus.join(", ")}`;
         const words = `${name}: measured ${measured || "not yet"}, budgets ${load.budgets.toFixed(2)} of ` +
           `${load.capacity}, ${load.missed} missed`;
         const note = load.ended.length > 0 ? `${load.ended.join(", ")} has ended`

@@ -3,6 +3,7 @@
 #include "chimera/cli/files/modes_text.h"
 
 #include "chimera/base/hosted/wording.h"
+#include "chimera/description/cpu_text.h"
 #include "chimera/text/time_text.h"
 
 namespace chimera::cli {
@@ -15,7 +16,7 @@ class ModeLines {
 
   std::string edge(const ModeEdge& edge) const {
     std::string text = node(edge.from) + " -> " + node(edge.to) + ": " + head(edge) + "\n";
-    for (const CpuTransition& one : edge.cpus) text += "  CPU " + std::to_string(one.cpu) + ": " + cpu(one) + "\n";
+    for (const CpuTransition& one : edge.cpus) text += "  " + cpu_text(one.cpu) + ": " + cpu(one) + "\n";
     for (const ModeConstant& one : edge.constants) text += "  constant '" + one.name + "' " + constant(one) + "\n";
     for (const ModeResource& one : edge.resources)
       text += "  resource '" + one.text + "' of " + name(one.before) + " before, of " + name(one.after) + " after\n";

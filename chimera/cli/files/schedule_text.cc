@@ -8,6 +8,7 @@
 
 #include "chimera/analysis/schedule_words.h"
 #include "chimera/base/hosted/wording.h"
+#include "chimera/description/cpu_text.h"
 #include "chimera/description/criticality.h"
 #include "chimera/draw/timeline.h"
 #include "chimera/schedule/utilisation.h"
@@ -46,7 +47,7 @@ class ScheduleLines {
   }
 
   std::string cpu(const CpuSchedule& cpu) const {
-    std::string text = "CPU " + std::to_string(cpu.verdict.cpu) + ": " + policies(cpu) + "; load " +
+    std::string text = cpu_text(cpu.verdict.cpu) + ": " + policies(cpu) + "; load " +
                        formatted("%.3f of at most ", cpu.verdict.utilisation) + formatted("%.2f", kMaxUtilisation) +
                        "; rate monotonic bound " + formatted("%.3f", cpu.verdict.rate_monotonic_bound) +
                        ", product of (1 + load) " + formatted("%.3f", cpu.verdict.hyperbolic) + ", enough up to 2\n";
@@ -248,7 +249,7 @@ std::vector<draw::Gantt> schedule_pictures(const Configuration& configuration, c
     if (!set.is_start) continue;
     for (const CpuSchedule& cpu : set.cpus) {
       draw::Gantt picture;
-      picture.title = configuration.subsystem() + ", CPU " + std::to_string(cpu.verdict.cpu) + ": worst window";
+      picture.title = configuration.subsystem() + ", " + cpu_text(cpu.verdict.cpu) + ": worst window";
       picture.note =
           "load " + formatted("%.3f", cpu.verdict.utilisation) + "; all released at once" +
           (has_blocker(report, cpu) ? ", the longest job of an executive just begun; " : ", ") +

@@ -10,6 +10,7 @@
 #include "chimera/cli/print/fields.h"
 #include "chimera/cli/print/figures.h"
 #include "chimera/cli/print/status_text.h"
+#include "chimera/description/cpu_text.h"
 #include "chimera/text/json.h"
 
 namespace chimera::cli {
@@ -158,7 +159,7 @@ TopLine task_line(const Row& row, std::size_t width) {
 TopLine rtpu_line(const Json& rtpu, std::size_t width) {
   const bool is_dead = !truth_at(rtpu, "alive") || truth_at(rtpu, "flag") || !text_of(rtpu, "hang").empty() ||
                        !text_of(rtpu, "lost_rights").empty();
-  const std::string head = "cpu " + std::to_string(whole_of(rtpu, "cpu")) + " " + text_of(rtpu, "policy") +
+  const std::string head = cpu_text(static_cast<std::uint32_t>(whole_of(rtpu, "cpu"))) + " " + text_of(rtpu, "policy") +
                            (text_of(rtpu, "executor") == "preemptive" ? " preemptive" : "") + "  ";
   return {fitted(head + rtpu_remarks(rtpu), width), is_dead ? LineLook::kAlarm : LineLook::kPlain};
 }

@@ -30,8 +30,8 @@ std::string empty_lines(int n) {
 TEST(Top, AScreenOf80By24ToTheLetter) {
   EXPECT_EQ(screen(status(), nullptr, {}),
       "|puma_pid: run, up 12.5 min, flag UP by spare, operator                          |\n"
-      "|cpu 1 muf  servo serving, running pid.cycle                                     |\n"
-      "|cpu 0 edf  spare DEAD, restarted 2 times, FLAG, 4 events lost; last end: signal~|\n"
+      "|CPU 1 muf  servo serving, running pid.cycle                                     |\n"
+      "|CPU 0 edf  spare DEAD, restarted 2 times, FLAG, 4 events lost; last end: signal~|\n"
       "|                                                                                |\n"
       "|TASK         STATE     RATE    EXEC     MAX  BUDGET USED  JITTER MISSED INPUT   |\n"
       "|trajectory   ERROR   100 Hz 4.10 us 18.2 us       -    - 12.3 us      3 -       |\n"

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "chimera/base/hosted/wording.h"
+#include "chimera/description/cpu_text.h"
 #include "chimera/text/json.h"
 
 namespace chimera::cli {
@@ -18,13 +19,22 @@ std::string tasks_of(const Json& status, const std::string& rtpu) {
   return names;
 }
 
+bool is_board(const Json& status, const std::string& rtpu) {
+  for (const Json& each : status["rtpus"])
+    if (text_at(each, "name") == rtpu) return whole_at(each, "cpu") >= kFirstBoardCpu;
+  return false;
+}
+
 }  // namespace
 
 std::string not_ready(const Json& status) {
   std::string under_way, idle;
   for (const Json& task : status["tasks"]) {
     const std::string state = text_at(task, "state"), name = text_at(task, "task");
-    if (truth_at(task, "in_service"))
+    if (truth_at(task, "in_service") && is_board(status, text_at(task, "rtpu")))
+      append_joined(under_way, "; ", name + " waits for a frame of the board '" + text_at(task, "rtpu") +
+                                         "': connect it to the line of its 'link'");
+    else if (truth_at(task, "in_service"))
       append_joined(under_way, "; ", name + " (" + text_at(task, "component") + "): its `" +
                                          (state == "NOT-CREATED" ? "init" : "kill") + "` is under way");
     else if (state != "ON")

@@ -23,6 +23,13 @@ TEST(NotReady, NamesTheTaskAndTheMethod) {
             "`log.on` is under way");
 }
 
+TEST(NotReady, NamesTheBoardThatDoesNotAnswer) {
+  Json board = rtpu("serving");
+  board["cpu"] = 1025;
+  EXPECT_EQ(not_ready({{"tasks", {task("log", "NOT-CREATED", true)}}, {"rtpus", {board}}}),
+            "log waits for a frame of the board 'servo': connect it to the line of its 'link'");
+}
+
 TEST(NotReady, NamesAProcessThatDoesNotComeUp) {
   EXPECT_EQ(not_ready({{"tasks", {task("log", "NOT-CREATED", false)}}, {"rtpus", {rtpu("starting")}}}),
             "rtpu servo still makes its tasks (log): it loads a shared object or runs a constructor");

@@ -9,6 +9,7 @@
 #include "chimera/cli/print/columns.h"
 #include "chimera/cli/print/fields.h"
 #include "chimera/cli/print/figures.h"
+#include "chimera/description/cpu_text.h"
 #include "chimera/text/json.h"
 
 namespace chimera::cli {
@@ -38,10 +39,15 @@ std::string memory_text(std::int64_t bytes) {
   return bytes == 0 ? "-" : std::to_string(bytes / 1'000'000) + " MB";
 }
 
+std::string cpu_of(const Json& rtpu) {
+  const auto cpu = static_cast<std::uint32_t>(whole_of(rtpu, "cpu"));
+  return cpu < kFirstBoardCpu ? std::to_string(cpu) : "board";
+}
+
 Columns rtpu_table(const Json& status) {
   Columns table({"rtpu", ">cpu", "policy", "phase", ">pid", ">restarts", ">memory", "running", "flag"});
   for (const Json& rtpu : status["rtpus"])
-    table.add({text_of(rtpu, "name"), std::to_string(whole_of(rtpu, "cpu")), policy_of(rtpu), text_of(rtpu, "phase"),
+    table.add({text_of(rtpu, "name"), cpu_of(rtpu), policy_of(rtpu), text_of(rtpu, "phase"),
                std::to_string(whole_of(rtpu, "pid")), std::to_string(whole_of(rtpu, "restarts")),
                memory_text(whole_of(rtpu, "resident_bytes")), or_dash(text_of(rtpu, "running")),
                truth_at(rtpu, "flag") ? "UP" : "-"});

@@ -6,6 +6,7 @@
 
 #include "chimera/base/hosted/wording.h"
 #include "chimera/control/receipt/receipt_parts.h"
+#include "chimera/description/cpu_text.h"
 #include "chimera/text/time_text.h"
 
 namespace chimera::control {
@@ -32,7 +33,7 @@ std::string not_schedulable(const SwitchReceipt& receipt, const ApplicationSpec&
   const std::string from = receipt.before == kNoSet ? "what is ON" : in_quotes(from_text(receipt, spec));
   const Nanoseconds takes = receipt.way.deadline.takes;
   return "the transition from " + from + " to " + set_text(receipt.after, spec) +
-         " is not schedulable on CPU " + std::to_string(spec.rtpus[task.rtpu.index].cpu) + ": a cycle of task " +
+         " is not schedulable on " + cpu_text(spec.rtpus[task.rtpu.index].cpu) + ": a cycle of task " +
          in_quotes(task.name) + " may take " +
          (takes == kNever ? "longer than its deadline of " + time_text(task.deadline)
                           : time_text(takes) + ", its deadline is " + time_text(task.deadline));

@@ -164,8 +164,8 @@ TEST(ApplicationImage, StrangersAreRefusedByName) {
   bytes[0] = std::byte{'X'};
   EXPECT_EQ(refusal(bytes), "not an application image");
   bytes = good;
-  bytes[kVersionAt] = std::byte{13};
-  EXPECT_EQ(refusal(bytes), "image version 13, this program reads 12");
+  bytes[kVersionAt] = std::byte{14};
+  EXPECT_EQ(refusal(bytes), "image version 14, this program reads 13");
   bytes = good;
   bytes.pop_back();
   EXPECT_EQ(refusal(bytes), "the image says it has " + std::to_string(good.size()) + " bytes, here are " +

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "chimera/description/cpu_text.h"
 #include "chimera/runtime/hosted/together.h"
 #include "chimera/schedule/utilisation.h"
 #include "chimera/verify/rules/rules.h"
@@ -141,7 +142,7 @@ std::string load_text(const Model& model, const SetModel& set, const Together& t
   if (together.is_takeover())
     text += " with '" + model.tasks[together.standby.index].name() + "' for '" +
             model.tasks[together.primary.index].name() + "'";
-  return text + " take " + sum + " of CPU " + std::to_string(cpu);
+  return text + " take " + sum + " of " + cpu_text(cpu);
 }
 
 /// Rounds to the first three digits.
