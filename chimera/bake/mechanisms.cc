@@ -39,7 +39,7 @@ std::vector<Mechanism> mechanisms(const ApplicationSpec& spec, const baked::Run&
           {"kBudgets", any_task([](const TaskSpec& task) { return task.budget.count > 0; })},
           {"kDigest", run.duration != kNever},
           {"kSerial", target.uart.has_value()},
-          {"kShell", target.has_free_uart() && run.link_period.count == 0},  // else Linux is the shell
+          {"kShell", target.has_shell() && run.link_period.count == 0},  // else Linux is the shell
           {"kLink", run.link_period.count > 0},
           {"kWatchdog", target.watchdog.count > 0},
           {"kInterrupts", !target.events.empty()},

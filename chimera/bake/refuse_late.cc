@@ -16,7 +16,7 @@ class Lateness {
  public:
   Lateness(const Configuration& configuration, const RecordedProfile& profile, const Target& target, Report& report)
       : configuration_(configuration), profile_(profile), report_(report) {
-    if (target.has_free_uart())
+    if (target.has_shell())
       slice_.count = static_cast<std::int64_t>(kShellInstructions * kCyclesPerInstruction) * 1'000'000'000 /
                      target.clock_hz;
   }

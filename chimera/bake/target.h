@@ -70,6 +70,7 @@ struct Target {
   MemoryRange flash, ram;
   std::uint32_t stack_bytes = 2048, handler_stack_bytes = 1024;
   std::optional<SerialLine> uart;
+  bool shell = true;     ///< on `uart`, if nothing else has it
   Nanoseconds watchdog;  ///< 0: none
   std::vector<NamedInterrupt> interrupts;
   std::vector<NamedPin> pins;
@@ -84,8 +85,8 @@ struct Target {
   const ResourceTexts* resource(std::string_view task, std::string_view port) const;
   /// The first resource port `device` with the text 'uart': its task has the serial line; nullptr: there is none.
   const ResourceTexts* user_of_uart() const;
-  /// There is a serial line, and no task has it.
-  bool has_free_uart() const { return uart && user_of_uart() == nullptr; }
+  /// A person can give commands, if the image has no link.
+  bool has_shell() const { return shell && uart && user_of_uart() == nullptr; }
 };
 
 /// The text of a resource port of this name is a line of the target: `pin`, `interrupt`, `device`. Context: any.

@@ -13,12 +13,13 @@
 namespace chimera::bake {
 namespace {
 
-constexpr std::array<std::string_view, 17> kTargetKeys = {
-    "version", "like",     "cpu",        "board", "clock_hz",    "tick",      "flash", "ram",
-    "stack",   "handler_stack", "uart", "watchdog", "interrupts", "pins", "safe_writes", "resources", "events"};
+constexpr std::array<std::string_view, 18> kTargetKeys = {
+    "version",       "like", "cpu",   "board",    "clock_hz",   "tick", "flash",       "ram",       "stack",
+    "handler_stack", "uart", "shell", "watchdog", "interrupts", "pins", "safe_writes", "resources", "events"};
 constexpr std::array<std::string_view, 3> kCpus = {"cortex-m0plus", "cortex-m3", "cortex-m4"};
 constexpr std::array<std::string_view, 3> kUartKeys = {"address", "interrupt", "baud"};
 constexpr std::array<std::string_view, 3> kPinKeys = {"register", "bit", "access"};
+constexpr std::array<std::string_view, 2> kTruth = {"true", "false"};
 constexpr std::array<std::string_view, 2> kAccess = {"read", "write"};
 constexpr std::array<std::string_view, 2> kWriteKeys = {"register", "value"};
 constexpr std::uint64_t kLeastStack = 256, kMostStack = 1024 * 1024;
@@ -47,6 +48,8 @@ class TargetReader {
     memories(root);
     if (const Node* node = root.find("interrupts")) interrupts(*node);
     if (const Node* node = root.find("uart")) uart(*node);
+    if (const Node* node = root.find("shell"))
+      if (const auto index = read_choice(*node, kTruth, "'shell'", report_)) target_.shell = index->value == 0;
     if (const Node* node = root.find("pins")) pins(*node);
     if (const Node* node = root.find("safe_writes")) safe_writes(*node);
     if (const Node* node = root.find("resources")) resources(*node);

@@ -83,6 +83,19 @@ TEST(Target, NamesEveryKeyThatIsMissing) {
     EXPECT_NE(text.find("the key '" + std::string(key) + "' of the target is missing"), std::string::npos) << text;
 }
 
+TEST(Target, HasAShellUnlessSomethingElseHasTheLine) {
+  const auto shell = [](const std::string& more) {
+    const ReadTarget reading = read(kWhole + more);
+    EXPECT_TRUE(reading.target) << reading.report.text();
+    return reading.target && reading.target->has_shell();
+  };
+  EXPECT_TRUE(shell(""));
+  EXPECT_TRUE(shell("shell: true\n"));
+  EXPECT_FALSE(shell("shell: false\n"));
+  EXPECT_FALSE(shell("resources: {screen: {device: uart}}\n"));
+  EXPECT_FALSE(read("version: 1\nlike: whole\nshell: no\n").target);
+}
+
 TEST(Target, RefusesAnUnknownCpu) {
   EXPECT_EQ(said(replaced("cortex-m3", "cortex-m33")),
             "boards/t.yaml:2:6: error: 'cpu' is 'cortex-m33'; expected one of 'cortex-m0plus', 'cortex-m3', "

@@ -51,7 +51,7 @@ def link_of(file, rtpu):
 
 def command(machine_name, elf):
     """Time passes as on the machine below, because Linux is at the other end."""
-    return ["qemu-system-arm", "-M", machine_name, "-kernel", str(elf), "-nographic", "-nodefaults", "-nic", "none",
+    return ["qemu-system-arm", "-M", machine_name, "-kernel", str(elf), "-nographic", "-nodefaults",
             "-monitor", "none", "-semihosting-config", "enable=on,target=native", "-serial", "stdio"]
 
 

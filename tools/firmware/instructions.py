@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Counts the instructions of an image by part in QEMU, per job, from the start of the loop to the end of the run.
-usage: instructions.py MACHINE IMAGE.elf   (reads IMAGE.elf.map; a run of 1 s takes a minute)
+usage: instructions.py MACHINE IMAGE.elf [NS]   (reads IMAGE.elf.map; NS of an instruction, as `instruction_ns`)
 Dispatch is all of the runtime but the digest, with the clock and divisions; floating point belongs to components."""
 import bisect
 import collections
@@ -60,12 +60,12 @@ def executed(log, start):
     return {address: n * lengths.get(address, 0) for address, n in runs.items()}
 
 
-def run(machine, elf):
+def run(machine, elf, instruction_ns):
     """(instructions by block, output of the image)"""
     with tempfile.TemporaryDirectory() as folder:
         pipe = os.path.join(folder, "log")
         os.mkfifo(pipe)
-        command = [*qemu.command(machine, elf, qemu.INSTRUCTION_NS), "-d", "in_asm,exec,nochain", "-D", pipe]
+        command = [*qemu.command(machine, elf, instruction_ns), "-d", "in_asm,exec,nochain", "-D", pipe]
         with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True) as process:
             with open(pipe, errors="replace") as log:
                 blocks = executed(log, start_of_loop(elf))
@@ -81,7 +81,7 @@ def is_dispatch(group, name):
 def main():
     machine, elf = sys.argv[1], pathlib.Path(sys.argv[2])
     places = Places(pathlib.Path(f"{elf}.map"))
-    blocks, output = run(machine, elf)
+    blocks, output = run(machine, elf, int(sys.argv[3]) if len(sys.argv) > 3 else qemu.INSTRUCTION_NS)
     jobs = sum(map(int, CYCLES.findall(output)))
     parts = collections.Counter()
     for address, n in blocks.items():

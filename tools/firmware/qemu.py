@@ -24,7 +24,7 @@ def command(machine, image, instruction_ns):
     shift = instruction_ns.bit_length() - 1
     if instruction_ns != 1 << shift or shift > 10:
         raise QemuError(f"instruction_ns {instruction_ns}: QEMU takes a power of two, 1 to 1024")
-    return ["qemu-system-arm", "-M", machine, "-kernel", str(image), "-nographic", "-nodefaults", "-nic", "none",
+    return ["qemu-system-arm", "-M", machine, "-kernel", str(image), "-nographic", "-nodefaults",
             "-monitor", "none", "-serial", "stdio", "-icount", f"shift={shift},sleep=off,align=off",
             "-semihosting-config", "enable=on,target=native"]
 
