@@ -22,7 +22,7 @@ def parse_arguments():
                     "Exit 0 only if the digests are equal.",
         epilog="images: " + ", ".join(images.names()) + "   (firmware/images/NAME/image.yaml)\n"
                "result: build/firmware/NAME.TARGET/image.elf, and beside it image.elf.map, output.txt, host.digest\n"
-               "example: ./dev firmware servo --target stm32vldiscovery --detail")
+               "example: ./dev firmware servo --target fictive-m0plus --detail")
     parser.add_argument("name", nargs="*", metavar="NAME", help="images; left out: all")
     parser.add_argument("--target", metavar="T", help="one target, also one that the image does not list")
     parser.add_argument("--no-run", action="store_true", help="link only")
