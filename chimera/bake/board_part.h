@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of a description that one board runs, as a description of its own: docs/formats/link.md. What its tasks read
-// of other rtpus is an operator variable there, which the link sets.
+// The part of a description that one board runs, as a description of its own: docs/formats/link.md. In it, a
+// variable that another rtpu produces is an operator variable; the link sets its value.
 #pragma once
 
 #include "chimera/verify/configuration.h"

@@ -82,7 +82,7 @@ std::size_t link_ram(const ApplicationSpec& part) {
   board_link::LinkLayout layout;
   layout.plan(part, RtpuId(0u), memory);
   const std::size_t frame = layout.most_from_board_bytes();
-  return sizeof(board_link::FrameReader) + layout.to_board_bytes() + frame + board_link::line_bytes(frame) +
+  return sizeof(board_link::FrameDecoder) + layout.to_board_bytes() + frame + board_link::line_bytes(frame) +
          sizeof(board_link::Import) * layout.imports().size() + sizeof(board_link::Export) * layout.exports().size();
 }
 

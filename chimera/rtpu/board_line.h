@@ -100,7 +100,7 @@ class BoardLine {
   HeapMemory memory_;
   board_link::LinkLayout layout_;
   ByteLine line_;
-  board_link::FrameReader reader_;
+  board_link::FrameDecoder reader_;
   std::atomic<Life> life_{Life::kWaiting};
   std::atomic<bool> has_ended_{false}, is_stopping_{false}, flag_{false}, waits_{true};
   mutable std::mutex mutex_;  // of all below, down to trouble_
@@ -111,7 +111,7 @@ class BoardLine {
   std::uint32_t frames_ = 0;
   std::uint32_t wanted_ = 0;
   std::string trouble_;
-  // Of the thread alone:
+  // Only the thread uses these members:
   WakeEvent* ended_ = nullptr;
   Nanoseconds heard_at_, down_at_, opens_at_;
   std::uint64_t board_us_ = 0;

@@ -90,7 +90,7 @@ class Scene {
   RtpuSpec rtpus_[1] = {{.name = "board"}};
   HeapMemory heap_;
   board_link::LinkLayout layout_;
-  board_link::FrameReader reader_;
+  board_link::FrameDecoder reader_;
   WakeEvent over_;
   std::optional<BoardLine> line_;
   std::uint16_t sequence_ = 0;

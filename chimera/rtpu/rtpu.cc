@@ -164,7 +164,7 @@ Result<void> Rtpu::make_segment() {
   return {};
 }
 
-// Of a board: stand-ins for its tasks, and the line to them.
+// The stand-ins for the tasks of a board, and the line to the board.
 Result<void> Rtpu::find_components() {
   if (self().link.is_there()) {
     board_ = std::make_unique<BoardTasks>(image_->spec(), RtpuId(start_.peer));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What can cross the link between Linux and a board, and whether the line carries it: docs/formats/link.md.
+// Rules for the link between Linux and a board: which ports it can carry, and whether the line is fast enough.
+// docs/formats/link.md.
 #pragma once
 
 #include "chimera/description/report.h"

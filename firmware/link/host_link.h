@@ -74,7 +74,7 @@ class HostLink : public BoundaryListener {
   std::atomic<std::uint32_t> flag_word_{kStaleFlag};
   const std::atomic<std::uint32_t>* const flags_[1] = {&flag_word_};
   std::span<std::byte> payload_, out_;
-  // Of out_: written by take() while nothing is left, then by next_byte() alone. Release pairs with acquire.
+  // Bytes of out_. take() writes both when all bytes are sent; then only next_byte() does. Release pairs with acquire.
   std::atomic<std::uint32_t> out_size_{0}, out_sent_{0};
   Nanoseconds heard_at_, send_at_;
   std::uint32_t wanted_ = 0;
@@ -82,7 +82,7 @@ class HostLink : public BoundaryListener {
   std::uint16_t sequence_ = 0, last_sequence_ = 0;
   std::uint8_t next_fault_ = 0;                // task whose fault goes into the next frame
   bool is_stale_ = true;
-  board_link::FrameReader reader_;
+  board_link::FrameDecoder reader_;
   bare::ByteRing<512> in_;
 };
 

@@ -131,7 +131,7 @@ class Board : private Clock, private JobClock {
   std::optional<HostLink> link_;
   board_link::LinkLayout layout_;
   std::optional<Executive> executive_;
-  board_link::FrameReader reader_;
+  board_link::FrameDecoder reader_;
   std::vector<std::byte> out_;
   std::uint16_t sequence_ = 0;
   Nanoseconds now_, until_;

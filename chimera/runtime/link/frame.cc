@@ -76,12 +76,12 @@ std::size_t encode_frame(std::span<const std::byte> payload, std::span<std::byte
   return frame.end();
 }
 
-void FrameReader::put(std::byte byte) noexcept {
+void FrameDecoder::put(std::byte byte) noexcept {
   if (size_ == bytes_.size()) is_damaged_ = true;
   else bytes_[size_++] = byte;
 }
 
-bool FrameReader::add(std::byte byte) noexcept {
+bool FrameDecoder::add(std::byte byte) noexcept {
   if (byte == std::byte{0}) return end();
   has_begun_ = true;
   if (is_damaged_) return false;
@@ -96,7 +96,7 @@ bool FrameReader::add(std::byte byte) noexcept {
   return false;
 }
 
-bool FrameReader::end() noexcept {
+bool FrameDecoder::end() noexcept {
   const std::span<const std::byte> all(bytes_.data(), size_);
   bool is_whole = has_begun_ && !is_damaged_ && left_ == 0 && all.size() > kCrcBytes;
   if (is_whole) {

@@ -28,7 +28,7 @@ std::size_t encode_frame(std::span<const std::byte> payload, std::span<std::byte
 
 /// Finds the frames among the bytes of a line. What stands between two zeros and is no whole frame is dropped and
 /// counted: a text line, noise, a damaged frame. No allocation.
-class FrameReader {
+class FrameDecoder {
  public:
   /// Takes the next byte. True if it ended a whole frame: then payload() is that of the frame until the next call.
   /// Context: any; wait-free; O(1), with a whole frame O(bytes of the frame).

@@ -11,7 +11,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace chimera;
   using namespace chimera::board_link;
-  FrameReader reader;
+  FrameDecoder reader;
   std::array<std::byte, kMostLineBytes> line{};
   for (const std::uint8_t byte : std::span(bytes, size)) {
     if (!reader.add(static_cast<std::byte>(byte))) continue;

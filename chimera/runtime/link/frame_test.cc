@@ -21,7 +21,7 @@ Bytes encoded(const Bytes& payload) {
 }
 
 /// The payloads of all whole frames on the line.
-std::vector<Bytes> read(FrameReader& reader, const Bytes& line) {
+std::vector<Bytes> read(FrameDecoder& reader, const Bytes& line) {
   std::vector<Bytes> found;
   for (const std::byte byte : line)
     if (reader.add(byte)) found.emplace_back(reader.payload().begin(), reader.payload().end());
@@ -48,51 +48,51 @@ TEST(Frame, CarriesEverySizeAndNoZeroInside) {
     for (const Bytes& payload : {random_bytes(random, size), Bytes(size, std::byte{0}), Bytes(size, std::byte{7})}) {
       const Bytes line = encoded(payload);
       EXPECT_EQ(std::count(line.begin() + 1, line.end() - 1, std::byte{0}), 0) << size;
-      FrameReader reader;
+      FrameDecoder reader;
       EXPECT_EQ(read(reader, line), std::vector<Bytes>{payload}) << size;
       EXPECT_EQ(reader.dropped(), 0u);
     }
 }
 
-TEST(FrameReader, FindsFramesBetweenTextLines) {
+TEST(FrameDecoder, FindsFramesBetweenTextLines) {
   Bytes line;
   for (const Bytes& piece : {text("stack 640 of 2048\n"), encoded(text("one")), text("ok\r\nstatus\r\n"),
                              encoded(text("two")), encoded(text("three"))})
     line.insert(line.end(), piece.begin(), piece.end());
-  FrameReader reader;
+  FrameDecoder reader;
   EXPECT_EQ(read(reader, line), (std::vector<Bytes>{text("one"), text("two"), text("three")}));
   EXPECT_EQ(reader.dropped(), 2u);  // the texts
 }
 
-TEST(FrameReader, RefusesEveryFrameWithADamagedByte) {
+TEST(FrameDecoder, RefusesEveryFrameWithADamagedByte) {
   std::mt19937 random(2);
   const Bytes payload = random_bytes(random, 80), line = encoded(payload);
   for (std::size_t at = 1; at + 1 < line.size(); ++at)
     for (unsigned change = 1; change < 256; ++change) {
       Bytes damaged = line;
       damaged[at] ^= static_cast<std::byte>(change);
-      FrameReader reader;
+      FrameDecoder reader;
       ASSERT_TRUE(read(reader, damaged).empty()) << at << " " << change;
       ASSERT_EQ(read(reader, line), std::vector<Bytes>{payload});  // and finds the next one
     }
 }
 
-TEST(FrameReader, RefusesAFrameThatLostOrGotAByte) {
+TEST(FrameDecoder, RefusesAFrameThatLostOrGotAByte) {
   std::mt19937 random(3);
   const Bytes payload = random_bytes(random, 300), line = encoded(payload);
   for (std::size_t at = 1; at + 1 < line.size(); ++at) {
     Bytes less = line, more = line;
     less.erase(less.begin() + static_cast<std::ptrdiff_t>(at));
     more.insert(more.begin() + static_cast<std::ptrdiff_t>(at), std::byte{0x55});
-    FrameReader reader;
+    FrameDecoder reader;
     EXPECT_TRUE(read(reader, less).empty()) << at;
     EXPECT_TRUE(read(reader, more).empty()) << at;
   }
 }
 
-TEST(FrameReader, FindsTheNextFrameBehindAMegabyteOfNoise) {
+TEST(FrameDecoder, FindsTheNextFrameBehindAMegabyteOfNoise) {
   std::mt19937 random(4);
-  FrameReader reader;
+  FrameDecoder reader;
   for (const Bytes& noise : {random_bytes(random, 1 << 20), Bytes(1 << 20, std::byte{0x41})}) {
     EXPECT_TRUE(read(reader, noise).empty());
     EXPECT_EQ(read(reader, encoded(text("whole"))), std::vector<Bytes>{text("whole")});

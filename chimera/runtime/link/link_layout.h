@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stands where in the frames between a board and Linux. Both sides plan it from the same description: the board
-// from its part, in which the variables of other rtpus are operator variables. docs/formats/link.md.
+// The offsets of values in the frames between a board and Linux. Both sides compute them from the same description: the
+// board from its part, in which the variables of other rtpus are operator variables. docs/formats/link.md.
 #pragma once
 
 #include <cstddef>
